@@ -1,14 +1,18 @@
 // The commands of the program: their flags, and the exit codes that all of them return.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "crescent/crescent.h"
 
 namespace crescent::cli {
+
+class Progress;
 
 /// Exit codes, the same for every command.
 enum Exit : int {
@@ -95,18 +99,34 @@ struct CompareFlags {
     std::string file, out;                                      // "": none; out/compare
     std::vector<std::string> arms, reference, regions, masks;   // NAME=FILES, FILES, NAME=x0,y0,x1,y1, NAME=FILE
     std::vector<std::string> layers, spp, seconds, assertions;  // [NAME=]LAYER, [NAME=]N, [NAME=]S, a check
+    std::string encoding, space, channels, channel;             // of the files; "": the file's
     std::string align, expect, smallest, exposure, alpha, trim, brightest, theme;  // "": the file's
     bool crop = false, pair = false, schema = false, schema_as_json = false, quiet = false;
     // Of a suite.
-    std::string baseline, candidate;    // folders; "": the file's patterns
-    std::string json, junit, markdown;  // files to write
-    std::string because, store;         // of accept
-    std::vector<std::string> views;     // to accept; empty: all
+    std::string baseline, candidate;           // folders; "": the file's patterns
+    std::string json, junit, markdown, sarif;  // files to write
+    bool allow_inconclusive = false;           // too few renders do not fail
+    std::string because, store;                // of accept
+    std::vector<std::string> views;            // to accept; empty: all
     bool new_baseline = false, plan = false, accept = false;
+    // Of renders that are made here.
+    std::string render, a, b;             // commands
+    std::string until, budget, timeout;   // "decided"; times such as 10min
+    std::vector<std::string> made_views;  // of a and b
+    int jobs = 1;
+    bool makes_renders() const { return !render.empty() || !a.empty() || !b.empty(); }
 };
 int compare(const CompareFlags& flags);
+/// The keys that say how files are read, with the values of their flags ("": not given).
+inline std::array<std::pair<const char*, std::string>, 4> reading_keys(const CompareFlags& f) {
+    return {{{"encoding", f.encoding}, {"space", f.space}, {"channels", f.channels}, {"channel", f.channel}}};
+}
 /// `crescent compare SUITE.toml`, and --baseline DIR --candidate DIR.
 int compare_suite(const CompareFlags& flags);
+/// Makes the renders of a suite, or those of two commands, and decides; `staging` and outputs are those of a suite.
+SuiteResult make_renders_of(const CompareFlags& flags, Suite& suite, Progress& progress);
+/// The suite of --a and --b. Throws InputError.
+Suite suite_of_two(const CompareFlags& flags, const SuiteOptions& options);
 /// Writes a JUnit file that says that the call failed, in place of that of an earlier call.
 void report_failure(const std::string& path, const std::string& file, const std::string& message);
 

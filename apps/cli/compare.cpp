@@ -88,6 +88,8 @@ std::vector<CompareFlag> flags_of(const CompareFlags& f) {
     per_arm(out, f, f.seconds, "--seconds", "seconds");
     for (const std::string& text : f.assertions)
         out.push_back({{"assertions", text, "check"}, text, false, "--assert '" + text + "'"});
+    for (const auto& [key, text] : reading_keys(f))
+        if (!text.empty()) out.push_back({{key}, text, false, fmt::format("--{} {}", key, text)});
     if (!f.theme.empty()) out.push_back({{"theme"}, f.theme, false, "--theme " + f.theme});
     if (!f.align.empty()) out.push_back({{"align"}, f.align, false, "--align " + f.align});
     if (f.crop) out.push_back({{"crop"}, "true", true, "--crop"});
@@ -121,14 +123,16 @@ std::string command_of(const CompareFlags& f) {
         {"--brightest", f.brightest}, {"--theme", f.theme}};
     for (const auto& [flag, value] : rest)
         if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
+    for (const auto& [key, value] : reading_keys(f))
+        if (!value.empty()) out += fmt::format(" --{} {}", key, shell_word(value));
     return out;
 }
 
 /// InputError if a flag is given that only a suite has.
 void forbid_suite_flags(const CompareFlags& f) {
     const std::pair<const char*, bool> only[] = {{"--json", !f.json.empty()}, {"--junit", !f.junit.empty()},
-        {"--markdown", !f.markdown.empty()}, {"--because", !f.because.empty()}, {"--store", !f.store.empty()},
-        {"--new-baseline", f.new_baseline}, {"--plan", f.plan}, {"--accept", f.accept}};
+        {"--markdown", !f.markdown.empty()}, {"--sarif", !f.sarif.empty()}, {"--because", !f.because.empty()},
+        {"--store", !f.store.empty()}, {"--new-baseline", f.new_baseline}, {"--plan", f.plan}, {"--accept", f.accept}};
     for (const auto& [flag, given] : only)
         if (given)
             throw InputError(
@@ -148,6 +152,7 @@ int compare_arms(const CompareFlags& flags, const std::string& out) {
     print(summary);
     return result.state == CompareResult::State::holds ? passed
         : result.state == CompareResult::State::fails  ? failed
+        : flags.allow_inconclusive                     ? passed
                                                        : inconclusive;
 }
 
@@ -158,7 +163,7 @@ int compare(const CompareFlags& flags) {
         return print(flags.schema_as_json ? compare_schema_json() : compare_schema_text() + "\n" + suite_schema_text()),
                passed;
     const bool folders = !flags.baseline.empty() || !flags.candidate.empty();
-    if (folders || (!flags.file.empty() && is_suite(flags.file))) return compare_suite(flags);
+    if (folders || flags.makes_renders() || (!flags.file.empty() && is_suite(flags.file))) return compare_suite(flags);
     forbid_suite_flags(flags);
     if (flags.file.empty() && flags.arms.empty())
         throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");

@@ -8,12 +8,15 @@ namespace {
 
 constexpr const char* compare_footer =
     R"(FILES is a path or a pattern of renders of one view, each one independent: OpenEXR,
-PFM, Radiance HDR, NPY. --arm may be given again for the same NAME. Without a reference the
+PFM, NPY, Radiance HDR, PNG, JPEG, BMP, TGA, PGM, PPM. --arm may be given again for the same NAME. Without a reference the
 arms are compared with each other. `crescent compare --schema` has the keys of FILE.
 
 Written under DIR: report.html, metrics.json, metrics.csv, junit.xml, plates/.
 Exit codes: 0 no assertion fails; 1 an assertion fails, or with --expect same a
 difference was found; 4 --expect same, and too few renders to find one.
+
+With --render, or with --a and --b, the renders are made here: more of each view until it is
+decided; the probability of a false alarm holds although the number is not fixed before.
 
 A FILE with a table [suite] compares the views of a baseline and a candidate. Written under
 DIR: report.html. Exit codes: 1 a view changed, is noisier, is missing or is new; 2 a view cannot
@@ -30,6 +33,21 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
     c.add_option("--candidate", f->candidate, "the same of the renders to be compared")
         ->type_name("DIR")
         ->check(not_empty);
+    c.add_flag("--allow-inconclusive", f->allow_inconclusive, "exit code 0 in place of 4: too few renders do not fail");
+    const auto text = [&](const char* flag, std::string& to, const char* means, const char* type) {
+        c.add_option(flag, to, means)->type_name(type)->check(not_empty);
+    };
+    text("--render", f->render, "of a suite: the program that makes renders of {view} with {seed} in the file {out}",
+        "CMD");
+    text("--a", f->a, "without a suite: the program that makes one side", "CMD");
+    text("--b", f->b, "the same of the other side, whose mean is to be equal", "CMD");
+    c.add_option("--views", f->made_views, "of --a and --b: what {view} stands for")
+        ->type_name("A,B,...")
+        ->delimiter(',');
+    text("--until", f->until, "make renders until each view is decided", "decided");
+    text("--budget", f->budget, "the longest time for all renders; default 10min", "TIME");
+    text("--timeout", f->timeout, "the longest time of one render; default 1h", "TIME");
+    c.add_option("--jobs", f->jobs, "programs at a time; default 1")->type_name("N")->check(CLI::Range(1, 1024));
     c.add_flag("--new-baseline", f->new_baseline, "of a suite: views without a baseline do not fail");
     c.add_flag("--plan", f->plan, "of a suite: how many renders the smallest difference needs, from the baseline");
     c.add_option_function<std::vector<std::string>>(
@@ -52,6 +70,7 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
          "of a suite: every number; with --schema: as a JSON Schema")
         ->type_name("[FILE]")
         ->expected(0, 1);
+    file("--sarif", f->sarif, "of a suite: what fails, for the annotations of a code host");
     file("--junit", f->junit, "of a suite: one case for each view");
     file("--markdown", f->markdown, "of a suite: a table of what changed, for a summary page");
 }
@@ -76,6 +95,14 @@ void add_compare(CLI::App& app, Work& work) {
     many("--region", f->regions, "a box, both ends inside, from the bottom-left", "NAME=x0,y0,x1,y1");
     many("--mask", f->masks, "pixels above 0 in a picture", "NAME=FILE");
     many("--layer", f->layers, "which layer of the files, of one arm's, or of reference=LAYER", "[NAME=]LAYER");
+    const auto word = [&](const char* flag, std::string& to, const char* means, const char* type) {
+        c->add_option(flag, to, means)->type_name(type)->check(not_empty);
+    };
+    word("--encoding", f->encoding, "how whole numbers encode radiance; default: as the file states it, else srgb",
+        "srgb|linear");
+    word("--space", f->space, "what of them is tested: radiance, or the displayed values", "radiance|display");
+    word("--channels", f->channels, "rgba: the alpha channel is tested too", "rgb|rgba");
+    word("--channel", f->channel, "this channel alone is tested", "NAME");
     many("--spp", f->spp, "samples a pixel of one render", "[NAME=]N");
     many("--seconds", f->seconds, "time of one render", "[NAME=]S");
     many("--assert", f->assertions, "a claim such as 'rmse.H(a) < rmse.H(b)'", "CHECK");

@@ -40,6 +40,7 @@
 #include "compare/compare.h"
 #include "compare/renders.h"
 #include "compare/suite/suite.h"
+#include "compare/suite/until.h"
 #include "experiment/assertion.h"
 #include "experiment/experiment.h"
 #include "experiment/input_files.h"

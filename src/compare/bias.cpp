@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "compare/anytime.h"
 #include "compare/compare.h"
 #include "compare/renders.h"
 #include "compare/outputs.h"
@@ -84,11 +85,11 @@ MeanTest mean_test(const BiasPair& sides, std::size_t r, double level) {
         return t;
     }
     const SetVariance noise = sides.noise_of(set);
-    t.welch = sides.test(a, b, noise, false);
+    t.welch = sides.test(a, b, noise, false), t.information = sides.information();
     const double undetectable =
         std::max({sides.missable_difference(1, noise.pixels, level), sides.missable_difference(-1, noise.pixels, level),
             sides.undetectable_difference(t.a, t.b, noise.pixels, noise.own, level)});
-    t.smallest = std::max(detectable(t.welch, level), undetectable) / std::max(std::fabs(t.b), 1e-300);
+    t.smallest = std::max(sides.detectable_difference(t.welch, level), undetectable) / std::max(std::fabs(t.b), 1e-300);
     if (std::isnan(t.welch.p)) t.why = "the noise of one side is not a finite number";
     return t;
 }
@@ -351,7 +352,7 @@ bool BiasResult::differs() const {
 }
 
 std::size_t BiasResult::shown() const {
-    std::vector<std::uint64_t> counts(colour_quantities);
+    std::vector<std::uint64_t> counts(most_quantities);
     for (const auto* by : {&tiles_by, &pixels_by})
         for (std::size_t q = 0; q < by->size(); ++q) counts[q] += (*by)[q];
     for (const MeanTest& t : regions) {
@@ -376,7 +377,8 @@ BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const Comp
     out.a = plan.arms[a].name, out.b = sides.referred ? the_reference : plan.arms[b].name;
     out.arm_a = a, out.arm_b = b, out.dependent = sides.dependent;
     if (sides.referred) out.reference_error = reference_error_from(sides.b);
-    out.non_finite = compare_non_finite(all, sides.a, sides.b, level.named / 2);
+    const double looks = plan.look > 0 ? look_factor(plan.look) : 1;  // these tests do not hold at any time
+    out.non_finite = compare_non_finite(all, sides.a, sides.b, level.named / 2 / looks);
     const double share = out.non_finite.any() ? 0.5 : 1;
     const BiasLevel rest{level.each * share, level.named * share};
     out.place_alpha = rest.each / 4;
@@ -390,7 +392,7 @@ BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const Comp
     else test_means(plan, measured, all, rest, out, monitor);
     if (out.identical) out.p = 1;
     out.p /= share;
-    if (out.non_finite.any()) out.p = std::fmin(out.p, 2 * out.non_finite.p);
+    if (out.non_finite.any()) out.p = std::fmin(out.p, 2 * looks * out.non_finite.p);
     out.sentence = sentence_of(all, out, rest.each / 2);
     return out;
 }
@@ -484,6 +486,7 @@ double pixel_p(const BiasPair& s, std::size_t i, double level) {
     if (!m.known) return std::nan("");
     if (std::fabs(m.difference) < s.undetectable_difference(s.mean_b(i) + m.difference, s.mean_b(i), 1, 0, level))
         return 1;
+    if (m.se > 0 && s.look > 0) return anytime_p(m.difference / m.se, m.df, s.information());
     return m.se > 0 ? two_sided_p(m.difference / m.se, m.df) : m.difference == 0 ? 1 : 0;
 }
 
@@ -505,7 +508,7 @@ double most_degrees(const BiasPair& s) { return static_cast<double>(s.a.files.si
 
 /// Returns |t| of each quantity below which no p is <= alpha: the floor of the spread makes |t| smaller, and p is
 /// smallest with the most degrees of freedom.
-using LeastT = std::array<double, colour_quantities>;
+using LeastT = std::array<double, most_quantities>;
 LeastT least_t(std::span<const BiasPair> sides, double alpha) {
     LeastT out{};
     for (const BiasPair& s : sides)
@@ -529,7 +532,7 @@ PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double a
         }
         out.tested += known;
         if (!known || !small) continue;
-        std::array<double, colour_quantities> p{};
+        std::array<double, most_quantities> p{};
         for (const BiasPair& s : sides)
             p[s.quantity] = pixel_p(s, pixels[k], level * level_share(s.quantity, sides.size()));
         const JointP joint = joint_p(std::span(p).first(sides.size()));

@@ -310,4 +310,25 @@ ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::s
     return {};
 }
 
+ExrLayer layer_of_channel(const ExrFile& file, const std::string& path, const std::string& channel) {
+    std::vector<std::string> names;
+    for (const ExrPart& part : file.parts()) {
+        if (part.deep) continue;
+        for (const ExrChannel& each : part.channels) names.push_back(each.name);
+        if (part.channel(channel)) return {ExrLayer::Kind::grey, part.index, channel, channel, "", {channel}, true};
+    }
+    throw InputError({path, 0, 0},
+        fmt::format(
+            "no channel '{}'{}; channels found: {}", channel, did_you_mean(channel, names), channels_found(file)));
+}
+
+std::string alpha_of(const ExrPart& part, const ExrLayer& layer) {
+    const auto channels = exr_channels(part);
+    const auto found = channels.find(layer.prefix);
+    if (found == channels.end()) return "";
+    for (const char* name : {"a", "A", "alpha", "Alpha"})
+        if (const auto alpha = found->second.find(name); alpha != found->second.end()) return alpha->second;
+    return "";
+}
+
 }  // namespace crescent::inline comparison

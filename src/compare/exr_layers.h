@@ -63,5 +63,9 @@ struct ExrLayer {
 /// Returns the requested layer ("": the beauty). Throws InputError, with the channels found, if there is none or it is
 /// ambiguous.
 ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::string& wanted);
+/// Returns one channel, by its whole name in the file, as a grey layer. Throws InputError with the channels found.
+ExrLayer layer_of_channel(const ExrFile& file, const std::string& path, const std::string& channel);
+/// Returns the alpha channel of a layer; "" if it has none.
+std::string alpha_of(const ExrPart& part, const ExrLayer& layer);
 
 }  // namespace crescent::inline comparison

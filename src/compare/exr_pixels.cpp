@@ -197,13 +197,19 @@ Render render_of(const ExrPart& part, const OpenFile& file, const ExrLayer& laye
 
 }  // namespace
 
-Render read_exr(const OpenFile& file, const std::string& wanted) {
+Render read_exr(const OpenFile& file, const std::string& wanted, const ReadingOptions& options) {
     const ExrFile exr(file);
-    const ExrLayer layer = chosen_layer(exr, file.path(), wanted);
+    const ExrLayer layer = options.channel.empty() ? chosen_layer(exr, file.path(), wanted)
+                                                   : layer_of_channel(exr, file.path(), options.channel);
     const ExrPart& part = exr.parts()[static_cast<std::size_t>(layer.part)];
     Render out = render_of(part, file, layer);
     set_primaries(out, part);
-    const ExrExtra extra = exr_extra(part);
+    const ExrExtra extra = options.channel.empty() ? exr_extra(part) : ExrExtra{};
+    if (options.channels == TestedChannels::rgba && options.channel.empty()) {
+        const std::string alpha = alpha_of(part, layer);
+        if (alpha.empty()) file.fail("channels = \"rgba\": expected an alpha channel, found none");
+        out.alpha = std::move(exr.read(part, {alpha})[0]);
+    }
     std::vector<std::string> channels;
     if (layer.kind == ExrLayer::Kind::luminance_chroma) {
         auto rgb = exr.read_luminance_chroma(part, layer.prefix);

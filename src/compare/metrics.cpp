@@ -307,13 +307,15 @@ void MeanFilm::add(const Render& render, double variance_scale) {
         planes.assign(1, {zero, zero});
         stated_variance.assign(render.variance.size(), 0);
     }
+    if (count == 0 && !render.alpha.empty()) planes.assign(most_quantities, planes[0]);
     if (planes.size() == 1 && !is_grey(render)) planes.resize(colour_quantities, MeanPlane(planes[0]));
     if (render.variance.size() != stated_variance.size() || variance_scale == 0)
         stated_variance.clear();  // some file has no variance
     ++count;
     rounding = std::max(rounding, render.rounding);
+    if (render.steps.levels > 0 && (steps.levels == 0 || render.steps.levels < steps.levels)) steps = render.steps;
     const double n = static_cast<double>(count);
-    const std::vector<float>* channels[] = {&render.r, &render.g, &render.b};
+    const std::vector<float>* channels[] = {&render.r, &render.g, &render.b, &render.alpha};
     const auto width = static_cast<std::size_t>(render.width);
     parallel_for(std::size_t{0}, static_cast<std::size_t>(render.height), [&](std::size_t row) {
         for (std::size_t i = row * width; i < (row + 1) * width; ++i) {

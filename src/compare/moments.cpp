@@ -123,6 +123,8 @@ std::string header_text(const RenderStats& all, const ArmStats& arm, bool consta
     Json out = {{"format", moments_format}, {"renders", arm.files.size()}, {"constant", constant},
         {"quantities", arm.quantities.size()}, {"rounding", arm.film.rounding}, {"tile", all.tiles.size},
         {"regions", Json::array()}};
+    if (const Quantisation& steps = arm.film.steps; steps.levels > 0)
+        out["levels"] = steps.levels, out["srgb"] = steps.srgb;
     for (const PixelSet& set : all.regions) {
         const Box box = set.box.value_or(all.frame());
         out["regions"].push_back({{"name", set.name}, {"box", {box.x0, box.y0, box.x1, box.y1}}});

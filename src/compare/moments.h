@@ -31,6 +31,7 @@ struct MomentsText {
     std::size_t renders = 0, quantities = 0;
     bool constant = false;
     double rounding = 0;
+    Quantisation steps;
     std::vector<MomentsRegion> regions;
 };
 

@@ -91,6 +91,12 @@ MomentsText parse_moments_text(const std::string& text, const std::string& file,
     if (!rounding.is_number()) reader.fail("rounding: expected a number");
     out.rounding = rounding.get<double>();
     if (!(out.rounding >= 0 && out.rounding <= 1)) reader.fail("rounding: expected a number from 0 to 1");
+    if (root.contains("levels")) {  // of files of whole numbers
+        out.steps.levels = static_cast<double>(reader.whole("levels", 2, 65536));
+        const Json& srgb = reader.member(root, "srgb");
+        if (!srgb.is_boolean()) reader.fail("srgb: expected true or false");
+        out.steps.srgb = srgb.get<bool>();
+    }
     if (!regions.is_array() || regions.empty() || regions.size() > regions_most)
         reader.fail(fmt::format("regions: expected a list of 1 to {}", regions_most));
     for (const Json& each : regions) out.regions.push_back(reader.region(each, width, height));
@@ -224,7 +230,7 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
     read_failures(file, all, to);
     MeanFilm& film = to.film;
     film.count = file.text().renders;
-    film.rounding = file.text().rounding;
+    film.rounding = file.text().rounding, film.steps = file.text().steps;
     film.planes.assign(grey ? 1 : colour_quantities, {});
     for (std::size_t q = grey ? 0 : 1; q < film.planes.size(); ++q) {
         film.planes[q].mean = read_means(file, quantity_names[q], to);

@@ -112,6 +112,7 @@ Render difference(const RenderStats& all, Render a, const Render& b) {
                 fmt::format("expected {} x {} pixels as before, found {} x {}: the file has changed", all.width,
                     all.height, r->width, r->height));
     for (std::size_t i = 0; i < a.size(); ++i) a.r[i] -= b.r[i], a.g[i] -= b.g[i], a.b[i] -= b.b[i];
+    for (std::size_t i = 0; i < a.alpha.size(); ++i) a.alpha[i] -= b.alpha[i];
     a.variance.clear(), a.rounding = std::max(a.rounding, b.rounding);
     return a;
 }

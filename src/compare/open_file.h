@@ -49,6 +49,8 @@ public:
     const std::string& path() const { return path_; }
     const FileState& state() const { return state_; }
     std::uint64_t size() const { return state_.size; }
+    /// For a child process that reads it.
+    int descriptor() const { return file_; }
 
     /// Fills `to` from byte `from` on; throws InputError if the file ends before. May be called from many threads at
     /// once.

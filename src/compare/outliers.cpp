@@ -78,12 +78,13 @@ public:
             for (std::size_t k = 0; k < all.arms[side].files.size(); ++k) {
                 monitor.check();
                 const Render render = all.source.read(all.arms[side].files[k].path, layers[side]);
-                std::array<std::vector<double>, colour_quantities> values;
+                std::array<std::vector<double>, most_quantities> values;
                 for (const std::uint32_t i : pixels_) {
                     values[0].push_back(static_cast<double>(render.y(i)));
                     values[1].push_back(static_cast<double>(render.r[i]));
                     values[2].push_back(static_cast<double>(render.g[i]));
                     values[3].push_back(static_cast<double>(render.b[i]));
+                    if (!render.alpha.empty()) values[4].push_back(static_cast<double>(render.alpha[i]));
                 }
                 renders_.push_back({side, k, std::move(values)});
             }
@@ -113,7 +114,7 @@ public:
 private:
     struct Values {
         std::size_t side, render;
-        std::array<std::vector<double>, colour_quantities> values;
+        std::array<std::vector<double>, most_quantities> values;
     };
     std::vector<std::uint32_t> pixels_;  // ascending
     std::vector<Values> renders_;

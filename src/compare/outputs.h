@@ -62,6 +62,12 @@ struct BiasPair {
     Welch test(
         const std::vector<double>& va, const std::vector<double>& vb, const SetVariance& noise, bool floored) const;
 
+    /// Returns p of a test, at any time if the plan asks for it.
+    Welch with_p(Welch test) const;
+    /// 1 / (1 / n + 1 / m), or the number of pairs; 0: the test is made once.
+    double information() const;
+    /// Returns the difference that the test detects with a probability of 90 %.
+    double detectable_difference(const Welch& test, double level) const;
     /// Returns the difference of a mean that events as large as the rarest found would cause on the darker side if its
     /// renders contain none with a probability of `level`. A t-test cannot detect smaller differences.
     double missable_difference(double difference, double pixels, double level) const;
@@ -79,6 +85,7 @@ struct BiasPair {
     const ArmResult* other = nullptr;  // null: the reference
     double brightest = 0;              // the largest possible value of a pixel of one render; 0: unknown
     bool referred = false, dependent = false, shared_noise = false;
+    unsigned look = 0;           // see ComparePlan
     bool count_pixel_p = true;   // see ComparePlan
     double low_frequencies = 1;  // power of the noise at low frequencies over that at high ones
     std::size_t quantity = 0;    // see renders.h
@@ -87,6 +94,9 @@ struct BiasPair {
     std::vector<double> tile_a, tile_b, tile_paired;  // variance of a pixel of one render, mean over a tile
 
 private:
+    /// Returns the difference of two means that the steps of the files' whole numbers hide, see
+    /// undetectable_difference().
+    double quantised_difference(double mean_a, double mean_b, double pixels, double variance) const;
     std::vector<double> paired_of(const ArmStats& side, std::vector<double> each) const;
     /// Returns the largest deviation by events on the brighter side.
     double rare_event(double difference) const;

@@ -14,6 +14,7 @@
 #include "compare/renders.h"
 #include "compare/noise.h"
 #include "math/statistics.h"
+#include "output/format.h"
 
 namespace crescent::inline comparison {
 
@@ -86,6 +87,7 @@ void FirstPass::arm(ArmStats& to, const std::vector<std::string>& files, const s
     each_render(all_.source, files, layer, monitor_, [&](const Render& render) {
         fit(render);
         check_pixels(render, to);
+        count_clipped(render);
         RenderFile file{render.file, fmt::format("{:016x}", render.hash), render.layer, render.variance_channels,
             render.sample_channel, render.spp, render.seconds, numbers_in(render.file)};
         check_copy(file, name);
@@ -129,6 +131,31 @@ void FirstPass::check_pixels(const Render& render, ArmStats& to) {
     if (negative) warnings_.add(render.file, "with a negative channel", negative);
     if (render.size() > 1 && bad < render.size() && all_equal(render))
         warnings_.add(render.file, "all pixels are equal");
+}
+
+/// A channel at the largest number of its file stands for any larger value.
+void FirstPass::count_clipped(const Render& render) {
+    all_.displayed |= render.displayed, all_.display_referred |= render.display_referred;
+    if (!render.display_referred) {  // a float file is not clipped
+        all_.clipped.assign(render.size(), false);
+        return;
+    }
+    const bool first = all_.clipped.empty();
+    if (first) all_.clipped.assign(render.size(), true);
+    for (std::size_t i = 0; i < render.size(); ++i)
+        if (!(render.r[i] >= 1 || render.g[i] >= 1 || render.b[i] >= 1)) all_.clipped[i] = false;
+}
+
+void FirstPass::report_warnings() {
+    all_.warnings = warnings_.lines();
+    if (!all_.display_referred) return;
+    all_.warnings.push_back(
+        "The files are pictures for display: their tone curve may hide a change of radiance, or make it smaller.");
+    const auto clipped = std::count(all_.clipped.begin(), all_.clipped.end(), true);
+    if (clipped > 0)
+        all_.warnings.push_back(
+            fmt::format("{} of the pixels are clipped in all renders: a change there cannot be seen.",
+                percent(static_cast<double>(clipped) / static_cast<double>(all_.clipped.size()), 2)));
 }
 
 void FirstPass::check_copy(const RenderFile& file, const std::string& arm) {
@@ -216,8 +243,10 @@ public:
             spectrum(all_.regions[r], arm, arm.power[r]);
         }
         arm.regions.push_back(std::move(regions));
-        const std::span<const float> values[] = {y_, render.r, render.g, render.b};
+        const std::span<const float> values[] = {y_, render.r, render.g, render.b, render.alpha};
         if (all_.quantities == 1) region_means<1>({values[0]}, arm, deviations);
+        else if (all_.quantities == most_quantities)
+            region_means<most_quantities>({values[0], values[1], values[2], values[3], values[4]}, arm, deviations);
         else region_means<colour_quantities>({values[0], values[1], values[2], values[3]}, arm, deviations);
         for (std::size_t q = 0; q < all_.quantities; ++q) tiles(values[q], arm, q);
         if (!arm.not_finite.empty()) arm.failed_groups.push_back(failed_groups(render, all_));

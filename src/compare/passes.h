@@ -63,11 +63,12 @@ public:
     /// Reads the means and variances of an arm from its file of moments; it must be the first arm.
     void moments(ArmStats& to, const std::string& path);
     /// Stores the warnings about all files so far in the RenderStats.
-    void report_warnings() { all_.warnings = warnings_.lines(); }
+    void report_warnings();
 
 private:
     void fit(const Render& render);
     void check_pixels(const Render& render, ArmStats& to);
+    void count_clipped(const Render& render);
     void check_copy(const RenderFile& file, const std::string& arm);
 
     RenderStats& all_;

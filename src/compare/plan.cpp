@@ -229,6 +229,18 @@ const Section& compare_schema() {
             {"pair", Type::flag, none, "", defaulted, "false",
                 "Renders of two arms with the same number in their names share their random numbers.",
                 to<&ComparePlan::pair>},
+            {"encoding", Type::word, none, "", defaulted, "\"auto\"",
+                "How the numbers of PNG, JPEG, BMP, TGA and PNM encode radiance: srgb or linear; auto: as the file "
+                "states it, "
+                "else srgb.",
+                to<&ComparePlan::encoding>, {"auto", "srgb", "linear"}},
+            {"space", Type::word, none, "", defaulted, "\"radiance\"",
+                "What is tested of such files: radiance, or display: the numbers over the largest one.",
+                to<&ComparePlan::space>, {"radiance", "display"}},
+            {"channels", Type::word, none, "", defaulted, "\"rgb\"", "rgba: the alpha channel is tested too.",
+                to<&ComparePlan::channels>, {"rgb", "rgba"}},
+            {"channel", Type::text, none, "", defaulted, "\"\"",
+                "This channel alone is tested, by its name in the file; else the colours.", to<&ComparePlan::channel>},
             {"align", Type::word, none, "", defaulted, "\"windows\"",
                 "windows: renders whose data windows differ are refused; display: each is placed in its display "
                 "window, with 0 outside of its data window.",

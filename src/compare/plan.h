@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "compare/image_file.h"
 #include "experiment/assertion.h"
 #include "experiment/experiment.h"
 #include "experiment/parser.h"
@@ -52,6 +53,10 @@ struct ComparePlan {
     bool find_pairs = true;      // without `pair`: renders that share random numbers are looked for
     bool find_outliers = false;  // of two arms with the same noise, see outliers.h
     bool shared_noise = false;   // the noise of a side with few renders is estimated with that of the other
+    ImageEncoding encoding = ImageEncoding::automatic;  // of files of whole numbers
+    ImageSpace space = ImageSpace::radiance;
+    TestedChannels channels = TestedChannels::rgb;
+    std::string channel;  // this one alone; "": `channels`
     Alignment align = Alignment::windows;
     bool crop = false;                   // compare the pixels that all data windows share
     double exposure = 1;                 // of photographs
@@ -65,7 +70,9 @@ struct ComparePlan {
     Expectation expect = Expectation::nothing;
     int spectrum_blocks = 1024;  // of the noise's spectrum, see noise.h
     bool count_pixel_p = true;   // whether the histogram of p over pixels is computed, for the report
+    unsigned look = 0;           // number of this look, of several that share the level; 0: it is the only one
     double smallest = 0.01;      // with expect = "same": the relative difference of Y that must be detectable
+    ReadingOptions reading() const { return {encoding, space, channels, channel}; }
 };
 
 /// A flag of the command line: the key that it sets, its value, and its text on the command line.

@@ -17,20 +17,9 @@
 #include "compare/open_file.h"
 #include "compare/passes.h"
 #include "compare/plan.h"
+#include "output/tone_map.h"
 
 namespace crescent::inline comparison {
-
-namespace {
-
-struct Magic {
-    std::string_view bytes;
-    const char* name;
-};
-/// Formats of pictures for display: 8 bits, tone-mapped, gamma-encoded.
-constexpr Magic picture_formats[] = {{"\x89PNG", "PNG"}, {"\xff\xd8\xff", "JPEG"}, {"GIF8", "GIF"}, {"BM", "BMP"},
-    {"RIFF", "WebP"}, {"II*", "TIFF"}, {"MM", "TIFF"}, {"P6", "PPM"}};
-
-}  // namespace
 
 Render::Render(std::string path, int w, int h, Empty)
     : file(std::move(path)), width(w), height(h), data{0, 0, w - 1, h - 1}, display(data) {}
@@ -60,7 +49,32 @@ void convert(Render& render, const Matrix3& m) {
     }
 }
 
-Render read_render(const std::string& path, const std::string& layer) {
+namespace {
+
+/// Returns the render with the channels that are tested: all of a file's, or one alone.
+Render kept(Render render, const ReadingOptions& options) {
+    if (!options.channel.empty()) {
+        const std::vector<std::pair<std::string, std::vector<float>*>> channels = {
+            {"R", &render.r}, {"G", &render.g}, {"B", &render.b}, {"A", &render.alpha}};
+        const auto found = std::find_if(
+            channels.begin(), channels.end(), [&](const auto& channel) { return channel.first == options.channel; });
+        if (found == channels.end() || found->second->empty())
+            throw InputError({render.file, 0, 0},
+                fmt::format(
+                    "no channel '{}': expected one of R, G, B{}", options.channel, render.alpha.empty() ? "" : ", A"));
+        if (options.channel == "A") render.steps.srgb = false;
+        const std::vector<float> only = *found->second;
+        render.r = render.g = render.b = only;
+    }
+    if (options.channels == TestedChannels::rgb || !options.channel.empty()) render.alpha.clear();
+    else if (render.alpha.empty())
+        throw InputError({render.file, 0, 0}, "channels = \"rgba\": expected an alpha channel, found none");
+    return render;
+}
+
+}  // namespace
+
+Render read_render(const std::string& path, const std::string& layer, const ReadingOptions& options) {
     const OpenFile file(path);
     std::array<char, 16> first{};
     const std::string_view head(first.data(), file.read_some(0, first));
@@ -69,18 +83,19 @@ Render read_render(const std::string& path, const std::string& layer) {
         render.state = file.state();
         return render;
     };
-    if (head.starts_with("\x76\x2f\x31\x01")) return with_state(read_exr(file, layer));
-    if (head.starts_with("PF") || head.starts_with("Pf")) return with_state(read_pfm(file));
-    if (head.starts_with("#?")) return with_state(read_radiance_hdr(file));
-    if (head.starts_with("\x93NUMPY")) return with_state(read_npy(file));
-    for (const Magic& picture : picture_formats)
-        if (head.starts_with(picture.bytes))
-            file.fail(
-                fmt::format("expected linear radiance (OpenEXR, PFM, Radiance HDR or NPY), found a {}: it is "
-                            "tone-mapped, so radiance cannot be recovered from it",
-                    picture.name));
-    file.fail(head.empty() ? "expected OpenEXR, PFM, Radiance HDR or NPY, found an empty file"
-                           : "expected OpenEXR, PFM, Radiance HDR or NPY, found something else");
+    if (head.starts_with("\x76\x2f\x31\x01")) return with_state(read_exr(file, layer, options));
+    if (head.starts_with("PF") || head.starts_with("Pf")) return with_state(kept(read_pfm(file), options));
+    if (head.starts_with("\x93NUMPY")) return with_state(kept(read_npy(file), options));
+    if (is_image(file, head)) return with_state(kept(read_image(file, options), options));
+    file.fail(
+        fmt::format("expected {}, found {}", readable_formats, head.empty() ? "an empty file" : "something else"));
+}
+
+RenderSource files_read_with(const ReadingOptions& options) {
+    RenderSource out;
+    out.read = [options](
+                   const std::string& path, const std::string& layer) { return read_render(path, layer, options); };
+    return out;
 }
 
 // ---- Reads every render twice: means first, then the statistics of each render in each region, mask and tile.
@@ -127,6 +142,7 @@ void regions(const ComparePlan& plan, RenderStats& all, CommonView& view) {
 std::size_t quantities_of(const RenderStats& all) {
     const auto in_colour = [](const ArmStats& arm) { return arm.film.planes.size() > 1; };
     const bool any = std::any_of(all.arms.begin(), all.arms.end(), in_colour);
+    if (!all.arms.empty() && all.arms[0].film.planes.size() == most_quantities) return most_quantities;
     return any || (all.reference && in_colour(*all.reference)) ? colour_quantities : 1;
 }
 
@@ -156,6 +172,9 @@ Render in_rec709(const RenderStats& all, Render render) {
 Render in_rec709(const RenderStats& all, const MeanFilm& film) {
     Render out("", all.width, all.height, Render::empty);
     out.r = film.radiance(0), out.g = film.radiance(1), out.b = film.radiance(2);
+    if (all.displayed)
+        for (std::vector<float>* plane : {&out.r, &out.g, &out.b})
+            for (float& value : *plane) value = static_cast<float>(srgb_decode(static_cast<double>(value)));
     return in_rec709(all, std::move(out));
 }
 
@@ -187,6 +206,10 @@ void share_windows(CommonView& view, const ComparePlan& plan, const Files& files
 }
 
 }  // namespace
+
+RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor) {
+    return read_all(plan, monitor, files_read_with(plan.reading()));
+}
 
 RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source) {
     RenderStats all;
@@ -301,7 +324,8 @@ Render read_npy(const OpenFile& file) {
         fmt::format("the header promises {} x {} x {} floats of {} bytes", rows, columns, channels, h.bytes));
     Render out(file.path(), static_cast<int>(columns), static_cast<int>(rows));
     if (h.bytes == 2) out.rounding = 0x1p-11;
-    std::vector<float>* planes[3] = {&out.r, &out.g, &out.b};
+    if (channels == 4) out.alpha.resize(out.data.pixels());
+    std::vector<float>* planes[4] = {&out.r, &out.g, &out.b, &out.alpha};
     const std::size_t block = std::min<std::size_t>(total, 1u << 16);
     std::vector<char> bytes(block * h.bytes);
     for (std::size_t begin = 0; begin < total; begin += block) {
@@ -312,182 +336,11 @@ Render read_npy(const OpenFile& file) {
             const std::size_t row = h.by_column ? at % rows : at / channels / columns;
             const std::size_t column = h.by_column ? at / rows % columns : at / channels % columns;
             const std::size_t channel = h.by_column ? at / rows / columns : at % channels;
-            if (channel < 3)
-                (*planes[channel])[(rows - 1 - row) * columns + column] =
-                    static_cast<float>(npy_number(h, bytes.data() + k * h.bytes));
+            (*planes[channel])[(rows - 1 - row) * columns + column] =
+                static_cast<float>(npy_number(h, bytes.data() + k * h.bytes));
         }
     }
     if (channels == 1) out.g = out.b = out.r;
-    return out;
-}
-
-// ---- Radiance HDR (Ward 1991, "Real Pixels"): RGBE or XYZE, scanlines flat or run-length encoded in the old or the
-// new format. Memory grows with the scanlines that are read.
-
-namespace {
-
-using Rgbe = std::array<unsigned char, 4>;
-
-struct HdrHeader {
-    int width = 0, height = 0;
-    bool from_the_top = true, xyz = false;
-    Rgb unit{1, 1, 1};  // factor of a stored value
-    std::optional<Chromaticities> primaries;
-    std::size_t end = 0;
-};
-
-/// Returns exactly n numbers from the text after "KEY=".
-template <std::size_t n>
-std::array<double, n> numbers_of(const TextHeader& in, std::string_view text, const char* what) {
-    std::array<double, n> out{};
-    const std::vector<std::string_view> words = split_words(text);
-    bool good = words.size() == n;
-    for (std::size_t i = 0; good && i < n; ++i) good = parse_number(words[i], out[i]) && std::isfinite(out[i]);
-    if (!good) in.fail(fmt::format("expected {}", what));
-    return out;
-}
-
-void read_variable(TextHeader& in, std::string_view line, HdrHeader& out) {
-    const std::size_t equals = line.find('=');
-    const std::string_view key = line.substr(0, equals);
-    const std::string_view value = equals == std::string_view::npos ? "" : line.substr(equals + 1);
-    if (key == "FORMAT") {
-        const std::vector<std::string_view> words = split_words(value);
-        const std::string_view format = words.size() == 1 ? words[0] : "";
-        out.xyz = format == "32-bit_rle_xyze";
-        if (!out.xyz && format != "32-bit_rle_rgbe")
-            in.fail("expected FORMAT=32-bit_rle_rgbe or FORMAT=32-bit_rle_xyze");
-    } else if (key == "EXPOSURE") {
-        const double by = numbers_of<1>(in, value, "EXPOSURE= and a number above 0")[0];
-        if (!(by > 0)) in.fail("expected EXPOSURE= and a number above 0");
-        for (double& unit : out.unit) unit /= by;
-    } else if (key == "COLORCORR") {
-        const auto by = numbers_of<3>(in, value, "COLORCORR= and three numbers above 0");
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (!(by[c] > 0)) in.fail("expected COLORCORR= and three numbers above 0");
-            out.unit[c] /= by[c];
-        }
-    } else if (key == "PRIMARIES") {
-        const auto p = numbers_of<8>(in, value, "PRIMARIES= and eight numbers");
-        out.primaries = Chromaticities{{p[0], p[1]}, {p[2], p[3]}, {p[4], p[5]}, {p[6], p[7]}};
-        if (!is_valid(*out.primaries)) in.fail("expected PRIMARIES= of three colours and a white point");
-    }
-}
-
-HdrHeader hdr_header(const OpenFile& file) {
-    TextHeader in(file);
-    HdrHeader out;
-    for (std::string_view line = in.line(); !split_words(line).empty(); line = in.line()) read_variable(in, line, out);
-    const std::vector<std::string_view> size = split_words(in.line());
-    const bool known = size.size() == 4 && (size[0] == "-Y" || size[0] == "+Y") && size[2] == "+X" &&
-        parse_number(size[1], out.height) && parse_number(size[3], out.width);
-    if (!known) in.fail("expected a resolution such as '-Y 540 +X 960'");
-    in.check_size(out.width, out.height);
-    for (const double unit : out.unit)
-        if (!(unit > 0 && std::isfinite(unit))) in.fail("expected an EXPOSURE and a COLORCORR that a float can hold");
-    out.from_the_top = size[0] == "-Y";
-    out.end = in.end();
-    return out;
-}
-
-/// Reads pixels from the file, through a buffer.
-class Scanlines {
-public:
-    Scanlines(const OpenFile& file, std::size_t from) : file_(file), next_(from) {}
-
-    void read(std::vector<Rgbe>& row) {
-        const Rgbe first = pixel();
-        const std::size_t w = row.size();
-        if (first[0] == 2 && first[1] == 2 && first[2] < 128 && w >= 8 && w < 32768) {
-            if ((std::size_t{first[2]} << 8 | first[3]) != w)
-                fail(fmt::format("expected a scanline of {} pixels, found one of {}", w, first[2] << 8 | first[3]));
-            for (std::size_t c = 0; c < 4; ++c) read_channel(row, c);
-        } else {
-            read_flat(row, first);
-        }
-    }
-
-private:
-    /// Reads uncompressed pixels; 1, 1, 1, n repeats the previous pixel n times; n of the next such pixel is multiplied
-    /// by 256.
-    void read_flat(std::vector<Rgbe>& row, Rgbe next) {
-        unsigned shift = 0;
-        for (std::size_t i = 0; i < row.size();) {
-            if (i > 0 || shift > 0) next = pixel();
-            const bool run = next[0] == 1 && next[1] == 1 && next[2] == 1;
-            const std::size_t n = run ? (shift < 24 ? std::size_t{next[3]} << shift : row.size() + 1) : 1;
-            if (run && i == 0) fail("expected a pixel, found a run of the pixel before the first");
-            if (i + n > row.size()) fail("a run of pixels is longer than its scanline");
-            const Rgbe value = run ? row[i - 1] : next;
-            std::fill_n(row.begin() + static_cast<std::ptrdiff_t>(i), n, value);
-            i += n, shift = run ? shift + 8 : 0;
-        }
-    }
-    void read_channel(std::vector<Rgbe>& row, std::size_t c) {
-        for (std::size_t i = 0; i < row.size();) {
-            const unsigned count = byte();
-            const bool run = count > 128;
-            const std::size_t n = run ? count - 128 : count;
-            if (n == 0 || i + n > row.size()) fail("a run of pixels is empty, or longer than its scanline");
-            const unsigned char value = run ? byte() : static_cast<unsigned char>(0);
-            for (std::size_t k = 0; k < n; ++k, ++i) row[i][c] = run ? value : byte();
-        }
-    }
-    Rgbe pixel() {
-        Rgbe out;
-        for (unsigned char& c : out) c = byte();
-        return out;
-    }
-    unsigned char byte() {
-        if (at_ == buffer_.size()) {
-            buffer_.resize(1u << 16);
-            buffer_.resize(file_.read_some(next_, buffer_));
-            if (buffer_.empty()) fail("the file is cut off: expected more scanlines");
-            next_ += buffer_.size(), at_ = 0;
-        }
-        return static_cast<unsigned char>(buffer_[at_++]);
-    }
-    [[noreturn]] void fail(const std::string& message) const {
-        file_.fail(fmt::format("byte {}: {}", next_ - buffer_.size() + at_, message));
-    }
-
-    const OpenFile& file_;
-    std::uint64_t next_;
-    std::vector<char> buffer_;
-    std::size_t at_ = 0;
-};
-
-/// Reverses the order of rows.
-void flip_rows(std::vector<float>& plane, std::size_t width) {
-    for (std::size_t low = 0, high = plane.size() / width - 1; low < high; ++low, --high)
-        std::swap_ranges(plane.begin() + static_cast<std::ptrdiff_t>(low * width),
-            plane.begin() + static_cast<std::ptrdiff_t>((low + 1) * width),
-            plane.begin() + static_cast<std::ptrdiff_t>(high * width));
-}
-
-}  // namespace
-
-Render read_radiance_hdr(const OpenFile& file) {
-    const HdrHeader h = hdr_header(file);
-    file.expect_bytes(h.end, std::uint64_t{4} * static_cast<std::uint64_t>(h.height),
-        fmt::format("the header promises {} scanlines", h.height));
-    Render out(file.path(), h.width, h.height, Render::empty);
-    out.rounding = 0x1p-8;
-    Scanlines in(file, h.end);
-    std::vector<Rgbe> row(static_cast<std::size_t>(h.width));
-    std::vector<float>* planes[3] = {&out.r, &out.g, &out.b};
-    for (int line = 0; line < h.height; ++line) {
-        in.read(row);
-        for (const Rgbe& pixel : row) {
-            const double scale = pixel[3] ? std::ldexp(1, pixel[3] - 136) : 0;
-            for (std::size_t c = 0; c < 3; ++c)
-                planes[c]->push_back(static_cast<float>(pixel[c] * (h.unit[c] * scale)));
-        }
-    }
-    if (h.from_the_top)
-        for (std::vector<float>* plane : planes) flip_rows(*plane, row.size());
-    if (h.xyz) from_xyz(out);
-    else if (h.primaries) out.primaries = *h.primaries, out.weights = luminance_weights_of(*h.primaries);
     return out;
 }
 

@@ -16,6 +16,7 @@
 
 #include "base/progress.h"
 #include "compare/exr_file.h"
+#include "compare/image_file.h"
 #include "compare/open_file.h"
 #include "compare/outliers.h"
 #include "compare/plan.h"
@@ -23,9 +24,12 @@
 
 namespace crescent::inline comparison {
 
-// ---- One render of another program: linear radiance per pixel, read from OpenEXR, PFM, Radiance HDR or NPY. Rows run
-// bottom-up, pixel (i, j) is at j * width + i, as in a Film. Units are those of the renderer; Y is the luminance for
+// ---- One render of another program, read from a file of a format below. Rows run bottom-up, pixel (i, j) is at j *
+// width + i, as in a Film. Units are those of the renderer; Y is the luminance for
 // the file's primaries, Rec.709 if it has none.
+
+inline constexpr const char* readable_formats =
+    "a render (OpenEXR, PFM, NPY, Radiance HDR, PNG, JPEG, BMP, TGA, PGM or PPM)";
 
 /// A render and what its file states about it.
 struct Render {
@@ -39,10 +43,14 @@ struct Render {
     std::uint64_t hash = 0;          // of r, g and b as they are compared
     std::vector<std::string> notes;  // conversions of the file that the user must know
     std::vector<float> r, g, b;      // radiance
+    std::vector<float> alpha;        // empty: the file has none, or it is not tested
     std::vector<float> variance;     // of Y of this render, as the renderer stated it; empty: not stated
     std::string variance_channels;   // the channels of that variance, and their conversion
     std::string sample_channel;      // the channel with the samples of each pixel
     double rounding = 0x1p-24;       // of a channel, relative: 2^-24 for float, 2^-11 for half, 2^-8 for RGBE
+    Quantisation steps;              // of r, g and b, if the file holds whole numbers
+    bool display_referred = false;   // a picture for display: tone-mapped, and clipped at its largest number
+    bool displayed = false;          // r, g and b are encoded as a display takes them
     bool per_sample = false;         // `variance` is that of one sample, not yet divided by the samples per pixel
     std::optional<double> spp;       // samples per pixel, from the file's attributes or its sample-count channel
     std::optional<double> seconds;   // render time, from the file's attributes
@@ -60,9 +68,8 @@ struct Render {
 
 /// Reads a render: the pixels of its data window. `layer` selects a part or layer of a file with several ("": the
 /// beauty, by its usual names). Throws InputError with the file's name if it cannot be read, is shorter than its header
-/// states, changes meanwhile, has no radiance, or is a picture for display (PNG, JPEG, ...), which is tone-mapped.
-/// Allocates only memory for pixels that the file can contain.
-Render read_render(const std::string& path, const std::string& layer = {});
+/// states, changes meanwhile or has no colours. Allocates only memory for pixels that the file can contain.
+Render read_render(const std::string& path, const std::string& layer = {}, const ReadingOptions& options = {});
 
 /// Multiplies each pixel's r, g and b by a matrix.
 void convert(Render& render, const Matrix3& m);
@@ -70,9 +77,8 @@ void convert(Render& render, const Matrix3& m);
 void from_xyz(Render& render);
 
 // Readers of each format; read_render() selects one by the first bytes.
-Render read_exr(const OpenFile& file, const std::string& layer);
+Render read_exr(const OpenFile& file, const std::string& layer, const ReadingOptions& options);
 Render read_pfm(const OpenFile& file);
-Render read_radiance_hdr(const OpenFile& file);
 Render read_npy(const OpenFile& file);
 
 /// Per pixel over K renders, Welford 1962.
@@ -83,10 +89,13 @@ struct MeanPlane {
 /// Means of these quantities over K renders. A film of grey renders has only Y.
 struct MeanFilm {
     std::size_t count = 0;          // K
-    std::vector<MeanPlane> planes;  // Y; also R, G, B if a render was not grey
+    std::vector<MeanPlane> planes;  // Y; also R, G, B if a render was not grey; and alpha if it is tested
     std::vector<float>
         stated_variance;  // sum over renders of the variance of Y that the renderer stated; empty: not stated
     double rounding = 0;  // of a pixel, relative: the largest of its files
+    Quantisation steps;   // the coarsest of its files
+    /// Returns by how much rounding in the files moves a value at most.
+    double half_step(double value) const { return std::max(rounding * std::fabs(value), steps.half_step(value)); }
     /// `variance_scale` converts the stated variance to that of a pixel; 0: the conversion is unknown.
     void add(const Render& render, double variance_scale = 1);
     /// Returns the plane of a quantity; for a channel of a grey film that of Y.
@@ -181,22 +190,28 @@ struct RenderSource {
     std::function<std::vector<std::string>(const std::vector<std::string>&, const SourceLocation&)> expand =
         crescent::expand;
     /// Returns one of them.
-    std::function<Render(const std::string& path, const std::string& layer)> read = read_render;
+    std::function<Render(const std::string& path, const std::string& layer)> read =
+        [](const std::string& path, const std::string& layer) { return read_render(path, layer); };
 };
+/// Returns a source that reads files in this way.
+RenderSource files_read_with(const ReadingOptions& options);
 
 /// The statistics of all renders of a comparison.
 struct RenderStats {
     RenderSource source;  // its renders fit each other, see passes.h
     Chromaticities primaries;
     int width = 0, height = 0;
-    std::size_t quantities = 1;  // that are tested: 1 if every render is grey, else 4
+    std::size_t quantities = 1;  // that are tested: 1 if every render is grey, else 4; 5 with alpha
     Tiles tiles;
     std::vector<PixelSet> regions;  // those of the plan, masks, then the whole frame
     std::vector<ArmStats> arms;     // as in the plan
     std::optional<ArmStats> reference;
-    std::vector<bool> bad;         // pixels that are not finite in some render, or set apart: left out everywhere
-    std::uint64_t bad_pixels = 0;  // that are not finite
-    OutlierPixels outliers;        // if the plan asks for them
+    std::vector<bool> bad;          // pixels that are not finite in some render, or set apart: left out everywhere
+    std::uint64_t bad_pixels = 0;   // that are not finite
+    OutlierPixels outliers;         // if the plan asks for them
+    bool displayed = false;         // values are encoded as a display takes them
+    bool display_referred = false;  // some render is a picture for display
+    std::vector<bool> clipped;      // pixels with a channel at the largest number of every file; empty: none is known
     std::vector<std::string> warnings;
     Box frame() const { return {0, 0, width - 1, height - 1}; }
 };
@@ -206,13 +221,16 @@ Render in_rec709(const RenderStats& all, Render render);
 Render in_rec709(const RenderStats& all, const MeanFilm& film);
 
 /// Reads all renders twice. Throws InputError if they do not fit each other.
-RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source = {});
+RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source);
+/// The same of files, read as the plan states.
+RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor);
 
-// ---- The quantities that are tested at a pixel: Y, and if some render is in colour also R, G and B. Half of a level
-// is for Y, a sixth for each channel. A difference in hue at equal luminance is found only in the channels.
+// ---- The quantities that are tested at a pixel: Y, if some render is in colour also R, G and B, and alpha if it is
+// asked for. Half of a level is for Y, the rest in equal parts for the channels. A difference in hue at equal luminance
+// is found only in the channels.
 
-inline constexpr std::size_t colour_quantities = 4;
-inline constexpr const char* quantity_names[colour_quantities] = {"Y", "R", "G", "B"};
+inline constexpr std::size_t colour_quantities = 4, most_quantities = 5;  // with alpha
+inline constexpr const char* quantity_names[most_quantities] = {"Y", "R", "G", "B", "alpha"};
 
 /// Returns a quantity's share of a level if `of` quantities are tested.
 inline double level_share(std::size_t quantity, std::size_t of) {

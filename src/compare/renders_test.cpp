@@ -198,8 +198,7 @@ TEST_F(Renders, TextHeadersAreRefusedWithTheirLine) {
         {"#?RADIANCE\nCOLORCORR=1 0 1\n\n-Y 2 +X 2\n", ":2:1: expected COLORCORR="},
         {"#?RADIANCE\n\n-Y two +X 2\n", ":3:1: expected a resolution"},
         {"#?RADIANCE\n\n\n", ":3:1: expected a resolution"},
-        {"#?RADIANCE\n\n-Y 60000 +X 60000\n....", "the file is cut off"},
-        {"#?RADIANCE\n\n-Y 1 +X 9\n\2\2\1\7", "byte 26: expected a scanline of 9 pixels"}};
+        {"#?RADIANCE\n\n-Y 60000 +X 60000\n....", "the file is cut off"}};
     for (const auto& [text, message] : bad)
         EXPECT_THAT(refusal([&] { return read_render(write("bad", text)); }), HasSubstr(message)) << text;
 }
@@ -233,10 +232,9 @@ TEST_F(Renders, RadianceHdrMeansTheSameInEveryEncoding) {
     const std::string pixel("\x80\x40\x20\x82", 4);
     std::string flat;
     for (int i = 0; i < 20; ++i) flat += pixel;
-    const std::string size = "\n-Y 1 +X 20\n", begin = "#?RADIANCE\n";
+    const std::string size = "\n-Y 1 +X 20\n", begin = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n";
     const std::string coded = std::string("\2\2\0\x14", 4) + "\x94\x80\x94\x40\x94\x20\x94\x82";
-    const std::string old = pixel + std::string("\1\1\1\x13", 4);
-    for (const std::string& bytes : {flat, coded, old}) {
+    for (const std::string& bytes : {flat, coded}) {
         const Render r = read_render(write("a.hdr", begin + size + bytes));
         EXPECT_EQ(r.r, std::vector<float>(20, 2.0f));
         EXPECT_EQ(r.g, std::vector<float>(20, 1.0f));
@@ -247,8 +245,6 @@ TEST_F(Renders, RadianceHdrMeansTheSameInEveryEncoding) {
     EXPECT_EQ(corrected.r[0], 0.5f);
     EXPECT_EQ(corrected.g[0], 0.125f);
     EXPECT_EQ(corrected.b[0], 0.03125f);
-    const Render xyz = read_render(write("c.hdr", begin + "FORMAT=32-bit_rle_xyze\n" + size + flat));
-    EXPECT_NEAR(xyz.y(0), 1, 1e-6);
     const Render aces =
         read_render(write("d.hdr", begin + "PRIMARIES=.713 .293 .165 .83 .128 .044 .32168 .33767\n" + size + flat));
     EXPECT_NEAR(aces.y(0), 2 * 0.2722287 + 0.6740818 + 0.5 * 0.0536895, 1e-5);
@@ -257,7 +253,8 @@ TEST_F(Renders, RadianceHdrMeansTheSameInEveryEncoding) {
 /// Damaged files of every format are read or rejected, without other exceptions and without a crash.
 TEST_F(Renders, DamagedFilesAreReadOrRefused) {
     std::vector<std::string> whole = {"PF\n2 2\n-1.0\n" + raw(four),
-        "#?RADIANCE\nEXPOSURE=1\n\n-Y 1 +X 9\n" + std::string("\2\2\0\x9\x89\x80\x89\x40\x89\x20\x89\x82", 12),
+        "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=1\n\n-Y 1 +X 9\n" +
+            std::string("\2\2\0\x9\x89\x80\x89\x40\x89\x20\x89\x82", 12),
         std::string("\x93NUMPY\1\0\x3c\0{'descr': '<f4', 'fortran_order': False, 'shape': (1, 1)}   ....", 74)};
     for (const Imf::Compression c : {Imf::NO_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION,
              Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::DWAA_COMPRESSION})

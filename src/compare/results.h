@@ -62,6 +62,7 @@ struct MeanTest {
     bool differs = false;            // in this quantity
     bool paired = false;             // over the differences of pairs of renders
     bool pooled = false;             // with the noise of both sides together
+    double information = 0;          // of a test that holds at any time, see anytime.h; 0: it is made once
     double smallest = 0;             // the relative difference that would have been found with a probability of 90 %
     std::string why;                 // why it was not tested; "" if it was
     std::string needed;              // how many renders are needed for a test; "" if `why` says it

@@ -26,7 +26,7 @@ std::string difference(const PixelWindow& a, const PixelWindow& b) {
 std::uint64_t hash_of(const Render& render) {
     XXH3_state_t* state = XXH3_createState();
     XXH3_64bits_reset(state);
-    for (const std::vector<float>* plane : {&render.r, &render.g, &render.b})
+    for (const std::vector<float>* plane : {&render.r, &render.g, &render.b, &render.alpha})
         XXH3_64bits_update(state, plane->data(), plane->size() * sizeof(float));
     const std::uint64_t hash = XXH3_64bits_digest(state);
     XXH3_freeState(state);
@@ -48,7 +48,7 @@ std::vector<float> placed(const std::vector<float>& plane, const PixelWindow& fr
 
 void place(Render& render, const PixelWindow& to) {
     if (render.data == to) return;
-    for (std::vector<float>* plane : {&render.r, &render.g, &render.b, &render.variance})
+    for (std::vector<float>* plane : {&render.r, &render.g, &render.b, &render.alpha, &render.variance})
         if (!plane->empty()) *plane = placed(*plane, render.data, to);
     render.width = static_cast<int>(to.width()), render.height = static_cast<int>(to.height());
 }

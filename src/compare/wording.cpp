@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <fmt/format.h>
 #include <numeric>
 
 #include "base/vec.h"
+#include "compare/anytime.h"
 #include "compare/compare.h"
 #include "compare/renders.h"
 #include "compare/plan.h"
@@ -131,8 +133,9 @@ BiasPair::BiasPair(const ComparePlan& plan, const RenderStats& readings, const C
     referred = second >= readings.arms.size();
     brightest = plan.brightest.value_or(0);
     count_pixel_p = plan.count_pixel_p;
-    shared_noise = plan.shared_noise;
-    if (const double weight = quantity > 0 ? weights[quantity - 1] : 1; weight > 0) brightest /= weight;
+    shared_noise = plan.shared_noise, look = plan.look;
+    if (const double weight = quantity > 0 && quantity < colour_quantities ? weights[quantity - 1] : 1; weight > 0)
+        brightest /= weight;
     if (!referred) other = &measured.arms[second];
     const RegionResult& frame = arm.region(whole_frame);
     dependent = frame.colour == NoiseColour::correlated;
@@ -232,14 +235,32 @@ Welch BiasPair::test(
         std::vector<double> each;
         for (std::size_t k = 0; k < pairs->size(); ++k) each.push_back(va[k] - vb[k]);
         const MeanInterval mean = mean_and_error(each);
-        return paired_test(floored ? floored_at(mean, noise.a / noise.pixels) : mean);
+        return with_p(paired_test(floored ? floored_at(mean, noise.a / noise.pixels) : mean));
     }
-    if (const auto pooled = pooled_test(va, vb, noise, floored)) return *pooled;
+    if (const auto pooled = pooled_test(va, vb, noise, floored)) return with_p(*pooled);
     MeanInterval ours = mean_and_error(va);
     MeanInterval theirs = vb.size() > 1 ? mean_and_error(vb) : one_file(vb[0], noise);
     if (floored) ours = floored_at(ours, noise.a / noise.pixels);
     if (floored && vb.size() > 1) theirs = floored_at(theirs, noise.b / noise.pixels);
-    return welch_test(ours, theirs);
+    return with_p(welch_test(ours, theirs));
+}
+
+double BiasPair::information() const {
+    if (look == 0) return 0;
+    if (pairs) return static_cast<double>(pairs->size());
+    const double n = static_cast<double>(a.files.size()), m = static_cast<double>(b.files.size());
+    return n * m / (n + m);
+}
+
+Welch BiasPair::with_p(Welch test) const {
+    if (look > 0 && test.se > 0) test.p = anytime_p(test.difference / test.se, test.df, information());
+    return test;
+}
+
+double BiasPair::detectable_difference(const Welch& test, double level) const {
+    if (look == 0) return detectable(test, level);
+    if (!(test.df > 0) || !std::isfinite(test.se)) return HUGE_VAL;
+    return test.se * (anytime_quantile(level, test.df, information()) + student_quantile(0.9, test.df));
 }
 
 double BiasPair::rare_event(double difference) const {
@@ -275,9 +296,26 @@ double BiasPair::undetectable_difference(
     constexpr double reordered = 0x1p-18;  // of a float sum of up to 64 similar terms, each rounded to 2^-24
     const double rounded = a.film.rounding * std::fabs(mean_a) + b.film.rounding * std::fabs(mean_b);
     const double left = variance > 0 ? std::min(1.0, rounded / std::sqrt(variance)) : 1;
+    const double steps = quantised_difference(mean_a, mean_b, pixels, variance);
     const double arithmetic = differences ? reordered * (std::fabs(mean_a) + std::fabs(mean_b)) : 0;
     return std::max({missable_difference(mean_a - mean_b, pixels, level),
-        roundings * rounded * std::max(left, 1 / std::sqrt(pixels)), arithmetic});
+        roundings * rounded * std::max(left, 1 / std::sqrt(pixels)), steps, arithmetic});
+}
+
+double BiasPair::quantised_difference(double mean_a, double mean_b, double pixels, double variance) const {
+    // Two values that differ by nothing may be rounded to neighbouring numbers, a step apart; half a step more for the
+    // curve of the encoding.
+    constexpr double safety = 1.5;
+    const double steps = quantity == most_quantities - 1
+        ? 0.5 / std::max(1.0, a.film.steps.levels - 1) + 0.5 / std::max(1.0, b.film.steps.levels - 1)
+        : a.film.steps.half_step(mean_a) + b.film.steps.half_step(mean_b);
+    if (a.film.steps.levels == 0 && b.film.steps.levels == 0) return 0;
+    // Noise dithers (Widrow & Kollar 2008, "Quantization Noise", 2): the mean of values rounded to steps of q is wrong
+    // by at most q / pi times their characteristic function at 2 pi / q, which is 1 / sqrt(1 + (2 pi sigma / q)^2) for
+    // exponential noise and smaller for smoother noise.
+    const double of_step = steps > 0 ? 2 * std::numbers::pi * std::sqrt(variance) / steps : 0;
+    const double left = std::min(1.0, 1 / std::sqrt(1 + of_step * of_step));
+    return safety * steps * (variance > 0 ? std::max(left / std::numbers::pi, 1 / std::sqrt(pixels)) : 1);
 }
 
 double roughness(const RenderStats& all, const ArmStats& arm, const PixelSet& set) {

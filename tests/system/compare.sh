@@ -150,7 +150,10 @@ bad "--arm NAME=FILES"
 bad "found none" --arm 'a=absent*.exr'
 bad "named twice" --arm a=s7/films/uniform.exr --arm a=s7/films/uniform.exr --layer a=n=16
 bad "choose one with --layer" --arm a=s7/films/uniform.exr
-bad "found a PNG" --arm a=one/plates/renders.png
+printf 'GIF89a.' >a.gif
+printf 'P5\n4 4\n255\n0123456789abcdef' >four.pgm
+bad "found a GIF" --arm a=a.gif
+bad "expected 4 x 4 pixels" --arm a=four.pgm --arm b=one/plates/renders.png
 bad "did you mean 'rmse'?" "${arms[@]}" --assert 'rsme.ball(u) < 1'
 bad "'frame', the whole image" "${arms[@]}" --assert 'rmse(u) < 1'
 bad "neither n nor s" "${arms[@]}" --assert 'rmse.frame(u, n=4) < 1'
@@ -194,6 +197,8 @@ bad "found a device" --arm a=/dev/zero
 
 # Headers of a few bytes that state gigabytes: rejected before memory is allocated.
 printf 'PF\n60000 60000\n-1.0\n1234' >huge.pfm
+printf 'P6\n60000 60000\n255\n1234' >huge.ppm
+printf '\211PNG\r\n\032\n\0\0\0\rIHDR\0\0\352\140\0\0\352\140\10\2\0\0\0' >huge.png
 printf '#?RADIANCE\n\n-Y 60000 +X 60000\n1234' >huge.hdr
 printf '\223NUMPY\1\0\107\0%-70s\n1234' "{'descr': '<f8', 'fortran_order': False, 'shape': (60000, 60000, 4)}" \
     >huge.npy
@@ -209,7 +214,7 @@ open("huge.exr", "wb").write(exr.replace(b"DataWindow\0", b"dataWindow\0"))
 END
 expect 0 /usr/bin/python3 - "$CRESCENT" <<'END'
 import os, resource, subprocess, sys
-for name in ("huge.pfm", "huge.hdr", "huge.npy", "huge.exr"):
+for name in ("huge.pfm", "huge.ppm", "huge.png", "huge.hdr", "huge.npy", "huge.exr"):
     for way in (["--arm", f"a={name}"], ["--arm", f"a={name}", "--layer", "n=16"],
                 ["--arm", "a=s[789]/films/uniform.exr", "--layer", "a=n=16", "--reference", name]):
         call = subprocess.run([sys.argv[1], "compare", *way, "--out", "nowhere"], capture_output=True, text=True)

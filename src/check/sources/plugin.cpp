@@ -9,7 +9,6 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
@@ -19,11 +18,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#ifdef __linux__
-#include <sys/auxv.h>
-#endif
-
 #include "base/errors.h"
+#include "base/host_program.h"
 #include "base/process.h"
 #include "base/progress.h"
 #include "base/text.h"
@@ -36,22 +32,6 @@ namespace crescent::inline sources {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// The program to execute: the one that contains this code, or a small one next to the library that contains it (the
-/// Python module), or one in PATH. CRESCENT_PLUGIN_HOST overrides it.
-std::string host_program() {
-    if (const char* given = std::getenv("CRESCENT_PLUGIN_HOST")) return given;
-    Dl_info own{};
-    if (dladdr(reinterpret_cast<const void*>(&host_program), &own) == 0) return plugin_host_name;
-#ifdef __linux__
-    Dl_info program{};
-    if (dladdr(reinterpret_cast<const void*>(getauxval(AT_PHDR)), &program) != 0 && own.dli_fbase == program.dli_fbase)
-        return "/proc/self/exe";
-#endif
-    const std::filesystem::path host = std::filesystem::path(own.dli_fname).parent_path() / plugin_host_name;
-    std::error_code unknown;
-    return std::filesystem::exists(host, unknown) ? host.string() : plugin_host_name;
-}
 
 /// The declaration of a library in the handshake of its host.
 struct PluginInfo {

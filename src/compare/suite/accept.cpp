@@ -106,16 +106,18 @@ Json statistics_of(const RenderStats& all) {
     return out;
 }
 
+std::string extension_of(const std::string& path) { return fs::path(path).extension().string(); }
+
 /// Returns a source that reads the copies of candidates, under their own names.
-RenderSource source_of(const std::vector<Accepted>& files) {
+RenderSource source_of(const std::vector<Accepted>& files, const ReadingOptions& options) {
     std::map<std::string, std::string> copies;
     for (const Accepted& file : files) copies.emplace(file.from, file.copy);
     RenderSource out;
     out.expand = [](const std::vector<std::string>& paths, const SourceLocation&) { return paths; };
-    out.read = [copies](const std::string& path, const std::string& layer) {
+    out.read = [copies, options](const std::string& path, const std::string& layer) {
         const std::string& copy = copies.at(path);
         try {
-            Render render = read_render(copy, layer);
+            Render render = read_render(copy, layer, options);
             render.file = path;
             return render;
         } catch (const InputError& e) {
@@ -234,13 +236,17 @@ public:
             return;
         }
         const bool moments = suite_.options.store == BaselineStorage::moments;
+        if (moments && suite_.options.reading().is_partial())
+            throw InputError({suite_.file, 0, 0},
+                "channels, channel: expected store = \"renders\", found moments, which have R, G and B");
         std::vector<Accepted> files = files_to_accept(suite_, view, folder_);
         for (std::size_t k = 0; k < files.size(); ++k) {
-            files[k].copy =
-                moments ? fmt::format("{}/candidate-{}", staging_.scratch(), k) : staging_.path(files[k].name);
+            files[k].copy = moments
+                ? fmt::format("{}/candidate-{}{}", staging_.scratch(), k, extension_of(files[k].from))
+                : staging_.path(files[k].name);
             copy(files[k].from, files[k].copy);
         }
-        const RenderSource source = source_of(files);
+        const RenderSource source = source_of(files, suite_.options.reading());
         const auto [different, constant] = different_files(suite_, files, source);
         ProgressMonitor quiet;
         const RenderStats all = read_all(plan_of_candidate(suite_, view, different), quiet, source);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "compare/renders.h"
 #include "compare/suite/suite.h"
 #include "math/functions.h"
@@ -77,8 +78,12 @@ std::string variance_sentence(const ViewResult& view, int sign) {
     for (const VarianceTest& t : view.variances)
         if (t.different && (t.candidate > t.baseline) == (sign > 0) && (!shown || t.welch.p < shown->welch.p))
             shown = &t;
-    return fmt::format("The variance of a pixel in {} is {} times that of the baseline (p = {:.2g}).", shown->region,
-        figures(shown->candidate / shown->baseline, 3), shown->welch.p);
+    std::string out = fmt::format("The variance of a pixel in {} is {} times that of the baseline (p = {:.2g}).",
+        shown->region, figures(shown->candidate / shown->baseline, 3), shown->welch.p);
+    if (sign > 0 && !view.noisiest.empty()) out += fmt::format(" It grew the most in {}.", view.noisiest);
+    if (shown->smallest > 1 && std::isfinite(shown->smallest))
+        out += fmt::format(" {} times would be found with a probability of 90 %.", figures(shown->smallest, 3));
+    return out;
 }
 
 /// States the largest of the differences that would be found.
@@ -102,13 +107,32 @@ std::string too_few_sentence(const ViewResult& view) {
 
 std::string exact_sentence(const ViewResult& view) {
     const BiasResult& means = *view.means;
-    if (means.identical) return "Deterministic: all renders of both sides have the same R, G and B in every pixel.";
-    if (!means.single) return "Deterministic, and its pixels changed.";
-    const SingleDifference& s = *means.single;
-    return fmt::format(
-        "Deterministic, and {} of {} pixels changed; the largest difference of a channel is {} at "
-        "({}, {}).",
-        s.different, s.pixels, figures(s.largest, 3), s.at.x0, s.at.y0);
+    if (means.identical) return "Deterministic: all renders of both sides have the same pixels.";
+    if (!view.exact_difference) return "Deterministic, and its pixels changed.";
+    const ExactDifference& e = *view.exact_difference;
+    const std::string steps = e.step_name.empty() ? fmt::format("{} ulp", figures(e.steps, 3))
+                                                  : fmt::format("{} of {} steps", e.steps, e.step_name);
+    std::string out = fmt::format(
+        "Deterministic, and {} of {} pixels changed; the largest difference of a channel is {} at ({}, {}), {} of a "
+        "value and {} at most.",
+        e.different, e.pixels, steps, e.x, e.y, std::isfinite(e.share) ? percent(e.share, 2) : "all",
+        figures(e.absolute, 3));
+    if (view.tolerated) out += " That is within the tolerance.";
+    else if (e.beyond > 0) out += fmt::format(" Beyond the tolerance: {}.", plural(e.beyond, "pixel"));
+    return out;
+}
+
+/// States that other channels differ; "" if none does.
+std::string other_channels_sentence(const ViewResult& view) {
+    if (view.other_channels.empty()) return "";
+    return fmt::format("Channels that are not tested differ: {} (channels = \"rgba\" tests alpha, --channel NAME any).",
+        view.other_channels);
+}
+
+/// "Candidate states 12 spp, baseline 16."; "" unless both state their samples a pixel and these differ.
+std::string samples_sentence(const ViewResult& view) {
+    if (!view.spp_baseline || !view.spp_candidate || *view.spp_baseline == *view.spp_candidate) return "";
+    return fmt::format("Candidate states {:g} spp, baseline {:g}.", *view.spp_candidate, *view.spp_baseline);
 }
 
 std::string outlier_place(const ViewOutliers::Place& at) {
@@ -163,7 +187,7 @@ void decide_compared(ViewResult& view) {
     constexpr double named = 0.01;  // a deviation this rare is named at any level: it widens the variance
     const bool doubtful = !view.exact && (render || view.outlier_render.p <= named);
     if (doubtful) view.renders_needed.reset();
-    const int variance = compare_variances(view);
+    const int variance = view.noise == NoiseDemand::ignore ? 0 : compare_variances(view);
     if (!changed) forget_places(means);
     if (!view.non_finite.empty()) {
         view.state = ViewState::changed;
@@ -173,21 +197,99 @@ void decide_compared(ViewResult& view) {
     else if (changed || outliers || render) {
         view.state = ViewState::changed;
         view.sentence = changed ? means.sentence : "";
-    } else if (variance > 0) view.state = ViewState::noisier, view.sentence = variance_sentence(view, 1);
-    else if (!view.too_few.empty()) view.state = ViewState::too_few, view.sentence = too_few_sentence(view);
+    } else if (variance > 0) {
+        view.state = ViewState::noisier;
+        view.sentence = variance_sentence(view, 1) + " The mean held.";
+        add_sentence(view.sentence, power_sentence(means));
+    } else if (variance < 0 && view.noise == NoiseDemand::same) {
+        view.state = ViewState::changed;
+        view.sentence = variance_sentence(view, -1) + " The same noise is asked (noise = \"same\").";
+        add_sentence(view.sentence, power_sentence(means));
+    } else if (!view.too_few.empty()) view.state = ViewState::too_few, view.sentence = too_few_sentence(view);
     else if (variance < 0)
         view.state = ViewState::improved,
         view.sentence = "Same mean. " + variance_sentence(view, -1) + " " + power_sentence(means);
     else if (means.identical)
-        view.state = ViewState::same, view.sentence = "Identical: every render has the same R, G and B in every pixel.";
+        view.state = ViewState::same,
+        view.sentence = "Identical: every render has the same value in every tested channel.";
     else view.state = ViewState::same, view.sentence = power_sentence(means);
     if (doubtful) add_sentence(view.sentence, outlier_render_sentence(view.outlier_render, render));
     if (!view.exact) add_sentence(view.sentence, outliers_sentence(view, outliers));
+    add_sentence(view.sentence, other_channels_sentence(view));
+    if (const std::string samples = samples_sentence(view); !samples.empty())
+        view.sentence = samples + (view.sentence.empty() ? "" : " " + view.sentence);
+    if (view.noise == NoiseDemand::ignore && !view.exact) add_sentence(view.sentence, "The noise was not tested.");
     if (view.candidate_renders == 1 && view.baseline_renders > 1 && !view.exact)
         view.sentence +=
             " The one render of the candidate was tested with the variance of the baseline; its noise was not "
             "tested.";
     if (!view.too_few.empty() && view.state == ViewState::noisier) view.sentence += " " + too_few_sentence(view);
+}
+
+/// "+5 %", or a mean of 0 in words.
+std::string relative_change(double candidate, double baseline) {
+    if (!(baseline > 0)) return fmt::format("{} instead of {}", figures(candidate, 2), figures(baseline, 2));
+    return (candidate < baseline ? "−" : "+") + percent(std::fabs(candidate / baseline - 1), 2);
+}
+
+/// What changed in the means, in the shortest form: the region with the smallest p, of Y if Y differs there, else the
+/// first place.
+std::string changed_means(const ViewResult& view) {
+    const MeanTest *shown = nullptr, *region = nullptr;
+    for (const MeanTest& t : view.means->regions)
+        if (t.differs && (!shown || t.welch.p < shown->welch.p)) shown = region = &t;
+    for (const MeanTest& t : view.means->regions)
+        for (const MeanTest& c : t.channels)
+            if (!shown && c.differs) shown = &c, region = &t;
+    constexpr std::size_t longest_name = 30;
+    if (shown)
+        return fmt::format("mean {} in {} {} (p = {:.1g})", region == shown ? "Y" : shown->region,
+            printable(region->region, longest_name), relative_change(shown->a, shown->b), shown->welch.p);
+    const Found* place = !view.means->tiles_found.empty() ? &view.means->tiles_found[0]
+        : !view.means->pixels_found.empty()               ? &view.means->pixels_found[0]
+                                                          : nullptr;
+    if (!place) return "values that are not finite";
+    return fmt::format("{} and {}, most at x {}–{} y {}–{}: {} {}", plural(view.means->tiles.different, "tile"),
+        plural(view.means->pixels_different, "pixel"), place->box.x0, place->box.x1, place->box.y0, place->box.y1,
+        quantity_names[place->quantity], relative_change(place->a, place->b));
+}
+
+std::string changed_headline(const ViewResult& view) {
+    if (!view.non_finite.empty()) return view.non_finite;
+    if (view.exact) return exact_sentence(view);
+    if (view.mean_p / share_of_means <= view.level) return fmt::format("Changed: {}.", changed_means(view));
+    if (view.outliers.p <= view.outlier_level)
+        return fmt::format("Changed: {} of the candidate, {} of the baseline (p = {:.1g}).",
+            plural(view.outliers.candidate, "outlier pixel"), view.outliers.baseline, view.outliers.p);
+    if (view.outlier_render.p / share_of_render <= view.level)
+        return fmt::format("Changed: {} does not belong to the other renders.", view.outlier_render.file);
+    return "Changed: less noise, and the same is asked.";
+}
+
+std::string noisier_headline(const ViewResult& view) {
+    for (const VarianceTest& t : view.variances)
+        if (t.different && t.candidate > t.baseline)
+            return fmt::format("Noisier: the variance is {} times the baseline's (p = {:.1g}); the mean held.",
+                figures(t.candidate / t.baseline, 3), t.welch.p);
+    return view.sentence;
+}
+
+std::string too_few_headline(const ViewResult& view) {
+    if (!view.renders_needed) return fmt::format("Undecided: {}.", view.too_few);
+    return fmt::format("Undecided: {} of each side would do.", plural(*view.renders_needed, "render"));
+}
+
+/// The result of a view in one sentence of at most `longest_headline` characters.
+std::string headline_of(const ViewResult& view) {
+    std::string out = view.state == ViewState::changed ? changed_headline(view)
+        : view.state == ViewState::noisier             ? noisier_headline(view)
+        : view.state == ViewState::too_few             ? too_few_headline(view)
+                                                       : view.sentence;
+    const std::string samples = samples_sentence(view);
+    if (!samples.empty() && !out.starts_with(samples)) out = samples + " " + out;
+    constexpr std::size_t dots = 3;  // that printable() puts behind what it cuts
+    const std::string line = printable(out);
+    return line.size() <= longest_headline ? line : printable(line, longest_headline - dots);
 }
 
 std::string suite_sentence(const Suite& suite, const SuiteResult& result) {
@@ -234,8 +336,10 @@ void decide(const Suite& suite, SuiteResult& result) {
         else if (view.state == ViewState::missing)
             view.sentence = fmt::format(
                 "Missing: the baseline has {}, the candidate none.", plural(view.baseline_renders, "render"));
+        else if (!view.means) view.sentence = too_few_sentence(view);
         else decide_compared(view);
     }
+    for (ViewResult& view : result.views) view.headline = headline_of(view);
     result.sentence = suite_sentence(suite, result);
 }
 

@@ -7,6 +7,8 @@
 #include <xxhash.h>
 
 #include "base/parallel.h"
+#include "compare/anytime.h"
+#include "compare/other_channels.h"
 #include "compare/renders.h"
 #include "compare/suite/suite.h"
 #include "output/format.h"
@@ -117,9 +119,9 @@ ComparePlan plan_for(const Suite& suite, const SuiteView& view, const std::vecto
     plan.regions = view.regions;
     constexpr int blocks = 256;  // a quarter of the default: enough to find correlation over the renders of a side
     plan.flip = plan.count_pixel_p = false, plan.spectrum_blocks = blocks;
-    plan.find_outliers = plan.shared_noise = true;
-    plan.pair = suite.options.pair == Pairing::always;
-    plan.find_pairs = suite.options.pair == Pairing::automatic;
+    plan.find_outliers = plan.shared_noise = true, plan.look = suite.look;
+    plan.pair = suite.pair(view) == Pairing::always;
+    plan.find_pairs = suite.pair(view) == Pairing::automatic;
     plan.brightest = suite.options.brightest, plan.exposure = suite.options.exposure;
     return plan;
 }
@@ -148,14 +150,59 @@ VarianceTest test_variance(const RenderStats& all, const CompareResult& measured
     return out;
 }
 
-void test_variances(const RenderStats& all, const CompareResult& measured, ViewResult& out) {
+/// `level`: of the view.
+void test_variances(
+    const RenderStats& all, const CompareResult& measured, double level, unsigned look, ViewResult& out) {
     double tested = 0;
     for (std::size_t r = 0; r < all.regions.size(); ++r) {
-        const VarianceTest& test = out.variances.emplace_back(test_variance(all, measured, r));
+        VarianceTest& test = out.variances.emplace_back(test_variance(all, measured, r));
         if (!test.why.empty()) continue;
+        if (look > 0 && test.welch.se > 0) {
+            const double n = static_cast<double>(all.arms[0].files.size()),
+                         m = static_cast<double>(all.arms[1].files.size());
+            test.welch.p = anytime_p(test.welch.difference / test.welch.se, test.welch.df, n * m / (n + m));
+        }
         ++tested, out.variance_p = std::fmin(out.variance_p, test.welch.p);
     }
     if (tested > 0) out.variance_p = std::min(1.0, out.variance_p * tested);
+    for (VarianceTest& test : out.variances)
+        if (test.why.empty() && test.baseline > 0)
+            test.smallest = 1 + detectable(test.welch, level * (1 - share_of_means) / tested) / test.baseline;
+}
+
+/// Returns the samples a pixel that the files of a side state, if all state the same.
+std::optional<double> stated_spp(const ArmStats& arm) {
+    for (const RenderFile& file : arm.files)
+        if (file.spp != arm.files[0].spp) return {};
+    return arm.files.empty() ? std::nullopt : arm.files[0].spp;
+}
+
+/// Returns the tile in which the variance of the candidate is largest relative to that of the baseline, of those in
+/// which they differ significantly; "" if there is none.
+std::string noisiest_place(const ComparePlan& plan, const RenderStats& all, double alpha) {
+    const NoiseResult noise = compare_noise(plan, all, 1, 0, alpha);
+    std::size_t found = all.tiles.count();
+    for (std::size_t t = 0; t < all.tiles.count(); ++t)
+        if (noise.distinguished[t] && noise.log2_ratio[t] > 0 &&
+            (found == all.tiles.count() || noise.log2_ratio[t] > noise.log2_ratio[found]))
+            found = t;
+    if (found == all.tiles.count()) return "";
+    const Box box = all.tiles.box(found, all.width, all.height);
+    return fmt::format(
+        "x {}–{} y {}–{} ({} times)", box.x0, box.x1, box.y0, box.y1, figures(std::exp2(noise.log2_ratio[found]), 3));
+}
+
+/// Describes the channels that are not tested and differ between renders with the same pixels.
+std::string other_channels(const Suite& suite, const RenderStats& all) {
+    for (const RenderFile& candidate : all.arms[1].files)
+        for (const RenderFile& baseline : all.arms[0].files) {
+            const bool are_files =
+                std::filesystem::is_regular_file(candidate.path) && std::filesystem::is_regular_file(baseline.path);
+            if (candidate.hash != baseline.hash || !are_files) continue;
+            const std::string found = differing_channels(baseline.path, candidate.path, suite.options.reading());
+            if (!found.empty()) return found;
+        }
+    return "";
 }
 
 /// Returns the degrees of freedom of the standard error of a test. Those of Welch's test are themselves estimated, and
@@ -198,7 +245,8 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
     }
     Welch known = test.welch;
     known.df = power.estimate_df;
-    const double seen = found_difference(known, known.df, level), stated = test.smallest * power.mean;
+    power.anytime = test.information > 0;
+    const double seen = found_difference(known, known.df, level, test.information), stated = test.smallest * power.mean;
     if (stated > seen * (1 + 1e-9))
         power.missed = stated * static_cast<double>(std::min(all.arms[0].files.size(), all.arms[1].files.size()));
     return renders_needed(power, smallest, level);
@@ -212,7 +260,8 @@ void restate_power(const RenderStats& all, double level, BiasResult& means) {
         if (!t.why.empty()) return;
         Welch known = t.welch;
         known.df = known_df(all, t);
-        const double found = found_difference(known, known.df, of_region * level_share(quantity, all.quantities));
+        const double found =
+            found_difference(known, known.df, of_region * level_share(quantity, all.quantities), t.information);
         t.smallest = std::max(t.smallest, found / std::max(std::fabs(t.b), 1e-300));
     };
     for (MeanTest& t : means.regions) {
@@ -334,10 +383,11 @@ ViewResult unreadable_view(const Suite& suite, const SuiteView& view, const Inpu
 }  // namespace
 
 std::uint64_t pixel_hash(const Render& render) {
-    const std::array<std::uint64_t, 5> parts{static_cast<std::uint64_t>(render.width),
+    const std::array<std::uint64_t, 6> parts{static_cast<std::uint64_t>(render.width),
         static_cast<std::uint64_t>(render.height), XXH3_64bits(render.r.data(), render.r.size() * sizeof(float)),
         XXH3_64bits(render.g.data(), render.g.size() * sizeof(float)),
-        XXH3_64bits(render.b.data(), render.b.size() * sizeof(float))};
+        XXH3_64bits(render.b.data(), render.b.size() * sizeof(float)),
+        XXH3_64bits(render.alpha.data(), render.alpha.size() * sizeof(float))};
     return XXH3_64bits(parts.data(), sizeof parts);
 }
 
@@ -357,7 +407,9 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
         picture_one_side(suite, view, files.reader(), out);
         return out;
     }
-    if (moments && suite.options.pair == Pairing::always)
+    if (moments && suite.options.reading().is_partial())
+        throw InputError({suite.file, 0, 0}, "channels, channel: expected renders as the baseline, found moments");
+    if (moments && suite.pair(view) == Pairing::always)
         throw InputError({suite.file, 0, 0}, "pair = true: expected renders as the baseline, found moments");
     if (moments)
         out.notes.push_back(
@@ -379,13 +431,26 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     out.non_finite = one_sided_failures(all);
     out.width = all.width, out.height = all.height;
     out.notes.insert(out.notes.end(), all.warnings.begin(), all.warnings.end());
-    if (out.exact) out.mean_p = out.means->identical ? 1 : 0;
-    else {
-        if (!out.means->identical) {
+    out.noise = suite.noise(view);
+    out.spp_baseline = stated_spp(all.arms[0]), out.spp_candidate = stated_spp(all.arms[1]);
+    if (out.means->identical) out.other_channels = other_channels(suite, all);
+    if (out.exact) {
+        if (!out.means->identical) out.exact_difference = exact_difference(all, view.tolerance);
+        out.tolerated = view.tolerance && out.exact_difference && out.exact_difference->beyond == 0;
+        out.mean_p = out.means->identical || out.tolerated ? 1 : 0;
+    } else {
+        if (!out.means->identical && out.noise != NoiseDemand::ignore) {
             out.outliers = view_outliers(all, suite.options.alpha);
+            if (suite.outliers(view) == OutlierDemand::ignore) out.outliers.p = std::nan("");
             out.outlier_render = view_outlier_render(all);
+            if (suite.look > 0) {  // these tests do not hold at any time
+                out.outliers.p = out.outliers.p * look_factor(suite.look);
+                out.outlier_render.p = out.outlier_render.p * look_factor(suite.look);
+            }
         }
-        test_variances(all, measured, out);
+        test_variances(all, measured, level.each / share_of_means, suite.look, out);
+        if (out.noise == NoiseDemand::ignore) out.variance_p = std::nan("");
+        else { out.noisiest = noisiest_place(plan, all, suite.options.alpha); }
         if (!out.means->identical) {
             restate_power(all, level.each, *out.means);
             state_power(all, measured, level.each, out);
@@ -401,6 +466,10 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     picture_both_sides(suite, all, *out.means, out);
     drop_places(*out.means);
     return out;
+}
+
+SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor) {
+    return compare_suite(suite, monitor, files_read_with(suite.options.reading()));
 }
 
 SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const RenderSource& source) {

@@ -1,4 +1,5 @@
 // Both sides are assumed to have the variance of the baseline, which falls as 1/N with N samples.
+#include "compare/anytime.h"
 #include "compare/suite/suite.h"
 
 #include <algorithm>
@@ -24,10 +25,12 @@ constexpr std::size_t most_renders = 100000;
 
 }  // namespace
 
-double found_difference(const Welch& test, double estimate_df, double level) {
+double found_difference(const Welch& test, double estimate_df, double level, double information) {
     if (!(test.df > 0) || !(estimate_df > 0) || !std::isfinite(test.se)) return HUGE_VAL;
     constexpr double z = 1.2815515655446004;  // P(Z < z) = 0.9
-    const double t = student_quantile(1 - level / 2, test.df);
+    const double t =
+        information > 0 ? anytime_quantile(level, test.df, information) : student_quantile(1 - level / 2, test.df);
+    if (!std::isfinite(t)) return HUGE_VAL;
     const double m1 = 1 - 1 / (4 * estimate_df), m2 = 1 - 1 / (4 * test.df);
     const double a = m1 * m1 - z * z / (2 * estimate_df), b = m1 * m2 * t,
                  c = m2 * m2 * t * t - z * z * (1 + t * t / (2 * test.df));
@@ -40,7 +43,8 @@ double detectable_with(const RegionPower& power, std::size_t renders, double lev
     Welch test;
     test.se = std::sqrt(power.paired ? a : a + b);
     test.df = power.paired ? n - 1 : a + b > 0 ? (a + b) * (a + b) * (n - 1) / (a * a + b * b) : 2 * (n - 1);
-    return std::max(found_difference(test, power.estimate_df, level), power.missed / n);
+    const double information = !power.anytime ? 0 : power.paired ? n : n / 2;
+    return std::max(found_difference(test, power.estimate_df, level, information), power.missed / n);
 }
 
 std::optional<std::size_t> renders_needed(const RegionPower& power, double smallest, double level) {
@@ -65,15 +69,16 @@ ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compar
     RenderArm& arm = plan.arms.emplace_back();
     arm.name = "baseline", arm.at = {plan.file, 0, 0}, arm.layer = suite.options.layer;
     arm.moments = view.baseline.size() == 1 && has_moments(view.baseline.front());
+    const RenderSource source = files_read_with(suite.options.reading());
     std::vector<std::uint64_t> hashes;
     for (const std::string& path : view.baseline) {
-        const std::uint64_t hash = pixel_hash(read_render(path, arm.moments ? "" : arm.layer));
+        const std::uint64_t hash = pixel_hash(source.read(path, arm.moments ? "" : arm.layer));
         if (std::find(hashes.begin(), hashes.end(), hash) == hashes.end())
             hashes.push_back(hash), arm.files.push_back(path);
     }
     plan.regions = view.regions, plan.flip = false;
     ProgressMonitor quiet;
-    const RenderStats all = read_all(plan, quiet);
+    const RenderStats all = read_all(plan, quiet, source);
     const ArmStats& baseline = all.arms[0];
     out.renders = baseline.files.size(), out.spp = baseline.files[0].spp;
     if (out.renders < 2) {

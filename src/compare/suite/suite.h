@@ -14,6 +14,7 @@
 #include "compare/file_pattern.h"
 #include "compare/plan.h"
 #include "compare/results.h"
+#include "compare/suite/exact.h"
 #include "compare/suite/manifest.h"
 #include "math/statistics.h"
 #include "report/report.h"
@@ -35,6 +36,11 @@ enum class BaselineStorage { renders, moments };
 /// Whether renders are compared in pairs: if they share random numbers, or those with the same number in their names.
 enum class Pairing { automatic, always, never };
 
+/// What is asked of the noise: that there is not more, that it is the same, or nothing.
+enum class NoiseDemand { not_more, same, ignore };
+/// Whether the numbers of outlier pixels of both sides are compared.
+enum class OutlierDemand { test, ignore };
+
 /// The table [suite] of a suite file.
 struct SuiteOptions {
     std::string title = "golden images";
@@ -42,10 +48,17 @@ struct SuiteOptions {
     std::vector<std::string> baseline, candidate;  // patterns as in the file
     double smallest = 0.01;                        // relative difference of mean Y that must be found
     std::string layer;
+    ImageEncoding encoding = ImageEncoding::automatic;  // of files of whole numbers
+    ImageSpace space = ImageSpace::radiance;
+    TestedChannels channels = TestedChannels::rgb;
+    std::string channel;  // this one alone; "": `channels`
     double exposure = 1;
     std::optional<double> brightest;
     BaselineStorage store = BaselineStorage::renders;
     Pairing pair = Pairing::automatic;
+    NoiseDemand noise = NoiseDemand::not_more;
+    OutlierDemand outliers = OutlierDemand::test;
+    ReadingOptions reading() const { return {encoding, space, channels, channel}; }
 };
 
 /// The file's statements about one view, and its renders.
@@ -53,6 +66,11 @@ struct SuiteView {
     std::string name;
     SourceLocation at;
     std::optional<double> smallest;  // none: that of the suite
+    std::optional<Pairing> pair;
+    std::optional<NoiseDemand> noise;
+    std::optional<OutlierDemand> outliers;
+    std::string tolerance_text;          // of a view without noise; "": none
+    std::optional<Tolerance> tolerance;  // the same
     std::vector<Region> regions;
     std::vector<std::string> baseline, candidate;  // files, sorted
 };
@@ -64,8 +82,12 @@ struct Suite {
     std::vector<FilePattern> baseline, candidate;  // with {view}, from the current folder
     std::vector<SuiteView> views;                  // by name
     std::optional<Manifest> manifest;              // of the baseline
+    unsigned look = 0;                             // number of this look at its renders, see ComparePlan
     std::size_t compared() const;                  // views with renders of both sides
     double smallest(const SuiteView& view) const { return view.smallest.value_or(options.smallest); }
+    Pairing pair(const SuiteView& view) const { return view.pair.value_or(options.pair); }
+    NoiseDemand noise(const SuiteView& view) const { return view.noise.value_or(options.noise); }
+    OutlierDemand outliers(const SuiteView& view) const { return view.outliers.value_or(options.outliers); }
 };
 
 /// Flags that replace or complete the keys of a suite file.
@@ -79,6 +101,8 @@ struct SuiteFlags {
 bool is_suite(const std::string& file);
 /// Reads a suite file ("": none, the folders of the flags) and finds the renders of each view. Throws InputError.
 Suite read_suite(const std::string& file, const SuiteFlags& flags);
+/// Returns the table [suite] that flags alone make. Throws InputError.
+SuiteOptions read_suite_options(const std::vector<CompareFlag>& keys);
 /// Returns the manual of a suite file.
 std::string suite_schema_text();
 
@@ -96,6 +120,7 @@ struct VarianceTest {
     Welch welch;
     std::string why;         // why it was not tested; "" if it was
     bool different = false;  // at the level of the view
+    double smallest = 0;     // ratio to the baseline that would have been found with a probability of 90 %
 };
 
 /// The outlier pixels of both sides, and the test that their numbers are in proportion to the numbers of renders (exact
@@ -133,13 +158,20 @@ struct ViewPictures {
 struct ViewResult {
     std::string name;
     ViewState state = ViewState::same;
-    std::string sentence;
+    std::string headline;            // the result in at most 160 characters
+    std::string sentence;            // with the details
     std::vector<std::string> notes;  // copies, shared seeds, warnings about files
     int width = 0, height = 0;
     std::size_t baseline_renders = 0, candidate_renders = 0;  // different ones
     double smallest = 0;                                      // that must be found
     bool exact = false;                                       // both sides are deterministic
-    bool moments = false;                                     // the baseline is stored as moments
+    std::optional<ExactDifference> exact_difference;          // if they are, and differ
+    bool tolerated = false;                                   // it is within the tolerance
+    std::string other_channels;                               // that differ and are not tested; "": none
+    NoiseDemand noise = NoiseDemand::not_more;
+    std::optional<double> spp_baseline, spp_candidate;  // as the files state them
+    std::string noisiest;                               // where the noise grew the most; "": unknown
+    bool moments = false;                               // the baseline is stored as moments
     std::optional<BiasResult> means;  // of the candidate against the baseline; without what grows with the pixels
     std::vector<VarianceTest> variances;
     ViewOutliers outliers;
@@ -166,19 +198,23 @@ struct SuiteResult {
 /// allows them, new ones, 4 for too few renders, else 0.
 int exit_code(const SuiteResult& result, bool new_baseline);
 
+inline constexpr std::size_t longest_headline = 160;  // characters
+
 /// Returns a hash of the pixels of a render, to find copies.
 std::uint64_t pixel_hash(const Render& render);
 
 /// Reads and tests one view. `compared`: the number of views that share alpha.
 ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t compared, ProgressMonitor& monitor,
-    const RenderSource& source = {});
+    const RenderSource& source);
 
 /// Decides all views together: Holm's method over their p-values.
 void decide(const Suite& suite, SuiteResult& result);
 
 /// Measures and decides every view, one view in memory at a time. A view whose files cannot be compared, or differ from
 /// the manifest, is unreadable; the others are compared all the same.
-SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const RenderSource& source = {});
+SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const RenderSource& source);
+/// The same of files, read as the suite states.
+SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor);
 
 // ---- --accept: the candidate of some views becomes the baseline, of all of them at once.
 
@@ -205,6 +241,9 @@ std::string baseline_folder(const Suite& suite);
 
 /// docs/suite.schema.json describes it; equal inputs give equal bytes.
 std::string suite_json(const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& provenance);
+/// Results that are not "same" or "improved" in the Static Analysis Results Interchange Format 2.1.0, with the place of
+/// the view in the suite file, for code hosts.
+std::string suite_sarif(const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& provenance);
 /// One case for each view: changed, noisier, missing and new fail, unreadable and too few renders are errors; new is
 /// skipped if `new_baseline` allows it.
 std::string suite_junit(const Suite& suite, const SuiteResult& result, bool new_baseline);
@@ -236,7 +275,8 @@ void picture_both_sides(const Suite& suite, const RenderStats& all, const BiasRe
 /// a mean is known only from an estimate with `estimate_df` degrees of freedom. The estimate may be too small by
 /// chance, and so may that of the repetition: the difference is larger than that of detectable() (by a fifth for 8
 /// renders of each side), and infinite for too few degrees of freedom.
-double found_difference(const Welch& test, double estimate_df, double level);
+/// With `information`, of a test that holds at any time, see anytime.h.
+double found_difference(const Welch& test, double estimate_df, double level, double information = 0);
 
 /// The noise of the mean of a region, known before more renders exist.
 struct RegionPower {
@@ -244,7 +284,8 @@ struct RegionPower {
     double variance_a = 0, variance_b = 0;  // of the mean of one render of each side; in pairs a: of a difference
     double estimate_df = 0;                 // degrees of freedom with which they are known
     bool paired = false;
-    double missed = 0;  // difference that rare events could hide, times the renders of a side
+    bool anytime = false;  // of a test that holds at any time
+    double missed = 0;     // difference that rare events could hide, times the renders of a side
 };
 
 /// Returns the difference that a test with `renders` renders of each side finds with a probability of 90 %.

@@ -36,6 +36,18 @@ Section suite_table() {
                 to<&SuiteOptions::smallest>},
             {"layer", Type::text, none, "", defaulted, "\"\"", "Which part or layer of each file; else the beauty.",
                 to<&SuiteOptions::layer>},
+            {"encoding", Type::word, none, "", defaulted, "\"auto\"",
+                "How the numbers of PNG, JPEG, BMP, TGA and PNM encode radiance: srgb or linear; auto: as the file "
+                "states it, "
+                "else srgb.",
+                to<&SuiteOptions::encoding>, {"auto", "srgb", "linear"}},
+            {"space", Type::word, none, "", defaulted, "\"radiance\"",
+                "What is tested of such files: radiance, or display: the numbers over the largest one.",
+                to<&SuiteOptions::space>, {"radiance", "display"}},
+            {"channels", Type::word, none, "", defaulted, "\"rgb\"", "rgba: the alpha channel is tested too.",
+                to<&SuiteOptions::channels>, {"rgb", "rgba"}},
+            {"channel", Type::text, none, "", defaulted, "\"\"",
+                "This channel alone is tested, by its name in the file; else the colours.", to<&SuiteOptions::channel>},
             {"exposure", Type::number, {0, 1e6, true}, "", defaulted, "1", "Of the pictures in the report.",
                 to<&SuiteOptions::exposure>},
             {"brightest", Type::number, positive, "", optional, "not known",
@@ -46,14 +58,30 @@ Section suite_table() {
             {"pair", Type::word, none, "", defaulted, "\"auto\"",
                 "Renders are compared in pairs if they share random numbers; true: those with the same number in their "
                 "names; false: never.",
-                to<&SuiteOptions::pair>, {"auto", "true", "false"}}},
+                to<&SuiteOptions::pair>, {"auto", "true", "false"}},
+            {"noise", Type::word, none, "", defaulted, "\"not more\"",
+                "What is asked of the noise: not more of it, the same, or nothing (ignore).", to<&SuiteOptions::noise>,
+                {"not more", "same", "ignore"}},
+            {"outliers", Type::word, none, "", defaulted, "\"test\"",
+                "test: the numbers of outlier pixels are compared; ignore: they are not.", to<&SuiteOptions::outliers>,
+                {"test", "ignore"}}},
         {}};
 }
 
 Section view_table() {
     return {"view", Multiplicity::titled, optional, "What differs for one view.", in<&Suite::views>,
         {{"smallest", Type::number, share, "", optional, "that of [suite]",
-            "Relative difference of mean Y that must be found in this view.", to<&SuiteView::smallest>}},
+             "Relative difference of mean Y that must be found in this view.", to<&SuiteView::smallest>},
+            {"pair", Type::word, none, "", optional, "that of [suite]", "As in [suite].", to<&SuiteView::pair>,
+                {"auto", "true", "false"}},
+            {"noise", Type::word, none, "", optional, "that of [suite]", "As in [suite].", to<&SuiteView::noise>,
+                {"not more", "same", "ignore"}},
+            {"outliers", Type::word, none, "", optional, "that of [suite]", "As in [suite].", to<&SuiteView::outliers>,
+                {"test", "ignore"}},
+            {"tolerance", Type::text, none, "", defaulted, "\"\"",
+                "Of a view without noise, for each channel of a pixel: \"1 ulp\" (a step of the files), \"0.5 %\" or "
+                "\"2/255\"; else every bit must be equal.",
+                to<&SuiteView::tolerance_text>}},
         {{"regions", Multiplicity::named, optional, "Boxes that are tested besides the whole image.",
             in<&SuiteView::regions>,
             {{"box", Type::box, pixel_range, "pixels", required, "",
@@ -114,13 +142,24 @@ void normalize(Node& root) {
     read_percent(suite ? &suite->value : nullptr);
     Member* views = root.find("view");
     if (!views) return;
-    for (Member& view : views->value.members) read_percent(&view.value), expand_regions(view.value);
+    for (Member& view : views->value.members) {
+        read_percent(&view.value);
+        read_pair(&view.value);
+        expand_regions(view.value);
+    }
 }
 
 SourceLocation place_of(const Node& root, const char* key, const std::string& file) {
     const Member* suite = root.find("suite");
     const Member* found = suite ? suite->value.find(key) : nullptr;
     return found ? found->value.at : SourceLocation{file, 0, 0};
+}
+
+SourceLocation place_of_tolerance(const Node& root, const std::string& view, const std::string& file) {
+    const Member* views = root.find("view");
+    const Member* found = views ? views->value.find(view) : nullptr;
+    const Member* tolerance = found ? found->value.find("tolerance") : nullptr;
+    return tolerance ? tolerance->value.at : SourceLocation{file, 0, 0};
 }
 
 /// Returns the files of one side by view, from its patterns.
@@ -234,6 +273,14 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     Suite suite;
     suite.file = file;
     read_tree(context, suite_schema(), root, &suite);
+    for (SuiteView& view : suite.views) {
+        if (view.tolerance_text.empty()) continue;
+        view.tolerance = parse_tolerance(view.tolerance_text);
+        if (!view.tolerance)
+            context.diagnostics.push_back({place_of_tolerance(root, view.name, context.e.file),
+                fmt::format(
+                    "view.{}.tolerance: expected {}, found \"{}\"", view.name, tolerance_forms, view.tolerance_text)});
+    }
     throw_if_any(std::move(context.diagnostics));
     const std::string folder = fs::path(file).parent_path().string();
     SuiteOptions& o = suite.options;
@@ -250,6 +297,18 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     find_renders(suite, candidate_at, flags.baseline_only);
     check_sides(suite, candidate_at);
     return suite;
+}
+
+SuiteOptions read_suite_options(const std::vector<CompareFlag>& keys) {
+    ParseContext context;
+    context.e.file = "crescent compare";
+    Node root;
+    root.members.push_back({"suite", {context.e.file, 0, 0}, Node{}});
+    put_flags(root, keys);
+    Suite suite;
+    read_tree(context, suite_schema(), root, &suite);
+    throw_if_any(std::move(context.diagnostics));
+    return suite.options;
 }
 
 std::string suite_schema_text() { return manual_of(suite_schema()); }

@@ -56,8 +56,8 @@ Json outlier_render_json(const ViewOutlierRender& r) {
 }
 
 Json view_json(const ViewResult& view) {
-    Json out = {{"view", view.name}, {"state", name_of(view.state)}, {"sentence", view.sentence}, {"width", view.width},
-        {"height", view.height},
+    Json out = {{"view", view.name}, {"state", name_of(view.state)}, {"headline", view.headline},
+        {"sentence", view.sentence}, {"width", view.width}, {"height", view.height},
         {"renders", {{"baseline", view.baseline_renders}, {"candidate", view.candidate_renders}}},
         {"smallest", output::number(view.smallest)}, {"deterministic", view.exact}, {"moments", view.moments},
         {"p", {{"means", p_json(view.mean_p)}, {"variances", p_json(view.variance_p)}}},
@@ -98,6 +98,17 @@ std::string cell(const std::string& text) {
         if (c == '<') out += "&lt;";
         else if (std::string_view("|\\`*_[]").find(c) != std::string_view::npos) out += '\\', out += c;
         else out += c;
+    }
+    return out;
+}
+
+/// A path as part of a URI: RFC 3986, 3.3.
+std::string uri_path(const std::string& path) {
+    std::string out;
+    for (const char c : path) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+            std::string_view("-._~/").find(c) != std::string_view::npos;
+        out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
     }
     return out;
 }
@@ -146,22 +157,47 @@ std::string suite_junit(const Suite& suite, const SuiteResult& result, bool new_
     return junit_text(out);
 }
 
+std::string suite_sarif(
+    const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& provenance) {
+    Json rules = Json::array(), results = Json::array();
+    for (const char* state : view_state_names) rules.push_back({{"id", state}});
+    for (const ViewResult* view : by_state(result)) {
+        const JunitCase::State state = junit_state(*view, new_baseline);
+        if (state == JunitCase::State::passed) continue;
+        const auto stated = std::find_if(
+            suite.views.begin(), suite.views.end(), [&](const SuiteView& each) { return each.name == view->name; });
+        const unsigned line = stated == suite.views.end() ? 1 : std::max(1u, stated->at.line);
+        const Json place = {{"physicalLocation",
+            {{"artifactLocation", {{"uri", suite.file.empty() ? "." : uri_path(suite.file)}}},
+                {"region", {{"startLine", line}}}}}};
+        results.push_back({{"ruleId", name_of(view->state)},
+            {"level",
+                state == JunitCase::State::failed      ? "error"
+                    : state == JunitCase::State::error ? "warning"
+                                                       : "note"},
+            {"message", {{"text", view->name + ": " + view->headline}}}, {"locations", Json::array({place})},
+            {"partialFingerprints", {{"view", view->name}}}});
+    }
+    const Json driver = {{"name", "crescent"}, {"version", provenance.version}, {"rules", rules}};
+    const Json run = {{"tool", {{"driver", driver}}}, {"results", results}};
+    return text({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"}, {"version", "2.1.0"},
+        {"runs", Json::array({run})}});
+}
+
 std::string failure_junit(const std::string& file, const std::string& message) {
     return junit_text({"crescent compare", {}, {{file, "input", JunitCase::State::error, message, "", {}}}});
 }
 
 std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance) {
-    constexpr std::size_t most = 60'000, longest_sentence = 600;
+    constexpr std::size_t most = 60'000;
     std::string out = fmt::format("### {}\n\n{}\n", cell(suite.options.title), cell(result.sentence));
     const std::string end = fmt::format("\ncrescent {}\n", provenance.version);
     bool begun = false;
     std::size_t left_out = 0;
     for (const ViewResult* view : by_state(result)) {
         if (view->state == ViewState::same) continue;
-        std::string sentence = printable(view->sentence, longest_sentence);
-        if (sentence.size() < view->sentence.size()) sentence += " ...";
-        const std::string row = fmt::format(
-            "| {} {} | {} | {} |\n", mark_of(view->state), name_of(view->state), cell(view->name), cell(sentence));
+        const std::string row = fmt::format("| {} {} | {} | {} |\n", mark_of(view->state), name_of(view->state),
+            cell(view->name), cell(view->headline));
         constexpr std::size_t reserve = 200;  // for the lines below the table
         if (out.size() + row.size() + end.size() + reserve > most) {
             ++left_out;
@@ -182,7 +218,8 @@ std::string suite_summary(const Suite& suite, const SuiteResult& result) {
     constexpr std::size_t widest = 40;
     longest = std::min(longest, widest);
     for (const ViewResult* view : by_state(result)) {
-        out += fmt::format("{}  {}  {}\n", left(name_of(view->state), 15), left(view->name, longest), view->sentence);
+        out += fmt::format("{}  {}  {}\n", left(name_of(view->state), 15), left(view->name, longest), view->headline);
+        if (view->sentence != view->headline) out += fmt::format("{:17}{}\n", "", view->sentence);
         for (const std::string& note : view->notes) out += fmt::format("{:17}{}\n", "", note);
     }
     return out + "\n" + result.sentence + "\n";
@@ -243,8 +280,9 @@ Json regions_of(const ViewResult& view) {
 Json view_of(const ViewResult& view) {
     const ViewPictures& p = view.pictures;
     return {{"name", view.name}, {"lower_case", lower_case(view.name)}, {"state", name_of(view.state)},
-        {"is_bad", is_bad(view.state)}, {"is_good", is_good(view.state)}, {"sentence", view.sentence},
-        {"width", p.width}, {"height", p.height}, {"thumbnail", base64(p.candidate.empty() ? p.baseline : p.candidate)},
+        {"is_bad", is_bad(view.state)}, {"is_good", is_good(view.state)}, {"headline", view.headline},
+        {"details", view.sentence == view.headline ? "" : view.sentence}, {"width", p.width}, {"height", p.height},
+        {"thumbnail", base64(p.candidate.empty() ? p.baseline : p.candidate)},
         {"only", p.baseline.empty() ? "candidate" : "baseline"}, {"baseline", base64(p.baseline)},
         {"difference", base64(p.difference)}, {"baseline_renders", plural(view.baseline_renders, "render")},
         {"candidate_renders", plural(view.candidate_renders, "render")}, {"frames", frames_of(view)},

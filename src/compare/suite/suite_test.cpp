@@ -368,6 +368,10 @@ TEST_F(SuiteFiles, KeysAreReadAndMistakesHaveAPlace) {
     EXPECT_THAT(mistake("alhpa = 0.1\n"), HasSubstr("did you mean 'alpha'?"));
     EXPECT_THAT(mistake("[view.vv]\nsmallest = 0.1\n"), HasSubstr("s.toml:4:"));
     EXPECT_THAT(mistake("[view.vv]\nsmallest = 0.1\n"), HasSubstr("did you mean 'v'?"));
+    EXPECT_EQ(
+        read("[view.v]\ntolerance = \"2/255\"\nnoise = \"ignore\"\npair = false\n").views[0].pair, Pairing::never);
+    EXPECT_THAT(mistake("[view.v]\ntolerance = \"2 nits\"\n"), HasSubstr("s.toml:5:13: view.v.tolerance: expected"));
+    EXPECT_THAT(mistake("[view.v]\nnoise = \"less\"\n"), HasSubstr("s.toml:5:"));
     EXPECT_THAT(mistake("pair = \"maybe\"\n"), HasSubstr("s.toml:4:"));
     EXPECT_THAT(mistake("smallest = \"much\"\n"), HasSubstr("s.toml:4:12: "));
     EXPECT_THAT(mistake("[view.v]\nregions.lamp = [1, 2, 3]\n"), HasSubstr("s.toml:5:"));
@@ -375,6 +379,103 @@ TEST_F(SuiteFiles, KeysAreReadAndMistakesHaveAPlace) {
         EXPECT_THAT(mistake(std::string("smallest = \"") + text + "\"\n"), HasSubstr("s.toml:4:12: "));
     EXPECT_EQ(read("smallest = \"" + std::string(60'000, ' ') + "4 %\"\n").options.smallest, 0.04);
     EXPECT_THAT(mistake("[view.v]\nregions.frame = [1, 2, 3, 4]\n"), HasSubstr("expected another"));
+}
+
+TEST(Suites, AToleranceHoldsForViewsWithoutNoise) {
+    EXPECT_EQ(parse_tolerance("1 ulp")->size, 1);
+    EXPECT_EQ(parse_tolerance(" 0.5 % ")->size, 0.005);
+    EXPECT_EQ(parse_tolerance("2/255")->size, 2.0 / 255);
+    for (const char* text : {"", "ulp", "1", "-1 ulp", "1/0", "% 5", "1 ulps", "nan %", "  "})
+        EXPECT_FALSE(parse_tolerance(text)) << text;
+    const auto state = [](const char* tolerance, float factor, const Quantisation& steps, std::string* sentence) {
+        MemorySuite s;
+        for (int k = 0; k < 2; ++k)
+            for (const char* which : {"baseline", "candidate"}) {
+                s.put("view", which, k, noise, 900);
+                Render& r = s.renders.at(fmt::format("view/{}/{}", which, k));
+                r.steps = steps;
+                for (std::vector<float>* plane : {&r.r, &r.g, &r.b})
+                    for (float& value : *plane) {
+                        if (steps.levels > 0) value = std::round(100 * value) / 255;
+                        if (*which == 'c') value = steps.levels > 0 ? value + factor / 255 : value * factor;
+                    }
+            }
+        s.suite.views[0].tolerance = parse_tolerance(tolerance);
+        const ViewResult view = s.compare().views[0];
+        EXPECT_TRUE(view.exact);
+        EXPECT_LE(view.headline.size(), longest_headline);
+        if (sentence) *sentence = view.sentence;
+        return view.state;
+    };
+    const Quantisation eight_bits{.levels = 256, .srgb = false};
+    const float ulp = 1 + 0x1p-23f;
+    std::string sentence;
+    EXPECT_EQ(state("", ulp, {}, &sentence), ViewState::changed);
+    EXPECT_THAT(sentence, HasSubstr("1024 of 1024 pixels changed; the largest difference of a channel is"));
+    EXPECT_THAT(sentence, HasSubstr("ulp at"));
+    EXPECT_EQ(state("2 ulp", ulp, {}, &sentence), ViewState::same);
+    EXPECT_THAT(sentence, HasSubstr("within the tolerance"));
+    EXPECT_EQ(state("0.5 %", 1.004f, {}, nullptr), ViewState::same);
+    EXPECT_EQ(state("0.5 %", 1.006f, {}, &sentence), ViewState::changed);
+    EXPECT_THAT(sentence, HasSubstr("Beyond the tolerance: 1024 pixels"));
+    EXPECT_EQ(state("2/255", 2, eight_bits, &sentence), ViewState::same);
+    EXPECT_THAT(sentence, HasSubstr("2 of 255 steps"));
+    EXPECT_EQ(state("2/255", 3, eight_bits, nullptr), ViewState::changed);
+}
+
+TEST(Suites, AViewStatesWhatIsAskedOfItsNoise) {
+    const auto state = [](NoiseDemand demand, const SyntheticNoise& before, const SyntheticNoise& after) {
+        MemorySuite s;
+        s.suite.options.smallest = 0.03;
+        s.put_both("view", before, after, 400);
+        s.suite.views[0].noise = demand;
+        return s.compare().views[0].state;
+    };
+    EXPECT_EQ(state(NoiseDemand::not_more, calmer, noise), ViewState::noisier);
+    EXPECT_EQ(state(NoiseDemand::not_more, noise, calmer), ViewState::improved);
+    EXPECT_EQ(state(NoiseDemand::same, noise, calmer), ViewState::changed);
+    EXPECT_EQ(state(NoiseDemand::same, noise, noise), ViewState::same);
+    EXPECT_EQ(state(NoiseDemand::ignore, calmer, noise), ViewState::same);
+    EXPECT_EQ(state(NoiseDemand::ignore, noise, brighter), ViewState::changed);
+}
+
+TEST(Suites, ANoisierViewSaysWhereByHowMuchAndThatTheMeanHeld) {
+    MemorySuite s;
+    s.put_both("view", calmer, noise, 400);
+    for (auto& [path, render] : s.renders) render.spp = path.find("candidate") == std::string::npos ? 16 : 12;
+    const ViewResult view = s.compare().views[0];
+    EXPECT_THAT(view.sentence, ::testing::StartsWith("Candidate states 12 spp, baseline 16. The variance"));
+    EXPECT_THAT(view.sentence, HasSubstr("It grew the most in x "));
+    EXPECT_THAT(view.sentence, HasSubstr("times would be found with a probability of 90 %"));
+    EXPECT_THAT(view.sentence, HasSubstr("The mean held."));
+    EXPECT_THAT(view.headline, HasSubstr("Noisier: the variance is"));
+    EXPECT_LE(view.headline.size(), longest_headline);
+}
+
+TEST(Suites, AChangedViewIsOneShortSentence) {
+    MemorySuite s;
+    s.put_both("view", noise, brighter, 200);
+    Region& region = s.suite.views[0].regions.emplace_back();
+    region.name = std::string(200, 'r'), region.box = {0, 0, 31, 31};
+    const ViewResult view = s.compare().views[0];
+    EXPECT_THAT(view.headline, ::testing::StartsWith("Changed: mean Y in "));
+    EXPECT_LE(view.headline.size(), longest_headline);
+    EXPECT_GT(view.sentence.size(), view.headline.size());
+}
+
+TEST(Suites, SarifNamesTheLineOfAViewInItsFile) {
+    MemorySuite s;
+    s.put_both("view", noise, brighter, 200);
+    s.put_both("other", noise, noise, 300);
+    s.suite.file = "tests/a suite.toml", s.suite.views[0].at = {"tests/a suite.toml", 7, 2};
+    const output::Json sarif = output::Json::parse(suite_sarif(s.suite, s.compare(), false, {}));
+    const output::Json& results = sarif["runs"][0]["results"];
+    ASSERT_GE(results.size(), 1u);
+    EXPECT_EQ(results[0]["ruleId"], "changed");
+    EXPECT_EQ(results[0]["level"], "error");
+    const output::Json& place = results[0]["locations"][0]["physicalLocation"];
+    EXPECT_EQ(place["artifactLocation"]["uri"], "tests/a%20suite.toml");
+    EXPECT_EQ(place["region"]["startLine"], 7);
 }
 
 TEST(Hypotheses, SimesPIsTheLevelOfTheFirstDiscovery) {

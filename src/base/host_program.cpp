@@ -1,0 +1,30 @@
+// dladdr() finds the file that contains this function.
+#include "base/host_program.h"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#ifdef __linux__
+#include <sys/auxv.h>
+#endif
+
+namespace crescent::inline base {
+
+std::string host_program() {
+    if (const char* given = std::getenv("CRESCENT_PLUGIN_HOST")) return given;
+    Dl_info own{};
+    if (dladdr(reinterpret_cast<const void*>(&host_program), &own) == 0) return host_program_name;
+#ifdef __linux__
+    Dl_info program{};
+    if (dladdr(reinterpret_cast<const void*>(getauxval(AT_PHDR)), &program) != 0 && own.dli_fbase == program.dli_fbase)
+        return "/proc/self/exe";
+#endif
+    const std::filesystem::path host = std::filesystem::path(own.dli_fname).parent_path() / host_program_name;
+    std::error_code unknown;
+    return std::filesystem::exists(host, unknown) ? host.string() : host_program_name;
+}
+
+}  // namespace crescent::inline base

@@ -1,0 +1,293 @@
+// Rounds: measure the views that have new renders, decide all, make more renders of those that are not decided.
+#include "compare/suite/until.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+
+#include "base/errors.h"
+#include "base/text.h"
+#include "output/format.h"
+
+namespace crescent::inline comparison {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Returns the largest number in the names of files, without their folders.
+std::uint64_t largest_number(const std::vector<std::string>& paths) {
+    std::uint64_t out = 0;
+    constexpr std::size_t most_digits = 9;  // longer ones are dates or hashes, and no seeds
+    for (const std::string& path : paths) {
+        const std::string name = fs::path(path).stem().string();
+        for (std::size_t i = 0; i < name.size();) {
+            std::size_t end = i;
+            while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
+            if (end > i && end - i <= most_digits)
+                out = std::max<std::uint64_t>(out, std::stoull(name.substr(i, end - i)));
+            i = std::max(end, i + 1);
+        }
+    }
+    return out;
+}
+
+/// Returns the path of a render of a side: that of the first pattern with one wildcard, which takes the seed.
+std::string path_of_render(const std::vector<FilePattern>& patterns, const std::string& view, std::uint64_t seed,
+    const std::string& extension) {
+    for (const FilePattern& pattern : patterns) {
+        if (const auto path = pattern.path(view, {std::to_string(seed)})) return *path;
+        if (const auto path = pattern.path(view, {std::to_string(seed), extension})) return *path;
+    }
+    if (patterns.empty()) throw InputError({"--render", 0, 0}, "expected suite.candidate, the pattern of new renders");
+    throw InputError(patterns.front().at(),
+        fmt::format("--render: expected a pattern with {{view}} and one wildcard, for the seed, found '{}'",
+            patterns.front().text()));
+}
+
+/// One view on its way to a decision.
+struct Undecided {
+    std::size_t index = 0;  // in the suite
+    std::uint64_t next_seed = 1;
+    std::uint64_t next_baseline_seed = 0;  // of a baseline that is made too
+    unsigned looks = 0;
+    bool decided = false;
+    std::size_t made = 0;
+    double seconds[2] = {0, 0};  // of the renders of each side that were made
+    std::size_t count[2] = {0, 0};
+    std::string failure;
+    std::optional<ViewResult> measured;
+};
+
+class Rounds {
+public:
+    Rounds(Suite& suite, const RenderSides& sides, const Renderer& render, const RenderSource& source,
+        const UntilOptions& options, ProgressMonitor& monitor)
+        : suite_(suite), sides_(sides), render_(render), source_(source), options_(options), monitor_(monitor) {
+        for (std::size_t k = 0; k < suite.views.size(); ++k) {
+            Undecided& view = views_.emplace_back();
+            view.index = k;
+            const SuiteView& files = suite.views[k];
+            const std::uint64_t last = std::max(largest_number(files.baseline), largest_number(files.candidate));
+            view.next_seed = last + 1;
+            // Seeds of two sides that are made differ by this, unless they are to be the same.
+            constexpr std::uint64_t apart = 500'000'000;
+            view.next_seed = sides.baseline && !sides.same_seeds ? std::max(last + 1, apart + 1) : last + 1;
+            view.next_baseline_seed = largest_number(files.baseline) + 1;
+            if (sides.same_seeds) view.next_seed = largest_number(files.candidate) + 1;
+        }
+    }
+
+    SuiteResult result() {
+        monitor_.begin("views that are decided", static_cast<double>(views_.size()));
+        std::size_t told = 0;
+        for (;;) {
+            SuiteResult out = decision();
+            const std::size_t done = static_cast<std::size_t>(
+                std::count_if(views_.begin(), views_.end(), [](const Undecided& v) { return v.decided; }));
+            monitor_.advance(static_cast<double>(done - told)), told = done;
+            monitor_.check();
+            if (done == views_.size() || std::chrono::steady_clock::now() >= options_.end || !add_renders()) return out;
+        }
+    }
+
+private:
+    /// Measures the views with new renders, and decides all of them together.
+    SuiteResult decision() {
+        SuiteResult out;
+        std::size_t compared = 0;  // all that will be: the level may not depend on what is there yet
+        for (const SuiteView& view : suite_.views) compared += sides_.baseline || !view.baseline.empty();
+        for (Undecided& view : views_) {
+            const SuiteView& files = suite_.views[view.index];
+            if (!view.decided && view.failure.empty()) measure(view, files, std::max<std::size_t>(1, compared));
+            out.views.push_back(view.measured.value_or(ViewResult{}));
+            ViewResult& to = out.views.back();
+            to.name = files.name;
+            if (view.failure.empty()) continue;
+            to.state = ViewState::unreadable, to.sentence = view.failure;
+        }
+        decide(suite_, out);
+        for (std::size_t k = 0; k < views_.size(); ++k) finish(views_[k], out.views[k]);
+        return out;
+    }
+
+    /// Whether renders of a side are still to be made for the first time.
+    bool awaits_renders(const SuiteView& files) const {
+        return sides_.baseline ? files.baseline.empty() || files.candidate.empty()
+                               : files.candidate.empty() && !files.baseline.empty();
+    }
+
+    void measure(Undecided& view, const SuiteView& files, std::size_t compared) {
+        if (awaits_renders(files)) {
+            ViewResult& none = view.measured.emplace();
+            none.state = ViewState::too_few, none.too_few = "no render was made yet";
+            none.baseline_renders = files.baseline.size(), none.candidate_renders = files.candidate.size();
+            none.renders_needed = first_renders;
+            return;
+        }
+        try {
+            suite_.look = ++view.looks;
+            view.measured = measure_view(suite_, files, compared, monitor_, source_);
+        } catch (const InputError& error) { view.failure = error.what(); }
+        suite_.look = 0;
+    }
+
+    /// Notes whether a view needs more renders, and completes its sentences.
+    void finish(Undecided& view, ViewResult& to) {
+        const bool few_renders = to.candidate_renders < first_renders && !to.exact;
+        const bool open = to.state == ViewState::too_few || (few_renders && to.state != ViewState::changed);
+        view.decided = !open || to.state == ViewState::unreadable;
+        if (view.made > 0)
+            to.notes.push_back(fmt::format("{} made in {} s of the programs.", plural(view.made, "render"),
+                figures(view.seconds[0] + view.seconds[1], 3)));
+        if (to.state == ViewState::too_few && to.renders_needed) {
+            const std::size_t more = *to.renders_needed - std::min(*to.renders_needed, to.candidate_renders);
+            to.headline = fmt::format("Undecided: {}{}.", plural(std::max<std::size_t>(1, more), "more render"),
+                sides_.baseline ? " of each side" : "");
+            if (!sides_.baseline && *to.renders_needed > to.baseline_renders)
+                to.headline +=
+                    fmt::format(" The baseline has {} of {} that it needs.", to.baseline_renders, *to.renders_needed);
+        }
+        if (sides_.baseline) compare_speed(view, to);
+    }
+
+    /// States which side has less noise at equal time: the variance of a pixel times the seconds of a render.
+    void compare_speed(const Undecided& view, ViewResult& to) const {
+        if (view.count[0] == 0 || view.count[1] == 0 || to.variances.empty()) return;
+        const VarianceTest& frame = to.variances.back();
+        const double a = frame.baseline * view.seconds[0] / static_cast<double>(view.count[0]),
+                     b = frame.candidate * view.seconds[1] / static_cast<double>(view.count[1]);
+        if (!(a > 0) || !(b > 0)) return;
+        to.notes.push_back(fmt::format("At equal time b has {} times the variance of a ({} and {} s a render).",
+            figures(b / a, 3), figures(view.seconds[0] / static_cast<double>(view.count[0]), 3),
+            figures(view.seconds[1] / static_cast<double>(view.count[1]), 3)));
+    }
+
+    /// Returns how many renders a side that has `now` gets next: a quarter more, at most to what is needed.
+    std::size_t next_count(const Undecided& view, std::size_t now) const {
+        if (now < first_renders) return first_renders;
+        const std::size_t step = std::max<std::size_t>(1, now / 4);
+        std::size_t next = now + step;
+        if (view.measured && view.measured->renders_needed)
+            next = std::clamp(*view.measured->renders_needed, now + 1, now + 2 * step);
+        return std::min(next, options_.most_renders);
+    }
+
+    void add_jobs(Undecided& view, bool baseline, std::vector<RenderJob>& jobs,
+        std::vector<std::pair<Undecided*, bool>>& owners) {
+        const SuiteView& files = suite_.views[view.index];
+        const std::vector<std::string>& side = baseline ? files.baseline : files.candidate;
+        const RenderCommand& command = baseline ? *sides_.baseline : sides_.candidate;
+        const auto& patterns = baseline ? suite_.baseline : suite_.candidate;
+        // A baseline that is fixed limits what more renders of the candidate can show.
+        constexpr std::size_t most_over_baseline = 4;
+        if (!sides_.baseline && side.size() >= most_over_baseline * std::max(first_renders, files.baseline.size()))
+            return;
+        const std::size_t wanted = next_count(view, side.size());
+        std::uint64_t& seed = baseline ? view.next_baseline_seed : view.next_seed;
+        for (std::size_t k = side.size(); k < wanted; ++k, ++seed) {
+            jobs.push_back({&command, files.name, path_of_render(patterns, files.name, seed, sides_.extension), seed});
+            owners.emplace_back(&view, baseline);
+        }
+    }
+
+    /// Makes the next renders; returns whether there were any to make, and some were made or failed.
+    bool add_renders() {
+        std::vector<RenderJob> jobs;
+        std::vector<std::pair<Undecided*, bool>> owners;
+        for (Undecided& view : views_) {
+            if (view.decided || !view.failure.empty()) continue;
+            if (sides_.baseline) add_jobs(view, true, jobs, owners);
+            if (!suite_.views[view.index].baseline.empty() || sides_.baseline) add_jobs(view, false, jobs, owners);
+        }
+        if (jobs.empty()) return false;
+        const std::vector<RenderEnd> ends = render_(jobs);
+        bool any = false;
+        for (std::size_t k = 0; k < jobs.size(); ++k) {
+            const auto [view, baseline] = owners[k];
+            const RenderEnd& end = ends[k];
+            any |= end.made || !end.failure.empty();
+            if (!end.failure.empty() && view->failure.empty())
+                view->failure = fmt::format(
+                    "The program {} for seed {}: {}", end.failure, jobs[k].seed, printable(jobs[k].command->text, 200));
+            if (!end.made) continue;
+            SuiteView& files = suite_.views[view->index];
+            std::vector<std::string>& side = baseline ? files.baseline : files.candidate;
+            side.insert(std::lower_bound(side.begin(), side.end(), jobs[k].out), jobs[k].out);
+            ++view->made, ++view->count[baseline ? 0 : 1], view->seconds[baseline ? 0 : 1] += end.seconds;
+        }
+        for (Undecided& view : views_) check_seeds(view);
+        return any;
+    }
+
+    /// A side whose renders are all equal while a seed was given, and the other side's are not, ignores it.
+    void check_seeds(Undecided& view) {
+        const SuiteView& files = suite_.views[view.index];
+        if (view.decided || !view.failure.empty()) return;
+        const auto is_constant = [&](const std::vector<std::string>& paths) {
+            if (paths.size() < 3) return false;
+            const std::uint64_t first = pixel_hash(source_.read(paths[0], suite_.options.layer));
+            for (std::size_t k = 1; k < 3; ++k)
+                if (pixel_hash(source_.read(paths[k], suite_.options.layer)) != first) return false;
+            return true;
+        };
+        const bool a = is_constant(files.baseline), b = is_constant(files.candidate);
+        if (a == b) return;
+        if (!a && files.baseline.size() < 3) return;
+        const RenderCommand* command = b ? &sides_.candidate : sides_.baseline ? &*sides_.baseline : nullptr;
+        if (!command) return;
+        view.failure = fmt::format(
+            "The program ignores the seed: its renders of {} are equal, those of the other side "
+            "are not: {}",
+            files.name, printable(command->text, 200));
+    }
+
+    Suite& suite_;
+    const RenderSides& sides_;
+    const Renderer& render_;
+    const RenderSource& source_;
+    const UntilOptions& options_;
+    ProgressMonitor& monitor_;
+    std::vector<Undecided> views_;
+};
+
+}  // namespace
+
+SuiteResult decide_by_renders(Suite& suite, const RenderSides& sides, const Renderer& render,
+    const RenderSource& source, const UntilOptions& options, ProgressMonitor& monitor) {
+    return Rounds(suite, sides, render, source, options, monitor).result();
+}
+
+Suite suite_of_commands(const RenderSides& sides, const std::vector<std::string>& views, const std::string& folder,
+    const SuiteOptions& options) {
+    ensure(sides.baseline.has_value(), "two commands");
+    const bool has_view = sides.baseline->has_view() || sides.candidate.has_view();
+    if (has_view == views.empty())
+        throw InputError({"--views", 0, 0},
+            has_view ? "expected the views, such as --views a,b: the command has {view}"
+                     : "expected {view} in --a or --b");
+    Suite out;
+    out.options = options;
+    for (const char* side : {"a", "b"}) {
+        const std::string pattern = escape_pattern(folder) + "/" + side + "/{view}-*." + sides.extension;
+        const SourceLocation at{fmt::format("--{}", side), 0, 0};
+        (*side == 'a' ? out.options.baseline : out.options.candidate) = {pattern};
+        (*side == 'a' ? out.baseline : out.candidate).emplace_back(pattern, at, true);
+    }
+    for (const std::string& name : views.empty() ? std::vector<std::string>{"render"} : views) {
+        if (name.empty() || name.find('/') != std::string::npos || name.front() == '.')
+            throw InputError({"--views", 0, 0},
+                fmt::format("expected names of views without '/', that do not begin with '.', found '{}'", name));
+        out.views.emplace_back().name = name;
+    }
+    for (const bool baseline : {true, false})
+        for (const FilePattern& pattern : baseline ? out.baseline : out.candidate)
+            for (const MatchedFile& file : pattern.find())
+                for (SuiteView& view : out.views)
+                    if (view.name == file.view) (baseline ? view.baseline : view.candidate).push_back(file.path);
+    return out;
+}
+
+}  // namespace crescent::inline comparison

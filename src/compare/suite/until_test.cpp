@@ -1,0 +1,188 @@
+// Renders that are made until a view is decided: on synthetic renders in memory, and by programs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <random>
+
+#include "compare/anytime.h"
+#include "compare/suite/until.h"
+#include "math/simd/random.h"
+#include "math/statistics.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/synthetic_renders.h"
+
+namespace crescent::inline comparison {
+namespace until_test {
+
+using ::testing::HasSubstr;
+using Kind = SyntheticNoise::Kind;
+constexpr int side = 24;
+
+/// A suite whose candidate is made in memory; the baseline has 12 renders.
+struct Made {
+    Suite suite;
+    RenderSides sides;
+    SyntheticNoise before{Kind::gamma, 0.2}, after{Kind::gamma, 0.2};
+    bool constant = false;
+    std::size_t most = 200;
+    std::string failure;
+
+    Made() {
+        suite.options.smallest = 0.02;
+        suite.options.candidate = {"out/{view}-*.exr"};
+        suite.candidate.emplace_back("out/{view}-*.exr", SourceLocation{}, true);
+        SuiteView& view = suite.views.emplace_back();
+        view.name = "view";
+        for (int k = 1; k <= 12; ++k) view.baseline.push_back(fmt::format("base/view-{}.exr", k));
+        sides.candidate = parse_render_command("pt {view} {seed} {out}", "--render");
+    }
+    SuiteResult decide(std::uint32_t seed = 1) {
+        RenderSource source;
+        source.read = [&, seed](const std::string& path, const std::string&) {
+            const bool is_candidate = path.starts_with("out");
+            const std::size_t dash = path.rfind('-');
+            auto number = static_cast<std::uint32_t>(std::stoul(path.substr(dash + 1)));
+            if (constant && is_candidate) number = 1;
+            SyntheticScene scene;
+            scene.width = side;
+            return synthetic_render(
+                path, is_candidate ? after : before, seed_of(seed, 2 * number + (is_candidate ? 1 : 0)), scene);
+        };
+        const Renderer render = [&](const std::vector<RenderJob>& jobs) {
+            std::vector<RenderEnd> out(jobs.size());
+            for (std::size_t k = 0; k < jobs.size(); ++k) {
+                if (!failure.empty()) out[k].failure = failure;
+                else if (made < most) out[k].made = true, ++made;
+                seeds.push_back(jobs[k].seed);
+            }
+            return out;
+        };
+        ProgressMonitor monitor;
+        return decide_by_renders(suite, sides, render, source, {}, monitor);
+    }
+    std::size_t made = 0;
+    std::vector<std::uint64_t> seeds;
+};
+
+TEST(Until, AnUnchangedViewEndsAsSameAndAChangedOneAsChanged) {
+    Made same;
+    EXPECT_EQ(same.decide().views[0].state, ViewState::same);
+    EXPECT_GE(same.made, first_renders);
+    EXPECT_LT(same.made, 60u);
+    for (const std::uint64_t seed : same.seeds) EXPECT_GT(seed, 12u);  // those of the baseline are not used again
+    Made changed;
+    changed.after.bias = 0.05;
+    EXPECT_EQ(changed.decide().views[0].state, ViewState::changed);
+    EXPECT_LE(changed.made, same.made + 20);
+}
+
+TEST(Until, TheEndOfTheBudgetLeavesAViewUndecidedWithANumber) {
+    Made few;
+    few.suite.options.smallest = 0.0005, few.most = 5;
+    const ViewResult view = few.decide().views[0];
+    EXPECT_EQ(view.state, ViewState::too_few);
+    EXPECT_THAT(view.headline, HasSubstr("more renders"));
+}
+
+TEST(Until, ASecondCallUsesTheRendersThatAreThere) {
+    Made first;
+    EXPECT_EQ(first.decide().views[0].state, ViewState::same);
+    Made second;
+    second.suite.views = first.suite.views;
+    EXPECT_EQ(second.decide().views[0].state, ViewState::same);
+    EXPECT_EQ(second.made, 0u);
+}
+
+TEST(Until, ProgramsThatFailOrIgnoreTheSeedAreNamed) {
+    Made failing;
+    failing.failure = "ended with signal 11 (SIGSEGV)";
+    const SuiteResult crashed = failing.decide();
+    EXPECT_EQ(crashed.views[0].state, ViewState::unreadable);
+    EXPECT_THAT(crashed.views[0].sentence, HasSubstr("The program ended with signal 11 (SIGSEGV) for seed 13"));
+    EXPECT_EQ(exit_code(crashed, false), 2);
+    Made ignoring;
+    ignoring.constant = true;
+    EXPECT_THAT(ignoring.decide().views[0].sentence, HasSubstr("ignores the seed"));
+}
+
+TEST(Until, HeavyTailsEndAsUndecided) {
+    Made heavy;
+    heavy.before = heavy.after = {Kind::pareto, 1.5};
+    heavy.most = 60;
+    EXPECT_EQ(heavy.decide().views[0].state, ViewState::too_few);
+}
+
+/// Normal noise, looked at after each of 60 renders: p is ever below alpha at most as often as alpha.
+TEST(Anytime, PHoldsAtEveryLook) {
+    for (const double alpha : {0.05, 0.2}) {
+        int alarms = 0, fixed = 0;
+        constexpr int runs = 1500, renders = 60;
+        for (int run = 0; run < runs; ++run) {
+            std::mt19937 random(static_cast<unsigned>(run));
+            std::normal_distribution<double> normal(3, 7);
+            double sum = 0, squares = 0;
+            bool alarm = false, repeated = false;
+            for (int n = 1; n <= renders; ++n) {
+                const double x = normal(random) - 3;
+                sum += x, squares += x * x;
+                if (n < 2) continue;
+                const double mean = sum / n, se = std::sqrt((squares - n * mean * mean) / (n - 1) / n);
+                alarm |= anytime_p(mean / se, n - 1, n) <= alpha;
+                repeated |= two_sided_p(mean / se, n - 1) <= alpha;
+            }
+            alarms += alarm, fixed += repeated;
+        }
+        const double limit = alpha + 3 * std::sqrt(alpha * (1 - alpha) / runs);
+        EXPECT_LE(alarms / static_cast<double>(runs), limit);
+        EXPECT_GT(fixed / static_cast<double>(runs), 2 * alpha);  // repeated tests do not hold
+    }
+}
+
+TEST(Anytime, TheQuantileHasItsP) {
+    for (const double df : {3.0, 14.0, 400.0})
+        for (const double p : {0.05, 1e-3, 1e-6}) {
+            const double t = anytime_quantile(p, df, 10);
+            if (std::isfinite(t)) EXPECT_NEAR(anytime_p(t, df, 10) / p, 1, 1e-9);
+            EXPECT_GT(t, student_quantile(1 - p / 2, df));
+        }
+    // Howard et al. 2021, (14), for known variance: t^2 = (1 + 1 / (n r)) (2 log(1 / p) + log(1 + n r)), here n r = 80.
+    EXPECT_NEAR(anytime_quantile(0.01, 1e9, 10), std::sqrt(81.0 / 80 * (2 * std::log(100) + std::log(81))), 1e-3);
+}
+
+class Programs : public ScratchFolder {
+protected:
+    RenderEnd make(const std::string& program, const std::string& view = "v", double timeout = 60) {
+        const RenderCommand command = parse_render_command(program, "--render");
+        RenderLimits limits;
+        limits.timeout = timeout;
+        ProgressMonitor monitor;
+        return make_renders({{&command, view, path("out/" + view + "-1.pfm"), 7}}, limits, monitor)[0];
+    }
+};
+
+TEST_F(Programs, AreGivenTheirValuesAsWordsThatNoShellReads) {
+    const RenderCommand command = parse_render_command("pt '{view}' -s {seed} \"a b\" c\\ d -o={out}", "--render");
+    EXPECT_THAT(command.for_render("$(touch x); {out}", 7, "/o"),
+        ::testing::ElementsAre("pt", "$(touch x); {out}", "-s", "7", "a b", "c d", "-o=/o"));
+    for (const char* bad : {"", "pt", "pt 'x {out}", "pt {out} \\"})
+        EXPECT_NE(refusal([&] { return parse_render_command(bad, "--render"); }), "") << bad;
+}
+
+TEST_F(Programs, ThatFailAreNamedAndLeaveNoFile) {
+    EXPECT_TRUE(make("sh -c 'printf \"Pf\\n1 1\\n-1\\n1234\" >\"$0\"' {out}").made);
+    EXPECT_TRUE(std::filesystem::exists(path("out/v-1.pfm")));
+    std::filesystem::remove(path("out/v-1.pfm"));
+    EXPECT_THAT(make("sh -c 'echo out of memory >&2; exit 3' {out}").failure, HasSubstr("exit code 3: out of memory"));
+    EXPECT_THAT(make("sh -c 'kill -SEGV $$' {out}").failure, HasSubstr("signal 11"));
+    EXPECT_EQ(make("true {out}").failure, "wrote no file");
+    EXPECT_THAT(make("sh -c 'printf \"Pf\\n9 9\\n-1\\n1234\" >\"$0\"' {out}").failure, HasSubstr("cannot be read"));
+    EXPECT_THAT(make("sh -c 'sleep 60' {out}", "v", 0.2).failure, HasSubstr("did not end within 0.2 s"));
+    EXPECT_THAT(make("./no-such-program {out}").failure, HasSubstr("no-such-program"));
+    EXPECT_TRUE(std::filesystem::is_empty(path("out")));
+}
+
+}  // namespace until_test
+}  // namespace crescent::inline comparison
