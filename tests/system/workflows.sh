@@ -25,6 +25,9 @@ cp "$CRESCENT_SOURCE"/.github/workflows/release.yml .github/workflows
 # The workflow of docs/ci.md, with this action.
 awk '/^```yaml$/ { inside = 1; next } inside && /^```$/ { exit } inside' "$CRESCENT_SOURCE/docs/ci.md" |
     sed 's,uses: [^ ]*/crescent@.*,uses: ./,' >.github/workflows/renders.yml
+awk '/^```yaml$/ { ++block; inside = 1; next } /^```$/ { inside = 0 } inside && block == 2' "$CRESCENT_SOURCE/docs/ci.md" \
+    >.github/workflows/accept.yml
+grep -q 'crescent accept' .github/workflows/accept.yml || die "docs/ci.md has no workflow that accepts"
 grep -q 'suite: suite.toml' .github/workflows/renders.yml || die "docs/ci.md has no workflow"
 expect 0 actionlint -oneline
 
@@ -38,7 +41,7 @@ PY
 mkdir bin && ln -s "$CRESCENT" bin/crescent
 action() { # SUITE CHECK
     rm -rf summary outputs reports
-    SUITE=$1 CHECK=$2 OUT=${3:-reports} GITHUB_STEP_SUMMARY=$PWD/summary GITHUB_OUTPUT=$PWD/outputs PATH="$PWD/bin:$PATH" \
+    SUITE=$1 CHECK=$2 OUT=${3:-reports} ALLOW_INCONCLUSIVE=${4:-false} RENDER=${5:-} BUDGET=1min GITHUB_STEP_SUMMARY=$PWD/summary GITHUB_OUTPUT=$PWD/outputs PATH="$PWD/bin:$PATH" \
         bash --noprofile --norc -eo pipefail run.sh
 }
 cp "$CRESCENT_SOURCE/examples/pipe_samplers/cosine.py" .
@@ -65,6 +68,20 @@ expect 139 action '' "crash
 cosin
 cosine --wo 30"
 expect 2 action '' ''
+# The names of a suite and of its views are no code; too few renders fail the step only if they are to.
+mkdir -p 'a $(touch ran)/base' 'a $(touch ran)/out'
+for k in 1 2; do
+    for side in base out; do
+        printf 'Pf\n1 1\n-1.0\n%s' "${side:0:2}$k?" >"a \$(touch ran)/$side/;touch ran;-$k.pfm"
+    done
+done
+printf '[suite]\nbaseline = "base/{view}-*.pfm"\ncandidate = "out/{view}-*.pfm"\n' >'a $(touch ran)/suite.toml'
+expect 4 action 'a $(touch ran)/suite.toml' ''
+grep -q 'touch ran' summary || die "no table in the summary: $(cat summary)"
+[ -s reports/compare.md ] && [ -s reports/compare.sarif ] || die "$(ls reports)"
+expect 0 action 'a $(touch ran)/suite.toml' '' reports true
+expect 2 action 'a $(touch ran)/suite.toml' '' reports false 'false {out}; touch ran'
+[ ! -e ran ] && [ ! -e 'a $(touch ran)/ran' ] || die "a name was run"
 expect 2 action nowhere.toml ''
 expect 0 action '' 'cosine --wo 30' 'out/a:b'
 grep -qx artifact=out-a-b outputs || die "no valid name of an artifact: $(cat outputs)"
