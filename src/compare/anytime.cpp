@@ -1,5 +1,5 @@
 // The Bayes factor of a normal effect against none with Haar's prior of mean and scale is a martingale under "none" for
-// normal noise of unknown variance, whatever its scale (Lai 1976, "On Confidence Sequences"; Pérez-Ortiz, Lardy, de
+// normal noise of unknown variance, for any scale (Lai 1976, "On Confidence Sequences"; Pérez-Ortiz, Lardy, de
 // Heide & Grünwald 2024, "E-statistics, group invariance and anytime-valid testing"). By Ville's inequality its inverse
 // is such a p. For many degrees of freedom it is the normal mixture of Howard, Ramdas, McAuliffe & Sekhon 2021,
 // "Time-uniform, nonparametric, nonasymptotic confidence sequences", equation (14).

@@ -1,4 +1,4 @@
-// Tests that may be looked at after every render: their p holds at any time, so stopping when it is small enough is no
+// Tests that may be repeated after every render: their p holds at any time, so stopping when it is small enough is no
 // cheating.
 #pragma once
 

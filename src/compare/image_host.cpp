@@ -47,7 +47,7 @@ void write_all(const void* from, std::size_t bytes) {
     while (bytes > 0) {
         const ssize_t n = ::write(STDOUT_FILENO, next, bytes);
         if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) ::_exit(1);  // nobody reads
+        if (n <= 0) ::_exit(1);  // no one reads
         next += n, bytes -= static_cast<std::size_t>(n);
     }
 }

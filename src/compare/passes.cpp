@@ -133,7 +133,7 @@ void FirstPass::check_pixels(const Render& render, ArmStats& to) {
         warnings_.add(render.file, "all pixels are equal");
 }
 
-/// A channel at the largest number of its file stands for any larger value.
+/// A channel at the largest number of its file represents any larger value.
 void FirstPass::count_clipped(const Render& render) {
     all_.displayed |= render.displayed, all_.display_referred |= render.display_referred;
     if (!render.display_referred) {  // a float file is not clipped

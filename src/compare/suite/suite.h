@@ -36,7 +36,7 @@ enum class BaselineStorage { renders, moments };
 /// Whether renders are compared in pairs: if they share random numbers, or those with the same number in their names.
 enum class Pairing { automatic, always, never };
 
-/// What is asked of the noise: that there is not more, that it is the same, or nothing.
+/// What is required of the noise: that there is not more, that it is the same, or nothing.
 enum class NoiseDemand { not_more, same, ignore };
 /// Whether the numbers of outlier pixels of both sides are compared.
 enum class OutlierDemand { test, ignore };

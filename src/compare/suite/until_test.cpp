@@ -115,7 +115,7 @@ TEST(Until, HeavyTailsEndAsUndecided) {
     EXPECT_EQ(heavy.decide().views[0].state, ViewState::too_few);
 }
 
-/// Normal noise, looked at after each of 60 renders: p is ever below alpha at most as often as alpha.
+/// Normal noise, tested after each of 60 renders: p is ever below alpha at most as often as alpha.
 TEST(Anytime, PHoldsAtEveryLook) {
     for (const double alpha : {0.05, 0.2}) {
         int alarms = 0, fixed = 0;
