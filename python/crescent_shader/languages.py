@@ -512,7 +512,7 @@ def _sample_body(entry: _Entry, second: int, weights: int) -> None:
     if assigns(request.sample, "delta"):
         value = f"select({value}, -delta, delta > 0.0)" if wgsl else f"(delta > 0.0 ? -delta : {value})"
     values = [value] + ["weight" if weights == 1 else f"weight.{'xyz'[k]}" for k in range(weights)]
-    if request.domain == "hemisphere":  # a draw below the surface is no sample, whatever its pdf
+    if request.domain == "hemisphere":  # a draw below the surface is no sample, for any pdf
         below = f"({parts[2]} <= 0.0)"
         values = [f"select({v}, 0.0, {below})" if wgsl else f"({below} ? 0.0 : {v})" for v in values]
     for k, value in enumerate(parts + values):
