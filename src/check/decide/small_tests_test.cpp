@@ -250,6 +250,21 @@ FunctionSampler alias_lights(std::vector<double> powers) {
     return s;
 }
 
+/// The first number chooses a half of the sphere and is used again, rounded to steps of its own size as in single
+/// precision. The map of small steps of u has another slope than p, the same for several of them.
+TEST(MapOfU, ANumberThatIsUsedAgainMayBeRounded) {
+    for (double share = 0.51; share < 0.99; share += 0.004) {
+        FunctionSampler s;
+        s.draw = [=](Vec3d, const PrimarySample& u) {
+            const bool first = u[0] < share;
+            const double again = first ? u[0] / share : (u[0] - share) / (1 - share);
+            return from_chart({(first ? 0 : 1) + std::floor(again / ulp) * ulp, two_pi * u[1]});
+        };
+        s.p = [=](Vec3d, Vec3d w) { return (w.z > 0 ? share : 1 - share) / two_pi; };
+        EXPECT_FALSE(tested(s, map)) << share;
+    }
+}
+
 TEST(MapOfU, ABranchMayBeSeveralIntervalsOfTheChoosingNumber) {
     const FunctionSampler two = alias_lights({3, 1});  // [0, 1/2) and [3/4, 1), and [1/2, 3/4)
     const std::vector<MapDensity> all = tested(two, [](Source& source) { return map_densities(source, key); });
