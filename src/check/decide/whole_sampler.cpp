@@ -109,8 +109,10 @@ std::optional<SmallFault> special_places(
     for (std::size_t i = 0; i < pairs.size(); ++i) {  // a density may have a pole in a single direction
         Draw at;
         at.wi = pairs[i].wi;
-        if (std::isnan(p[i]) || p[i] < 0) note(out, {}, at, p[i], "pdf(w) is not a number >= 0", pairs[i].wo);
-        else if (std::isnan(f[i]) || f[i] < 0) note(out, {}, at, f[i], "f(w) is not a number >= 0", pairs[i].wo);
+        std::optional<Vec3d> wo = pairs[i].wo;
+        if (traits.wo == Traits::WoDomain::none) wo.reset();
+        if (std::isnan(p[i]) || p[i] < 0) note(out, {}, at, p[i], "pdf(w) is not a number >= 0", wo);
+        else if (std::isnan(f[i]) || f[i] < 0) note(out, {}, at, f[i], "f(w) is not a number >= 0", wo);
     }
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }

@@ -77,7 +77,9 @@ struct Tail {
         const double last = quantile(std::ldexp(1.0, -(j - 1))) - quantile(std::ldexp(1.0, -(j - 2)));
         const double before =
             quantile(std::ldexp(1.0, -(j - 1 - halvings))) - quantile(std::ldexp(1.0, -(j - 2 - halvings)));
-        const double growth = before > 0 ? std::clamp(std::cbrt(last / before), 1.0, 16.0) : 1;
+        // Twice for each halving of the mass at least, as of a density of 1 / x^2: a light tail may hide a wide
+        // component of the density that few pilot draws are of.
+        const double growth = before > 0 ? std::clamp(std::cbrt(last / before), 2.0, 16.0) : 2;
         double gap = std::max(last, 1e-12 * std::max(std::fabs(x.back()), 1e-300));
         for (; j <= last_halving + 1; ++j) {
             gap *= growth;

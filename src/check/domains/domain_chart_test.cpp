@@ -87,6 +87,21 @@ TEST(DomainChart, FitsInfiniteLines) {
     }
 }
 
+/// A narrow distribution, and points of a wide one that the chart was fitted to no draws of.
+TEST(DomainChart, LinesGoOnFarBeyondTheDraws) {
+    DomainChart chart = chart_of("line:-inf,inf");
+    Stream stream({.seed = 8});
+    std::vector<double> points;
+    for (int i = 0; i < 4096; ++i) points.push_back(0.05 * (stream.number() + stream.number() - 1));
+    chart.fit(points);
+    for (double x : {-1e5, -7.0, -0.06, 0.5, 3.0, 1e4}) {
+        const double half = 0.5;
+        double back = 0;
+        EXPECT_GT(chart.point(chart.direction({&x, 1}, {&half, 1}), {&back, 1}), 0);
+        EXPECT_NEAR(back, x, 1e-3 * std::fabs(x));
+    }
+}
+
 TEST(DomainChart, NamesPlaces) {
     const DomainChart set = chart_of("set:37");
     EXPECT_EQ(set.text(set.direction(std::array{17.0}, std::array{0.5, 0.5})), "entry 17");
