@@ -67,8 +67,7 @@ void add_domains(nb::module_& m) {
         .def_prop_ro("coordinates", [](const DomainChart& c) { return c.domain().coordinates(); })
         .def_prop_ro("spreads", &DomainChart::spreads)
         .def_prop_ro("discrete", &DomainChart::is_discrete)
-        .def_prop_ro("infinite",
-            [](const DomainChart& c) { return std::ranges::any_of(c.domain().parts(), &DomainPart::is_infinite); })
+        .def_prop_ro("infinite", [](const DomainChart& c) { return c.domain().is_infinite(); })
         .def(
             "fit", [](DomainChart& c, const Rows& rows) { c.fit({rows.data(), rows.size()}); }, "rows"_a)
         .def("directions", &directions, "points"_a, "spread"_a)

@@ -571,9 +571,12 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
     if (whole_p.value > 0) out.integral = half_interval(whole_p) / whole_p.value;
     for (const SumTest& t : whole)
         if (t.of == mass || t.of == bridge) take_less(out.constant, t.needed.size(e.integrals.sums[t.of].value));
-    out.leak = leak_of(e, whole, sums, nodes);
-    out.by_leak = distance_from_even(e);
-    by_exponent(e, whole, out);
+    // No density is uniform over an infinite line, and powers of p per length are not those of p over the chart.
+    if (!source.traits.domain || !source.traits.domain->domain().is_infinite()) {
+        out.leak = leak_of(e, whole, sums, nodes);
+        out.by_leak = distance_from_even(e);
+        by_exponent(e, whole, out);
+    }
     const Sample sample = drawn(source, draws, key);
     out.cap = cap_of(e, sums, nodes, sample, level);
     by_turning(source, e, whole, nodes, sample, out);

@@ -153,6 +153,8 @@ std::size_t Domain::dimensions() const {
     return out;
 }
 
+bool Domain::is_infinite() const { return std::ranges::any_of(parts_, &DomainPart::is_infinite); }
+
 bool Domain::is_direction() const {
     return parts_.size() == 1 && (parts_[0].kind == Kind::sphere || parts_[0].kind == Kind::hemisphere);
 }

@@ -51,6 +51,8 @@ public:
     std::size_t dimensions() const;
     /// Whether it is the sphere or the upper hemisphere alone.
     bool is_direction() const;
+    /// Whether one of its parts is an infinite line.
+    bool is_infinite() const;
     /// Why this point does not belong to it; "" if it does.
     std::string fault(std::span<const double> point) const;
     /// The point in words: "x = 0.25", "entry 17", "(x, y) = (0.1, 0.7)".

@@ -141,7 +141,7 @@ bool Leak::is_clear() const { return share > least_errors * error; }
 std::vector<Leak> leak_hypotheses(std::span<const Place> places) {
     std::vector<Leak> out;
     const DomainChart* domain = places[0].traits.domain.get();
-    if (domain && std::ranges::any_of(domain->domain().parts(), &DomainPart::is_infinite)) return out;
+    if (domain && domain->domain().is_infinite()) return out;
     for (bool whole : {true, false}) {
         if (!whole && domain) continue;
         Leak leak = fitted_leak(places, whole);

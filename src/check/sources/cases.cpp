@@ -419,7 +419,7 @@ std::shared_ptr<const SamplerAdapter> over_the_domain_of(
     if (a.traits().reciprocal_weight || b->traits().reciprocal_weight)
         throw InputError({"--against", 0, 0}, "is not for samplers with weight=reciprocal, which have no density");
     const std::shared_ptr<const DomainChart> chart = a.traits().domain;
-    const bool infinite = chart && std::ranges::any_of(chart->domain().parts(), &DomainPart::is_infinite);
+    const bool infinite = chart && chart->domain().is_infinite();
     return infinite ? std::make_shared<OnChart>(b, chart) : b;
 }
 
