@@ -79,6 +79,9 @@ def callable_arm(name: str, sampler: Sampler | Combination) -> CallableArm:
             raise TypeError(f"{name}: expected a function for the weights")
         return _weighing(name, sampler.weights, sampler.uses)
     title = sampler.title()
+    if not sampler.of_directions() or sampler.weight:
+        drawn = f"{sampler.domain!r}" if not sampler.of_directions() else "directions with weight='reciprocal'"
+        raise ValueError(f"samplers[{name!r}] draws {drawn}: an arm draws directions with their pdf")
     if not sampler.uses:
         s = _of_library(sampler)
         ask = _arrays.asks_sample(s.sample, title, s.wo != "none")

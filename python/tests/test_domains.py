@@ -7,6 +7,7 @@ from pathlib import Path
 import crescent
 import numpy as np
 import pytest
+from tiny import TINY
 
 
 def states(result):
@@ -103,6 +104,13 @@ def test_points_outside_are_named():
     valid = next(v for v in result.verdicts if v.name == "valid")
     assert valid.state == "wrong"
     assert "outside the unit disk" in valid.say
+
+
+def test_an_arm_draws_directions():
+    e = crescent.parse(TINY)
+    e.samplers["lens"] = crescent.Sampler(disk(np.sqrt), uniform_in_disk, domain="disk")
+    with pytest.raises(ValueError, match="an arm draws directions"):
+        crescent.run(e)
 
 
 FILE = """

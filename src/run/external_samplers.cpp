@@ -99,8 +99,11 @@ private:
     mutable std::vector<std::shared_ptr<const ProgramSampler>> free_;
 };
 
-/// An estimate divides f cos by the density of the draw: a sampler without one cannot be used as an arm.
+/// An estimate divides f cos by the density of the drawn direction: a sampler without one cannot be used as an arm.
 void refuse(const Traits& traits) {
+    if (traits.domain)
+        throw OutputError(
+            fmt::format("it draws points of {}, and an arm draws directions", traits.domain->domain().name()));
     if (traits.delta) throw OutputError("it has delta parts, which have no density to divide by");
     if (!traits.has_pdf) throw OutputError("it has no pdf to divide by");
 }
