@@ -241,13 +241,14 @@ public:
             const NodeSums& s = sums[static_cast<std::size_t>(leaf.node)];
             if (!(s.claimed > 0)) continue;
             leaves_.push_back({leaf.node, s.claimed, s.claimed * s.claimed / std::max(s.second, 1e-300)});
-            const Vec3d middle = from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5));
+            const Vec3d middle = without_azimuth(from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5)));
             x_.push_back(middle.x), y_.push_back(middle.y), z_.push_back(middle.z);
         }
         cosine_.resize(leaves_.size());
     }
     /// p: the density at the centre. It sets the width of the first ring to about that of a detectable cap.
-    double mass_about(Vec3d centre, double p) {
+    double mass_about(Vec3d about, double p) {
+        const Vec3d centre = without_azimuth(about);
         constexpr double first = 2e-3;
         for (std::size_t l = 0; l < leaves_.size(); ++l)
             cosine_[l] = centre.x * x_[l] + centre.y * y_[l] + centre.z * z_[l];
@@ -291,6 +292,9 @@ private:
     std::vector<double> shift_, least_shift_;  // by depth: shift of chi^2, and the least detectable one
     std::vector<Piece> leaves_;
     std::vector<double> x_, y_, z_, cosine_;  // centres of the leaves; their cosines to the centre of the cap
+
+    /// A cap of a line is an interval.
+    Vec3d without_azimuth(Vec3d w) const { return e_.source.is_line() ? from_chart({to_chart(w).t, 0}) : w; }
 
     double difference(std::size_t i) const {
         const int child = e_.plan.tree.nodes()[i].child;

@@ -105,8 +105,9 @@ private:
     std::optional<bool> side_to_cut(const TreeNode& node, const Growing& g) const {
         const ChartRect& rect = node.rect;
         const double least = std::max(least_width, 4 * node.step);
-        double gain[2];
+        double gain[2] = {};
         for (bool along_phi : {false, true}) {
+            if (along_phi && source_.is_line()) continue;
             const double middle = rect.middle(along_phi);
             const auto left = [&](ChartPoint at) { return (along_phi ? at.phi : at.t) < middle; };
             double sum[2] = {}, count[2] = {}, drawn = 0;

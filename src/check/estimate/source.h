@@ -69,6 +69,8 @@ public:
 
     /// MIS weights of directions drawn by this technique.
     void mis_weights(std::span<const Vec3d> wi, std::span<double> out);
+    /// Whether the azimuth carries nothing, since a single dimension is spread over it: it is not cut.
+    bool is_line() const { return traits.domain && traits.domain->is_line(); }
     /// Whether a draw there is possible for a sampler of this kind; p: the density there.
     bool may_draw(Vec3d w, double p) const { return p > 0 || (traits.domain ? traits.domain->has_point(w) : w.z > 0); }
     /// Radiance of the light from w; below the surface that of its uniform part.
