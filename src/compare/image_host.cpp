@@ -5,12 +5,22 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <math.h>
+
 #include <bit>
 #include <cerrno>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
 
+namespace {
+
+/// In the place of pow(), whose last bit depends on the machine: for conversions between bytes and floats, which
+/// nothing here calls.
+[[maybe_unused]] double no_conversion(double, double) { std::abort(); }
+
+}  // namespace
+#define pow no_conversion
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_NO_STDIO
@@ -28,6 +38,7 @@
 #pragma GCC diagnostic ignored "-Wconversion"
 #endif
 #include <stb/stb_image.h>
+#undef pow
 #ifdef __clang__
 #pragma clang diagnostic pop
 #else

@@ -522,24 +522,12 @@ def as_points(x: Array, domain: str) -> Array:
 # ---- Faults: other draws with the density of the case, or another density.
 
 
-def more_numbers(u: Array, count: int, salt: int) -> Array:
-    """Other random numbers, a function of these: splitmix64 over their bits."""
-    mask = np.uint64(0xFFFFFFFFFFFFFFFF)
-    h = np.full(len(u), salt * 0x9E3779B97F4A7C15 & int(mask), np.uint64)
+def more_numbers(u: Array, count: int) -> Array:
+    """Random numbers of the sampler's own, which it declares: those of a function of u would jump at every step of u."""
+    return _OWN.random((len(u), count))
 
-    def mixed(x: Array) -> Array:
-        x = x + np.uint64(0x9E3779B97F4A7C15)
-        x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-        x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-        return x ^ (x >> np.uint64(31))
 
-    for k in range(u.shape[1]):
-        h = mixed(h ^ np.ascontiguousarray(u[:, k]).view(np.uint64))
-    out = np.empty((len(u), count))
-    for k in range(count):
-        h = mixed(h)
-        out[:, k] = (h >> np.uint64(11)).astype(float) * 2.0**-53
-    return out
+_OWN = np.random.default_rng(17)
 
 
 @dataclass(frozen=True)
@@ -552,8 +540,11 @@ class Fault:
     where: str = ""
 
 
-def with_draws(case: Case, draw: Callable[[Array], Array], true: str = "", size: float = 0, where: str = "") -> Fault:
-    return Fault(replace(case, draw=draw), true, size, where)
+def with_draws(
+    case: Case, draw: Callable[[Array], Array], true: str = "", size: float = 0, where: str = "", own: bool = False
+) -> Fault:
+    """own: it uses more_numbers()."""
+    return Fault(replace(case, draw=draw, own_random=case.own_random or own), true, size, where)
 
 
 def constant(case: Case, size: float, rng: np.random.Generator) -> Fault:
@@ -568,13 +559,13 @@ def leak(case: Case, size: float, rng: np.random.Generator) -> Fault | None:
         return None
 
     def draw(u: Array) -> Array:
-        x, v = case.draw(u), more_numbers(u, 1 + chart.dimensions, 1)
+        x, v = case.draw(u), more_numbers(u, 1 + chart.dimensions)
         at = v[:, 0] < size
         x = np.array(x)
         x[at] = chart.of(v[at, 1:])
         return x
 
-    return with_draws(case, draw, r"uniform|even", size)
+    return with_draws(case, draw, r"uniform|even", size, own=True)
 
 
 def draw_again(case: Case, keep: Callable[[Array, Array], Array]) -> Callable[[Array], Array]:
@@ -582,11 +573,11 @@ def draw_again(case: Case, keep: Callable[[Array, Array], Array]) -> Callable[[A
 
     def draw(u: Array) -> Array:
         x = np.array(case.draw(u))
-        again = np.flatnonzero(~keep(x, more_numbers(u, 1, 2)[:, 0]))
-        for k in range(60):
+        again = np.flatnonzero(~keep(x, more_numbers(u, 1)[:, 0]))
+        for _ in range(60):
             if len(again) == 0:
                 break
-            v = more_numbers(u[again], case.numbers + 1, 3 + k)
+            v = more_numbers(u[again], case.numbers + 1)
             x[again] = case.draw(np.asfortranarray(np.floor(v[:, :-1] * 2**24) / 2**24))
             again = again[~keep(x[again], v[:, -1])]
         return x
@@ -605,7 +596,7 @@ def gap(case: Case, size: float, rng: np.random.Generator) -> Fault | None:
     if not 0.8 * size < mass < 1.3 * size:
         return None
     keep = lambda x, _: np.abs(chart.to(rows(x), np.full(len(x), 0.5)) - y[0]).max(1) > width  # noqa: E731
-    return with_draws(case, draw_again(case, keep), r"never drawn|not drawn", size, f"about {x[0]}")
+    return with_draws(case, draw_again(case, keep), r"never drawn|not drawn", size, f"about {x[0]}", own=True)
 
 
 def shift(case: Case, size: float, rng: np.random.Generator) -> Fault:
@@ -614,11 +605,12 @@ def shift(case: Case, size: float, rng: np.random.Generator) -> Fault:
     from_first = chart.dimensions == 1 or rng.random() < 0.5
 
     def draw(u: Array) -> Array:
-        y = chart.to(rows(case.draw(u)), more_numbers(u, 1, 4)[:, 0])
-        y[:, 0 if from_first else 1 :: 2] += size
-        return chart.of(np.minimum(y % 1, 1 - 2.0**-53))
+        y = chart.to(rows(case.draw(u)), more_numbers(u, 1)[:, 0])
+        at = np.s_[:, (0 if from_first else 1) :: 2]
+        y[at] = 1 - np.abs(1 - y[at] - size)
+        return chart.of(np.minimum(y, 1 - 2.0**-53))
 
-    return with_draws(case, draw, r"shift|moved", size, "first" if from_first else "second")
+    return with_draws(case, draw, r"shift|moved", size, "first" if from_first else "second", own=True)
 
 
 def parameter(case: Case, size: float, rng: np.random.Generator) -> Fault:
@@ -626,7 +618,7 @@ def parameter(case: Case, size: float, rng: np.random.Generator) -> Fault:
     pilot = case.draw(rng.random((2**16, case.numbers)))
     most = float(case.density(pilot).max())
     keep = lambda x, v: v < np.minimum(case.density(x) / most, 1) ** size  # noqa: E731
-    return with_draws(case, draw_again(case, keep), r"exponent|power|multiplied", size)
+    return with_draws(case, draw_again(case, keep), r"exponent|power|multiplied", size, own=True)
 
 
 def no_root(case: Case, size: float, rng: np.random.Generator) -> Fault:
@@ -671,9 +663,9 @@ def one_entry(case: Case, size: float, rng: np.random.Generator) -> Fault:
 
     def draw(u: Array) -> Array:
         i = case.draw(u)
-        return np.where((i == entry) & (more_numbers(u, 1, 5)[:, 0] < size), instead, i)
+        return np.where((i == entry) & (more_numbers(u, 1)[:, 0] < size), instead, i)
 
-    return with_draws(case, draw, "", size, f"entry {entry} p={p:.3g} instead {instead}")
+    return with_draws(case, draw, "", size, f"entry {entry} p={p:.3g} instead {instead}", own=True)
 
 
 FAULTS: tuple[tuple[str, Callable[..., Fault | None], tuple[float, ...], tuple[Any, ...]], ...] = (
@@ -754,6 +746,7 @@ def check_faults(seed: int, number: int, full: bool) -> list[dict[str, Any]]:
 def check_stated(seed: int, number: int, full: bool) -> list[dict[str, Any]]:
     family = FAMILIES[number % len(FAMILIES)]
     case, rng, of_check = make_case(family, "stated", seed, number)
+    case = replace(case, own_random=True)  # as the faults are, so that the sizes are of the same tests
     result = run_check(case, of_check, full)
     sizes: dict[str, float] = {}
     for v in result.verdicts:

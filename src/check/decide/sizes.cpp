@@ -371,7 +371,8 @@ public:
             const double change = p[i] / sample.p[i] - 1;
             Place times = here;
             for (double& v : times.values) v *= change;
-            add(weighted_, times, {here.at, {}});
+            // At the end of a domain the ratio has no bound, and a few draws would decide.
+            if (!source.traits.domain) add(weighted_, times, {here.at, {}});
             distance += std::min(1.0, std::fabs(change)) / n / 2;
         }
     }
@@ -509,7 +510,9 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
         const Turned one(source, e, sample, places, 0, frame.t, by * target_rotation),
             other(source, e, sample, places, 1, frame.b, by * target_rotation);
         const auto of_one = one.effects(whole, nodes), of_other = other.effects(whole, nodes);
-        for (int k = 0; k < (domain && domain->is_line() ? 1 : axes); ++k) {
+        // Shifts are along one axis or the other.
+        const int step = domain ? axes / 2 : 1;
+        for (int k = 0; k < (domain && domain->is_line() ? 1 : axes); k += step) {
             const double angle = k * two_pi / 2 / axes, c = math::cos(angle), s = math::sin(angle);
             const auto at = static_cast<std::size_t>(k);
             ratios[at].push_back(ratios_about(of_one, of_other, c, s, needed, whole.size()));

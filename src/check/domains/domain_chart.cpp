@@ -79,7 +79,7 @@ struct Tail {
             quantile(std::ldexp(1.0, -(j - 1 - halvings))) - quantile(std::ldexp(1.0, -(j - 2 - halvings)));
         // Twice for each halving of the mass at least, as of a density of 1 / x^2: a light tail may hide a wide
         // component of the density that few pilot draws are of.
-        const double growth = before > 0 ? std::clamp(std::cbrt(last / before), 2.0, 16.0) : 2;
+        const double growth = before > 0 ? std::clamp(math::pow(last / before, 1.0 / 3), 2.0, 16.0) : 2;
         double gap = std::max(last, 1e-12 * std::max(std::fabs(x.back()), 1e-300));
         for (; j <= last_halving + 1; ++j) {
             gap *= growth;
@@ -327,10 +327,7 @@ Vec3d DomainChart::in_chart(const DomainChart& other, Vec3d w) const {
 
 Vec3d DomainChart::shifted(Vec3d w, std::size_t axis, double by) const {
     std::vector<double> y = cube_of(w);
-    for (std::size_t d = axis; d < y.size(); d += 2) {
-        y[d] += by;
-        y[d] -= std::floor(y[d]);
-    }
+    for (std::size_t d = axis; d < y.size(); d += 2) { y[d] = 1 - std::fabs(1 - y[d] - by); }
     return from_cube_to_direction(y, check::to_chart(w).phi / two_pi);
 }
 

@@ -44,7 +44,7 @@ public:
     bool has_point(Vec3d w) const;
 
     /// The direction whose point is shifted along every second dimension, from number `axis` (0 or 1) on, by this share
-    /// of its range, or of its mass on an infinite line. A point that leaves at one end comes back at the other.
+    /// of its range, or of its mass on an infinite line. A point that would leave at the end is reflected.
     Vec3d shifted(Vec3d w, std::size_t axis, double by) const;
 
     /// Remembers the first point that does not belong to the domain, for messages.

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
+#include "math/functions.h"
+
 namespace crescent::inline results {
 
 namespace {
@@ -15,11 +17,10 @@ struct NamedFunction {
     std::string_view name;
     double (*value)(double);
 };
-constexpr std::array<NamedFunction, 8> named_functions = {
-    {{"exp", [](double x) { return std::exp(x); }}, {"log", [](double x) { return std::log(x); }},
-        {"sqrt", [](double x) { return std::sqrt(x); }}, {"sin", [](double x) { return std::sin(x); }},
-        {"cos", [](double x) { return std::cos(x); }}, {"tan", [](double x) { return std::tan(x); }},
-        {"abs", [](double x) { return std::fabs(x); }}, {"erf", [](double x) { return std::erf(x); }}}};
+constexpr std::array<NamedFunction, 7> named_functions = {{{"exp", [](double x) { return math::exp(x); }},
+    {"log", [](double x) { return math::log(x); }}, {"sqrt", [](double x) { return std::sqrt(x); }},
+    {"sin", [](double x) { return math::sin(x); }}, {"cos", [](double x) { return math::cos(x); }},
+    {"tan", [](double x) { return math::tan(x); }}, {"abs", [](double x) { return std::fabs(x); }}}};
 
 class ExpressionReader {
 public:
@@ -69,7 +70,7 @@ private:
         const bool negative = take('-');
         if (!negative) take('+');
         const double base = negative ? signed_power() : atom();
-        const double value = negative ? -base : take('^') ? std::pow(base, signed_power()) : base;
+        const double value = negative ? -base : take('^') ? math::pow(base, signed_power()) : base;
         --depth_;
         return value;
     }
@@ -103,7 +104,7 @@ private:
             if (!take(')')) fail("')'");
             return f.value(x);
         }
-        fail("a number, pi, e, or exp, log, sqrt, sin, cos, tan, abs or erf of one");
+        fail("a number, pi, e, or exp, log, sqrt, sin, cos, tan or abs of one");
     }
 };
 

@@ -6,7 +6,7 @@
 
 namespace crescent::inline results {
 
-/// The value of an expression: numbers, pi, e, + - * / ^, parentheses, and exp, log, sqrt, sin, cos, tan, abs, erf.
+/// The value of an expression: numbers, pi, e, + - * / ^, parentheses, and exp, log, sqrt, sin, cos, tan, abs.
 /// Throws std::invalid_argument with the column and what was expected.
 double constant_value(std::string_view text);
 

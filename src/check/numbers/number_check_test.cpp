@@ -91,7 +91,7 @@ TEST(NumberCheck, ComparesTwoEstimators) {
 
 TEST(Expression, IsEvaluated) {
     EXPECT_DOUBLE_EQ(constant_value("0.8187"), 0.8187);
-    EXPECT_DOUBLE_EQ(constant_value("exp(-1.7)"), std::exp(-1.7));
+    EXPECT_DOUBLE_EQ(constant_value("exp(-1.7)"), math::exp(-1.7));
     EXPECT_DOUBLE_EQ(constant_value("2 * pi / 3 - -1"), 2 * 3.14159265358979323846 / 3 + 1);
     EXPECT_DOUBLE_EQ(constant_value("-2^2 + 1e-3"), -4 + 1e-3);
     EXPECT_DOUBLE_EQ(constant_value("2^3^2"), 512);

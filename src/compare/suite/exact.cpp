@@ -43,7 +43,7 @@ public:
         if (whole()) return std::fabs(number_of(a, is_alpha) - number_of(b, is_alpha));
         const double larger = std::max(std::fabs(a), std::fabs(b));
         if (larger == 0) return 0;
-        const int bits = static_cast<int>(-std::log2(rounding_));  // of the significand: rounding is half an ulp of 1
+        const int bits = -std::ilogb(rounding_);  // of the significand: rounding is half an ulp of 1
         constexpr int least_float = -149, least_half = -24, bits_of_half = 11;
         const int exponent = std::max(std::ilogb(larger) + 1 - bits, bits <= bits_of_half ? least_half : least_float);
         return std::fabs(a - b) / std::ldexp(1.0, exponent);

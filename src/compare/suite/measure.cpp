@@ -189,7 +189,7 @@ std::string noisiest_place(const ComparePlan& plan, const RenderStats& all, doub
     if (found == all.tiles.count()) return "";
     const Box box = all.tiles.box(found, all.width, all.height);
     return fmt::format(
-        "x {}–{} y {}–{} ({} times)", box.x0, box.x1, box.y0, box.y1, figures(std::exp2(noise.log2_ratio[found]), 3));
+        "x {}–{} y {}–{} ({} times)", box.x0, box.x1, box.y0, box.y1, figures(math::exp2(noise.log2_ratio[found]), 3));
 }
 
 /// Describes the channels that are not tested and differ between renders with the same pixels.

@@ -25,6 +25,7 @@ struct RenderSides {
     std::string extension = "exr";  // of files whose pattern leaves it open
 };
 
+/// When to stop, and how many renderers run at a time.
 struct UntilOptions {
     std::chrono::steady_clock::time_point end = std::chrono::steady_clock::time_point::max();
     std::size_t most_renders = 1000;  // of a side of a view
