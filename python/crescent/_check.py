@@ -116,7 +116,8 @@ def _look(s: Sampler) -> tuple[int, bool, bool]:
 
 
 def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
-    grid = _grid(wo_deg, s.wo)
+    wo = s.wo or "upper"
+    grid = _grid(wo_deg, wo)
     try:
         s = _of_library(s)
         chart = None
@@ -142,7 +143,7 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
         numbers=s.u,
         u_bits=s.u_bits,
         channels=count,
-        wo=s.wo,
+        wo=wo,
         delta=delta if s.delta is None else s.delta,
         weighs=weighs,
         upper_only=s.domain == "hemisphere",

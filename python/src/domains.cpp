@@ -1,5 +1,6 @@
 // The chart of a domain for crescent/_domains.py: points of the domain as directions, and back.
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
@@ -32,7 +33,7 @@ std::shared_ptr<DomainChart> chart_of(const std::string& text) {
     return std::make_shared<DomainChart>(*domain);
 }
 
-nb::tuple directions(const DomainChart& chart, const Rows& points, const Rows& spread) {
+std::pair<Made, Made> directions(const DomainChart& chart, const Rows& points, const Rows& spread) {
     const std::size_t n = points.shape(0), columns = chart.domain().coordinates(), spreads = chart.spreads();
     std::vector<double> w(3 * n), factor(n), again(columns);
     for (std::size_t i = 0; i < n; ++i) {
@@ -47,15 +48,15 @@ nb::tuple directions(const DomainChart& chart, const Rows& points, const Rows& s
         factor[i] = chart.point(at, again);
         w[3 * i] = at.x, w[3 * i + 1] = at.y, w[3 * i + 2] = at.z;
     }
-    return nb::make_tuple(owned(std::move(w), n, 3), owned(std::move(factor), n, 0));
+    return {owned(std::move(w), n, 3), owned(std::move(factor), n, 0)};
 }
 
-nb::tuple points(const DomainChart& chart, const Rows& w) {
+std::pair<Made, Made> points(const DomainChart& chart, const Rows& w) {
     const std::size_t n = w.shape(0), columns = chart.domain().coordinates();
     std::vector<double> out(n * columns), factor(n);
     for (std::size_t i = 0; i < n; ++i)
         factor[i] = chart.point({w(i, 0), w(i, 1), w(i, 2)}, std::span(out).subspan(i * columns, columns));
-    return nb::make_tuple(owned(std::move(out), n, columns), owned(std::move(factor), n, 0));
+    return {owned(std::move(out), n, columns), owned(std::move(factor), n, 0)};
 }
 
 }  // namespace

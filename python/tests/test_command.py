@@ -101,7 +101,7 @@ def test_an_exception_is_an_error_of_the_sampler(run):
         (["mine.py", "--set", "s=3"], "is for built-in samplers"),
         (["mine.py", "--exec", "./mine"], "excludes"),
         (["mine.py", "--wo", "120"], "below the surface"),
-        (["cosine", "--patience", "3"], "needs --exec, an experiment or a sampler in a Python file"),
+        (["cosine", "--patience", "3"], "needs --exec, an experiment, or a sampler in a Python file or a shader"),
     ],
 )
 def test_bad_input_is_2(run, words, said):

@@ -23,7 +23,7 @@ def test_the_package_passes_mypy_strict_and_a_callers_mistakes_are_seen(tmp_path
     right.write_text(
         head + "state: str = crescent.check(sample, u=3, domain='hemisphere', wo_deg=[30, (60, 9)]).state\n"
     )
-    wrong.write_text(head + "crescent.check(sample, domain='disk')\ncrescent.check(sample, wo_dg=[30])\n")
+    wrong.write_text(head + "crescent.check(sample, wo='left')\ncrescent.check(sample, wo_dg=[30])\n")
     ok = mypy(PACKAGE, right)
     assert ok.returncode == 0, ok.stdout
     told = mypy(wrong).stdout

@@ -65,8 +65,11 @@ Flips flips_of(const RunPlan& plan, const Prepared& prepared, const Job& job, co
     std::vector<Box> boxes;
     for (const Region& region : experiment.regions) boxes.push_back(region.box);
     const auto exponent = static_cast<std::size_t>(std::ranges::find(plan.exponents, job.s) - plan.exponents.begin());
-    out.values = mean_hdr_flips(
-        flip_image(reference), prepared.flip_exposures.at(exponent), test, boxes, flip_pixels_per_degree, isa)[0];
+    // A part of a run brings its references along, and has no exposures.
+    const FlipImage image = flip_image(reference);
+    const FlipExposures exposures =
+        exponent < prepared.flip_exposures.size() ? prepared.flip_exposures[exponent] : flip_exposures(image);
+    out.values = mean_hdr_flips(image, exposures, test, boxes, flip_pixels_per_degree, isa)[0];
     return out;
 }
 
