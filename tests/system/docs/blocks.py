@@ -15,7 +15,7 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
-LANGUAGES = ("sh", "python", "c", "cpp", "cmake", "toml", "json", "yaml", "js", "groovy", "text")
+LANGUAGES = ("sh", "python", "c", "cpp", "cmake", "toml", "json", "yaml", "js", "groovy", "glsl", "text")
 MARK = re.compile(r"not run in the tests: needs\s+([^.;)]+)", re.IGNORECASE)
 FILE = re.compile(r"^(?:#|//) ([\w.-]+(?:/[\w.-]+)*\.\w+)$")
 

@@ -343,6 +343,10 @@ def run_groovy(page: Page, block: Block) -> str:
     raise Absent("Jenkins")
 
 
+def run_glsl(page: Page, block: Block) -> str:
+    raise Absent("the functions of a shader around it")
+
+
 RUNNERS = {
     "sh": run_sh,
     "python": run_python,
@@ -351,6 +355,7 @@ RUNNERS = {
     "yaml": run_yaml,
     "js": run_js,
     "groovy": run_groovy,
+    "glsl": run_glsl,
     "cmake": run_cmake,
     "c": run_cpp,
     "cpp": run_cpp,
