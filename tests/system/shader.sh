@@ -118,7 +118,8 @@ if CRESCENT_PYTHON=/usr/bin/python3 && ! /usr/bin/python3 -c 'import wgpu' 2>/de
 fi
 
 # Ten at once; then nothing is left.
-for i in $(seq 10); do check "$file" --sample 'wi = cosine_sample(u)' --pdf 'cosine_pdf(wi)' --seed "$i" >/dev/null 2>&1 & done
-for job in $(jobs -p); do wait "$job" || die "one of ten checks at once fails"; done
+for i in $(seq 10); do check "$file" --sample 'wi = cosine_sample(u)' --pdf 'cosine_pdf(wi)' --timeout 100 --seed "$i" \
+    >"at-once.$i" 2>&1 & done
+for job in $(jobs -p); do wait "$job" || die "one of ten checks at once fails: $(cat at-once.*)"; done
 [ -z "$(ls tmp)" ] || die "left over: $(ls tmp)"
 ! ps -eo args | grep -F "crescent_shader" | grep -F "$work" | grep -qv grep || die "a host still runs"
