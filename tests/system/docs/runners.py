@@ -125,6 +125,8 @@ def shell_script(block: Block) -> str:
 
 
 def run_sh(page: Page, block: Block) -> str:
+    if not page.setting.python and re.search(r"^crescent check \S+\.py", block.text, re.MULTILINE):
+        raise Absent("the Python module")
     ended = page.call("bash", "-c", shell_script(block))
     if ended.returncode:
         raise Mistake(f"exit {ended.returncode}\n{_tail(ended.stdout + ended.stderr)}")
