@@ -1,5 +1,5 @@
-// stb_image (github.com/nothings/stb) over pread(). Does not depend on other code of crescent, so that it is also part
-// of a small program.
+// stb_image (github.com/nothings/stb) over pread(). Calls no other code of crescent, so that it is also part of a small
+// program.
 #include "compare/image_host.h"
 
 #include <sys/resource.h>
@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+
+#include "base/sanitized.h"
 
 namespace {
 
@@ -29,21 +31,8 @@ namespace {
 #define STBI_NO_PSD
 #define STBI_NO_PIC
 #define STBI_MAX_DIMENSIONS 65536
-#ifdef __clang__
-#pragma clang diagnostic push
-#pragma clang diagnostic ignored "-Weverything"
-#else
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wconversion"
-#endif
 #include <stb/stb_image.h>
 #undef pow
-#ifdef __clang__
-#pragma clang diagnostic pop
-#else
-#pragma GCC diagnostic pop
-#endif
 
 namespace crescent::inline comparison {
 
@@ -105,7 +94,7 @@ struct ImageStream {
 constexpr stbi_io_callbacks image_callbacks{ImageStream::read, ImageStream::skip, ImageStream::at_end};
 
 [[noreturn]] void decode_image() {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these reserve addresses without memory
+#if !CRESCENT_SANITIZED  // whose memory is mostly addresses
     const rlimit memory{image_host_memory, image_host_memory};
     ::setrlimit(RLIMIT_AS, &memory);
 #endif

@@ -4,19 +4,11 @@
 #include <cstddef>
 #include <cstdlib>
 
+#include "base/sanitized.h"
+
 namespace crescent::test {
 
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool sanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-inline constexpr bool sanitized = true;
-#else
-inline constexpr bool sanitized = false;
-#endif
-#else
-inline constexpr bool sanitized = false;
-#endif
+inline constexpr bool sanitized = CRESCENT_SANITIZED != 0;
 
 /// Of many similar cases each `every`-th is tested: sanitizers check the code, which is the same in all.
 inline constexpr std::size_t every = sanitized ? 3 : 1;
