@@ -54,15 +54,21 @@ Settings settings_of(const CheckFlags& flags) {
     return out;
 }
 
+/// The texts between the commas of a text.
+std::vector<std::string> parts_of(const std::string& text) {
+    std::vector<std::string> out;
+    for (std::size_t begin = 0; begin != std::string::npos;) {
+        const std::size_t comma = text.find(',', begin);
+        out.push_back(text.substr(begin, comma == std::string::npos ? comma : comma - begin));
+        begin = comma == std::string::npos ? comma : comma + 1;
+    }
+    return out;
+}
+
 /// Parses x,y,z, or degrees from the normal and about it; on either side of the surface.
 Vec3d direction_of(const std::string& text) {
     std::vector<double> v;
-    std::string rest = text;
-    for (std::size_t comma = 0; comma != std::string::npos && v.size() < 4;) {
-        comma = rest.find(',');
-        v.push_back(number_in(rest.substr(0, comma), "--wo " + text));
-        rest = comma == std::string::npos ? "" : rest.substr(comma + 1);
-    }
+    for (const std::string& part : parts_of(text)) v.push_back(number_in(part, "--wo " + text));
     if (v.size() > 3)
         throw InputError({"--wo " + text, 0, 0}, "expected x,y,z, or degrees from the normal and about it: 60,250");
     if (v.size() < 3) {
@@ -176,17 +182,11 @@ std::vector<CheckCase> cases_of_experiment(const CheckFlags& flags) {
 
 bool is_experiment(const CheckFlags& flags) { return flags.arm.ends_with(".toml"); }
 
-constexpr const char* not_a_number =
-    "needs a sampler whose draws are values: domain=number in its handshake, or in Python";
-
 /// The value of --domain.
 std::optional<Domain> domain_of(const CheckFlags& flags) {
     if (flags.domain.empty()) return {};
     const std::optional<Domain> domain = Domain::read(flags.domain);
-    if (!domain)
-        throw InputError({"--domain " + flags.domain, 0, 0},
-            std::string("expected ") + Domain::expected +
-                did_you_mean(flags.domain.substr(0, flags.domain.find(':')), Domain::names()));
+    if (!domain) throw InputError({"--domain " + flags.domain, 0, 0}, Domain::refusal(flags.domain));
     return domain;
 }
 
@@ -210,20 +210,9 @@ CheckCase number_case(const std::shared_ptr<const SamplerAdapter>& estimator) {
 /// The values of --estimates, one or one for each channel.
 std::array<double, 3> expected_values(const CheckFlags& flags, int channels) {
     std::vector<double> values;
-    std::string rest = flags.estimates;
-    int depth = 0;
-    std::size_t begin = 0;
-    for (std::size_t i = 0; i <= rest.size(); ++i) {
-        if (i < rest.size() && rest[i] == '(') ++depth;
-        if (i < rest.size() && rest[i] == ')') --depth;
-        if (i < rest.size() && (rest[i] != ',' || depth > 0)) continue;
-        try {
-            values.push_back(constant_value(rest.substr(begin, i - begin)));
-        } catch (const std::invalid_argument& e) {
-            throw InputError({"--estimates " + flags.estimates, 0, 0}, e.what());
-        }
-        begin = i + 1;
-    }
+    try {
+        for (const std::string& text : parts_of(flags.estimates)) values.push_back(constant_value(text));
+    } catch (const std::invalid_argument& e) { throw InputError({"--estimates " + flags.estimates, 0, 0}, e.what()); }
     if (values.size() != 1 && (values.size() != 3 || channels != 3))
         throw InputError({"--estimates " + flags.estimates, 0, 0},
             channels == 3 ? "expected one value, or one for each of three channels" : "expected one value");
@@ -269,14 +258,10 @@ std::vector<std::string> shader_words(const CheckFlags& flags, const std::string
 std::vector<std::string> values_over(const CheckFlags& flags) {
     if (flags.over.empty()) return {""};
     const std::size_t equals = flags.over.find('=');
-    std::vector<std::string> out;
-    for (std::size_t comma = equals; comma != std::string::npos && equals > 0;) {
-        const std::size_t next = flags.over.find(',', comma + 1);
-        out.push_back(flags.over.substr(comma + 1, next == std::string::npos ? next : next - comma - 1));
-        comma = next;
-    }
+    if (equals == std::string::npos || equals == 0)
+        throw InputError({"--over " + flags.over, 0, 0}, "expected NAME=VALUE,VALUE,...: alpha=0.01,0.1");
+    const std::vector<std::string> out = parts_of(flags.over.substr(equals + 1));
     for (const std::string& value : out) number_in(value, "--over " + flags.over);
-    if (out.empty()) throw InputError({"--over " + flags.over, 0, 0}, "expected NAME=VALUE,VALUE,...: alpha=0.01,0.1");
     return out;
 }
 
@@ -325,13 +310,11 @@ std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor&
     if (names_shader(flags.arm)) return cases_of_shader(flags, monitor);
     if (const auto adapter = program_of(flags, monitor)) {
         if (adapter->traits().number) return {number_case(adapter)};
-        if (!flags.estimates.empty()) throw InputError({"--estimates", 0, 0}, not_a_number);
         check_sides(flags, adapter->traits());
         check_light(flags, adapter->traits(), adapter->has_f());
         return make_user_cases(adapter, flags.full, grid_of(flags));
     }
     if (flags.light) throw InputError({"--light", 0, 0}, "needs --exec or a sampler in a Python file");
-    if (!flags.estimates.empty()) throw InputError({"--estimates", 0, 0}, not_a_number);
     if (!flags.plugin.empty()) {
         const auto adapter = open_plugin(flags.plugin, limits_of(flags, monitor));
         check_sides(flags, adapter->traits());
@@ -532,6 +515,9 @@ int check(const CheckFlags& given) {
             if (!flags.repro.empty()) throw InputError({"--repro", 0, 0}, "is for samplers of directions");
             j = check_of_number(flags, check_cases.front().adapter, monitor);
         } else {
+            if (!flags.estimates.empty())
+                throw InputError({"--estimates", 0, 0},
+                    "needs a sampler whose draws are values: domain=number in its handshake, or in Python");
             if (flags.describe) return describe_draws(flags, check_cases, monitor);
             if (!flags.against.empty()) return check_against(flags, check_cases, waivers, same, monitor);
             log_cost(check_cases, test_settings_of(flags), monitor);
@@ -598,11 +584,13 @@ std::vector<CheckCase> others_of(
         return sampler_against(start_python_sampler(flags.against, limits_of(flags, monitor)), a);
     if (names_shader(flags.against) && flags.against.find(' ') == std::string::npos)
         return sampler_against(start_shader(flags.against, {}, limits_of(flags, monitor)), a);
+    std::shared_ptr<const ProgramSampler> other;
     try {
-        return sampler_against(start_pipe(flags.against, limits_of(flags, monitor)), a);
+        other = start_pipe(flags.against, limits_of(flags, monitor));
     } catch (const InputError&) {  // start_pipe calls it --exec
         throw InputError({"--against " + flags.against, 0, 0}, "neither a built-in arm nor a command of the shell");
     }
+    return sampler_against(other, a);
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ class Sampler:
             object.__setattr__(self, "wo", "none")
             return
         chart = _crescent.domain_chart(self.domain)
-        most = 8 - chart.spreads
+        most = chart.most_numbers
         if self.u > most:
             raise ValueError(f"u is {self.u}: over the domain {self.domain!r} a sample takes at most {most}")
         for what in ("delta", "eta", "uses", "radiance"):

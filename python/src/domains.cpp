@@ -24,18 +24,13 @@ Made owned(std::vector<double>&& values, std::size_t rows, std::size_t columns) 
 
 std::shared_ptr<DomainChart> chart_of(const std::string& text) {
     const std::optional<Domain> domain = Domain::read(text);
-    if (!domain) {
-        const std::string near = nearest(text.substr(0, text.find(':')), Domain::names());
-        throw nb::value_error(fmt::format("domain is '{}': expected {}{}", text, Domain::expected,
-            near.empty() ? "" : fmt::format("; did you mean '{}'?", near))
-                .c_str());
-    }
+    if (!domain) throw nb::value_error(fmt::format("domain is '{}': {}", text, Domain::refusal(text)).c_str());
     return std::make_shared<DomainChart>(*domain);
 }
 
 std::pair<Made, Made> directions(const DomainChart& chart, const Rows& points, const Rows& spread) {
     const std::size_t n = points.shape(0), columns = chart.domain().coordinates(), spreads = chart.spreads();
-    std::vector<double> w(3 * n), factor(n), again(columns);
+    std::vector<double> w(3 * n), factor(n), image(columns);
     for (std::size_t i = 0; i < n; ++i) {
         const std::span<const double> point(points.data() + i * columns, columns);
         if (!chart.domain().fault(point).empty()) {
@@ -44,9 +39,9 @@ std::pair<Made, Made> directions(const DomainChart& chart, const Rows& points, c
             factor[i] = 1;
             continue;
         }
-        const Vec3d at = chart.direction(point, {spread.data() + i * spreads, spreads});
-        factor[i] = chart.point(at, again);
-        w[3 * i] = at.x, w[3 * i + 1] = at.y, w[3 * i + 2] = at.z;
+        const Vec3d direction = chart.direction(point, {spread.data() + i * spreads, spreads});
+        factor[i] = chart.point(direction, image);
+        w[3 * i] = direction.x, w[3 * i + 1] = direction.y, w[3 * i + 2] = direction.z;
     }
     return {owned(std::move(w), n, 3), owned(std::move(factor), n, 0)};
 }
@@ -67,6 +62,7 @@ void add_domains(nb::module_& m) {
         .def_prop_ro("name", [](const DomainChart& c) { return c.domain().name(); })
         .def_prop_ro("coordinates", [](const DomainChart& c) { return c.domain().coordinates(); })
         .def_prop_ro("spreads", &DomainChart::spreads)
+        .def_prop_ro("most_numbers", [](const DomainChart& c) { return most_numbers(c); })
         .def_prop_ro("discrete", &DomainChart::is_discrete)
         .def_prop_ro("infinite", [](const DomainChart& c) { return c.domain().is_infinite(); })
         .def(

@@ -99,3 +99,10 @@ open("blanks.npy", "wb").write(b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "l
 PY
 expect 2 check --samples blanks.npy --wo 0,0,1 --pdf-table blanks.npy
 grep -q "2 samples are too few" said || die "$(cat said)"
+
+# Two samplers are compared over one domain; another one is bad input, and so is a value for a sampler of points.
+draws() { printf 'while read -r word rest; do case $word in hello) echo hello 2 %s domain=%s;; *) echo -;; esac; done' "$1" "$2"; }
+expect 2 check --exec "$(draws lens disk)" --against "$(draws film square)"
+grep -q "lens draws points of disk, and film points of square" said || die "$(cat said)"
+expect 2 check --exec "$(draws lens disk)" --estimates 1
+grep -q "needs a sampler whose draws are values" said || die "$(cat said)"

@@ -512,7 +512,7 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
         const auto of_one = one.effects(whole, nodes), of_other = other.effects(whole, nodes);
         // Shifts are along one axis or the other.
         const int step = domain ? axes / 2 : 1;
-        for (int k = 0; k < (domain && domain->is_line() ? 1 : axes); k += step) {
+        for (int k = 0; k < (source.is_line() ? 1 : axes); k += step) {
             const double angle = k * two_pi / 2 / axes, c = math::cos(angle), s = math::sin(angle);
             const auto at = static_cast<std::size_t>(k);
             ratios[at].push_back(ratios_about(of_one, of_other, c, s, needed, whole.size()));

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "base/text.h"
+
 namespace crescent::inline sources {
 
 namespace {
@@ -135,10 +137,10 @@ std::optional<Domain> Domain::read(std::string_view text) {
     return Domain(std::move(parts));
 }
 
-std::vector<std::string> Domain::names() {
-    std::vector<std::string> out;
-    for (const KindOfPart& kind : kinds_of_parts) out.emplace_back(kind.name);
-    return out;
+std::string Domain::refusal(std::string_view text) {
+    std::vector<std::string> names;
+    for (const KindOfPart& kind : kinds_of_parts) names.emplace_back(kind.name);
+    return fmt::format("expected {}{}", expected, did_you_mean(text.substr(0, text.find(':')), names));
 }
 
 std::size_t Domain::coordinates() const {

@@ -41,8 +41,8 @@ public:
     static constexpr const char* expected =
         "hemisphere, sphere, disk, square, cube, triangle, line:A,B with A < B (-inf and inf too), set:N with N from 1 "
         "to 1000000, or a product of these with an x between them, of four dimensions at most";
-    /// The names of the parts, without their values.
-    static std::vector<std::string> names();
+    /// "expected ...", with the nearest name, for a text that read() does not accept.
+    static std::string refusal(std::string_view text);
 
     const std::vector<DomainPart>& parts() const { return parts_; }
     /// As it was written.

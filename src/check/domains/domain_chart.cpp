@@ -27,24 +27,22 @@ double azimuth_of(double x, double y) {
     return (phi < 0 ? phi + two_pi : phi) / two_pi;
 }
 
-/// Bits of one coordinate, if the coordinates of a cube are dealt to two.
-int bits_of(std::size_t dimensions) { return 104 / static_cast<int>(dimensions); }
+/// Bits that a cube of three or four dimensions and the square of polar and azimuthal coordinates exchange: nearly all
+/// of the 53 of each coordinate of the square, and a multiple of two, three and four.
+int exchanged_bits(std::size_t dimensions) { return dimensions == 3 ? 102 : 104; }
 
-/// Deals the bits of `from` to `to` in turn, the first bits first.
-void deal(std::span<const double> from, int bits_from, std::span<double> to, int bits_to) {
+/// Deals so many bits of `from` to `to` in turn, the first bits first.
+void deal(std::span<const double> from, std::span<double> to, int bits) {
+    const int bits_from = bits / static_cast<int>(from.size()), bits_to = bits / static_cast<int>(to.size());
     std::array<std::uint64_t, Domain::most_dimensions> in{}, out{};
     for (std::size_t k = 0; k < from.size(); ++k)
         in[k] = static_cast<std::uint64_t>(std::clamp(from[k], 0.0, below_one) * std::ldexp(1.0, bits_from));
-    const int all = std::min(bits_from * static_cast<int>(from.size()), bits_to * static_cast<int>(to.size()));
-    for (int n = 0; n < all; ++n) {
+    for (int n = 0; n < bits; ++n) {
         const auto source = static_cast<std::size_t>(n) % from.size(), target = static_cast<std::size_t>(n) % to.size();
-        const int at = bits_from - 1 - n / static_cast<int>(from.size());
-        out[target] = out[target] << 1 | (in[source] >> at & 1);
+        const int bit = bits_from - 1 - n / static_cast<int>(from.size());
+        out[target] = out[target] << 1 | (in[source] >> bit & 1);
     }
-    for (std::size_t k = 0; k < to.size(); ++k) {
-        const int count = (all - static_cast<int>(k) + static_cast<int>(to.size()) - 1) / static_cast<int>(to.size());
-        to[k] = (static_cast<double>(out[k]) + 0.5) * std::ldexp(1.0, -count);
-    }
+    for (std::size_t k = 0; k < to.size(); ++k) to[k] = (static_cast<double>(out[k]) + 0.5) * std::ldexp(1.0, -bits_to);
 }
 
 }  // namespace
@@ -65,9 +63,9 @@ struct Tail {
     explicit Tail(std::span<const double> values) {
         const auto n = static_cast<double>(values.size());
         const auto quantile = [&](double beyond) {  // of the mass that this tail leaves beyond it
-            const double at = std::clamp(n * (1 - beyond) - 0.5, 0.0, n - 1), whole = std::floor(at);
+            const double rank = std::clamp(n * (1 - beyond) - 0.5, 0.0, n - 1), whole = std::floor(rank);
             const auto i = static_cast<std::size_t>(whole);
-            return values[i] + (at - whole) * (values[std::min(i + 1, values.size() - 1)] - values[i]);
+            return values[i] + (rank - whole) * (values[std::min(i + 1, values.size() - 1)] - values[i]);
         };
         for (int k = body / 2; k < body; ++k) add(k / static_cast<double>(body), quantile(1 - k / (body + 0.0)));
         int j = 6;
@@ -141,18 +139,18 @@ DomainChart::Knots DomainChart::Knots::fitted(std::vector<double> values, double
     return out;
 }
 
-double DomainChart::Knots::to_unit(double at) const {
-    if (!(at > x.front())) return 0;
-    if (!(at < x.back())) return below_one;
-    const auto k = static_cast<std::size_t>(std::ranges::upper_bound(x, at) - x.begin());
-    return y[k - 1] + (y[k] - y[k - 1]) * ((at - x[k - 1]) / (x[k] - x[k - 1]));
+double DomainChart::Knots::to_unit(double value) const {
+    if (!(value > x.front())) return 0;
+    if (!(value < x.back())) return below_one;
+    const auto k = static_cast<std::size_t>(std::ranges::upper_bound(x, value) - x.begin());
+    return y[k - 1] + (y[k] - y[k - 1]) * ((value - x[k - 1]) / (x[k] - x[k - 1]));
 }
 
-double DomainChart::Knots::from_unit(double at, double& to) const {
-    const auto above = static_cast<std::size_t>(std::ranges::upper_bound(y, at) - y.begin());
+double DomainChart::Knots::from_unit(double unit, double& value) const {
+    const auto above = static_cast<std::size_t>(std::ranges::upper_bound(y, unit) - y.begin());
     const std::size_t k = std::clamp<std::size_t>(above, 1, y.size() - 1);
     const double slope = (x[k] - x[k - 1]) / (y[k] - y[k - 1]);
-    to = x[k - 1] + (at - y[k - 1]) * slope;
+    value = x[k - 1] + (unit - y[k - 1]) * slope;
     return slope;
 }
 
@@ -174,8 +172,8 @@ void DomainChart::fit(std::span<const double> rows) {
         const DomainPart& part = domain_.parts()[k];
         if (part.is_infinite()) {
             std::vector<double> values;
-            for (std::size_t at = column; at < rows.size(); at += columns)
-                if (part.fault(rows.subspan(at, 1)).empty()) values.push_back(rows[at]);
+            for (std::size_t i = column; i < rows.size(); i += columns)
+                if (part.fault(rows.subspan(i, 1)).empty()) values.push_back(rows[i]);
             knots_[k] = Knots::fitted(std::move(values), part.from, part.to);
         }
         column += part.coordinates();
@@ -190,9 +188,9 @@ void DomainChart::to_cube(std::span<const double> point, std::span<const double>
         switch (part.kind) {
             case Kind::hemisphere:
             case Kind::sphere: {
-                const check::ChartPoint at = check::to_chart({x[0], x[1], x[2]});
-                y[d] = part.kind == Kind::sphere ? at.t / 2 : at.t;
-                y[d + 1] = at.phi / two_pi;
+                const check::ChartPoint place = check::to_chart({x[0], x[1], x[2]});
+                y[d] = part.kind == Kind::sphere ? place.t / 2 : place.t;
+                y[d + 1] = place.phi / two_pi;
                 break;
             }
             case Kind::disk:
@@ -269,23 +267,22 @@ double DomainChart::from_cube(std::span<const double> y, std::span<double> point
 
 Vec3d DomainChart::from_cube_to_direction(std::span<const double> y, double azimuth) const {
     std::array<double, 2> square = {y[0], y.size() == 1 ? azimuth : y[1]};
-    if (y.size() > 2) deal(y, bits_of(y.size()), square, 52);
+    if (y.size() > 2) deal(y, square, exchanged_bits(y.size()));
     return check::from_chart({2 * square[0], two_pi * square[1]});
 }
 
-std::vector<double> DomainChart::cube_of(Vec3d w) const {
-    const check::ChartPoint at = check::to_chart(w);
+DomainChart::Cube DomainChart::cube_of(Vec3d w) const {
+    const check::ChartPoint place = check::to_chart(w);
     const std::array<double, 2> square = {
-        std::clamp(at.t / 2, 0.0, below_one), std::clamp(at.phi / two_pi, 0.0, below_one)};
+        std::clamp(place.t / 2, 0.0, below_one), std::clamp(place.phi / two_pi, 0.0, below_one)};
+    Cube y = {square[0], square[1]};
     const std::size_t dimensions = domain_.dimensions();
-    std::vector<double> y(square.begin(), square.end());
-    y.resize(dimensions);
-    if (dimensions > 2) deal(square, dimensions == 3 ? 51 : 52, y, bits_of(dimensions));
+    if (dimensions > 2) deal(square, std::span(y).first(dimensions), exchanged_bits(dimensions));
     return y;
 }
 
 Vec3d DomainChart::direction(std::span<const double> point, std::span<const double> spread) const {
-    std::array<double, Domain::most_dimensions> cube{};
+    Cube cube{};
     const std::span<double> y = std::span(cube).first(domain_.dimensions());
     to_cube(point, spread, y);
     return from_cube_to_direction(y, is_line() ? spread.back() : 0);
@@ -311,7 +308,7 @@ bool DomainChart::has_point(Vec3d w) const {
 }
 
 Vec3d DomainChart::in_chart(const DomainChart& other, Vec3d w) const {
-    std::vector<double> y = cube_of(w);
+    Cube y = cube_of(w);
     std::size_t d = 0;
     for (std::size_t k = 0; k < knots_.size(); ++k) {
         const DomainPart& part = domain_.parts()[k];
@@ -322,12 +319,13 @@ Vec3d DomainChart::in_chart(const DomainChart& other, Vec3d w) const {
         }
         d += part.dimensions();
     }
-    return other.from_cube_to_direction(y, check::to_chart(w).phi / two_pi);
+    return other.from_cube_to_direction(std::span(y).first(d), check::to_chart(w).phi / two_pi);
 }
 
-Vec3d DomainChart::shifted(Vec3d w, std::size_t axis, double by) const {
-    std::vector<double> y = cube_of(w);
-    for (std::size_t d = axis; d < y.size(); d += 2) { y[d] = 1 - std::fabs(1 - y[d] - by); }
+Vec3d DomainChart::shifted(Vec3d w, std::size_t axis, double distance) const {
+    Cube cube = cube_of(w);
+    const std::span<double> y = std::span(cube).first(domain_.dimensions());
+    for (std::size_t d = axis; d < y.size(); d += 2) y[d] = 1 - std::fabs(1 - y[d] - distance);
     return from_cube_to_direction(y, check::to_chart(w).phi / two_pi);
 }
 
@@ -346,9 +344,9 @@ std::string DomainChart::first_outside() const {
 
 std::string DomainChart::text(Vec3d w) const {
     std::array<double, Domain::most_coordinates> x{};
-    const std::span<double> at = std::span(x).first(domain_.coordinates());
-    point(w, at);
-    return domain_.text(at);
+    const std::span<double> coordinates = std::span(x).first(domain_.coordinates());
+    point(w, coordinates);
+    return domain_.text(coordinates);
 }
 
 namespace {
@@ -365,7 +363,7 @@ int halvings(double length) { return static_cast<int>(std::lround(-math::log(len
 
 std::string DomainChart::text(const check::ChartRect& rect) const {
     const std::size_t dimensions = domain_.dimensions();
-    std::vector<double> low = cube_of(check::from_chart(rect.at(0.5, 0.5))), high = low;
+    Cube low = cube_of(check::from_chart(rect.at(0.5, 0.5))), high = low;
     if (dimensions > 2) {
         // Of the bits of a dimension those above the first that is not cut are the same over the box.
         const int cut[] = {halvings((rect.t1 - rect.t0) / 2), halvings((rect.phi1 - rect.phi0) / two_pi)};

@@ -45,7 +45,7 @@ public:
 
     /// The direction whose point is shifted along every second dimension, from number `axis` (0 or 1) on, by this share
     /// of its range, or of its mass on an infinite line. A point that would leave at the end is reflected.
-    Vec3d shifted(Vec3d w, std::size_t axis, double by) const;
+    Vec3d shifted(Vec3d w, std::size_t axis, double distance) const;
 
     /// Remembers the first point that does not belong to the domain, for messages.
     void note_outside(std::span<const double> point) const;
@@ -72,9 +72,9 @@ private:
     struct Knots {
         std::vector<double> y, x;
         static Knots fitted(std::vector<double> values, double from, double to);
-        double to_unit(double x) const;
-        /// Sets x and returns dx / dy.
-        double from_unit(double y, double& x) const;
+        double to_unit(double value) const;
+        /// Sets the value at `unit`, and returns its derivative.
+        double from_unit(double unit, double& value) const;
     };
     /// Shared by copies of a chart.
     struct Outside {
@@ -83,8 +83,9 @@ private:
     };
     Domain domain_;
     std::shared_ptr<Outside> outside_ = std::make_shared<Outside>();
-    std::vector<Knots> knots_;  // by part; empty where the line is finite
-    std::vector<double> cube_of(Vec3d w) const;
+    std::vector<Knots> knots_;                                 // by part; empty where the line is finite
+    using Cube = std::array<double, Domain::most_dimensions>;  // of which the first dimensions() are used
+    Cube cube_of(Vec3d w) const;
     Vec3d from_cube_to_direction(std::span<const double> y, double azimuth) const;
     void to_cube(std::span<const double> point, std::span<const double> spread, std::span<double> y) const;
     double from_cube(std::span<const double> y, std::span<double> point) const;

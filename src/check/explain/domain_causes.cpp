@@ -198,14 +198,14 @@ struct MoveFamily {
     double from, to;
 };
 
-double mean_log_of(const Hypothesis& h, std::span<const Place> places, std::size_t most) {
+double mean_log_of(const Hypothesis& h, std::span<const Place> places, std::size_t most_draws) {
     double out = 0;
     for (const Place& place : places) {
-        std::vector<Pair> at;
-        for (std::size_t i = 0; i < std::min(most, place.w.size()); ++i)
-            at.push_back({place.check_case->wo, place.w[i]});
-        std::vector<double> p(at.size());
-        h.density(place.adapter(), place.technique(), at, p);
+        std::vector<Pair> pairs;
+        for (std::size_t i = 0; i < std::min(most_draws, place.w.size()); ++i)
+            pairs.push_back({place.check_case->wo, place.w[i]});
+        std::vector<double> p(pairs.size());
+        h.density(place.adapter(), place.technique(), pairs, p);
         out += place.mean_log(p) / static_cast<double>(places.size());
     }
     return out;
@@ -257,8 +257,9 @@ std::vector<FittedMove> domain_moves(std::span<const Place> places) {
         if (part.is_infinite()) {
             const double end = std::isfinite(part.from) ? part.from : std::isfinite(part.to) ? part.to : 0;
             const auto scaled = [=](double log_scale) {
-                const double by = math::exp(-log_scale);
-                return by_moving("scaled", [=](std::span<double> x) { x[c] = end + by * (x[c] - end); }, by, at_zero);
+                const double factor = math::exp(-log_scale);
+                return by_moving(
+                    "scaled", [=](std::span<double> x) { x[c] = end + factor * (x[c] - end); }, factor, at_zero);
             };
             if (auto found = fitted_move({scaled, -1.5, 1.5}, places)) {
                 found->error *= math::exp(found->value), found->value = math::exp(found->value);

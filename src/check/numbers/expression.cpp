@@ -45,9 +45,9 @@ private:
         return at_ == text_.size();
     }
     bool take(char c) {
-        const bool there = !at_end() && text_[at_] == c;
-        at_ += there;
-        return there;
+        const bool found = !at_end() && text_[at_] == c;
+        at_ += found;
+        return found;
     }
     double sum() {
         double value = product();

@@ -214,8 +214,8 @@ private:
             b.emplace(*expected_.estimator, key(settings_.seed, static_cast<std::uint8_t>(2 + k), 1));
             b->extend(looks[k], monitor_);
         }
-        const MeanDifference again = difference(a, b ? &*b : nullptr, channel);
-        return again.value * first.value > 0 && statistics::normal_two_sided(again.errors()) <= 2 * confirming;
+        const MeanDifference second = difference(a, b ? &*b : nullptr, channel);
+        return second.value * first.value > 0 && statistics::normal_two_sided(second.errors()) <= 2 * confirming;
     }
 
     // ---- Verdicts.
@@ -280,8 +280,8 @@ private:
         }
         const std::string channel = channels() == 3 ? fmt::format(" in channel {}", d.channel + 1) : "";
         const std::string mean = with_error(x.mean(), half_width_95 * x.error());
-        const double off = d.difference.value / std::max(std::fabs(d.difference.expected), 1e-300);
-        v.evidence["bias"] = off;
+        const double bias = d.difference.value / std::max(std::fabs(d.difference.expected), 1e-300);
+        v.evidence["bias"] = bias;
         if (d.state == State::inconclusive && heavy()) {
             v.message = fmt::format(
                 "The values average to {:.5g}{}, {:.5g} expected. Their tail is heavy, so that no "
@@ -293,11 +293,11 @@ private:
         v.message = fmt::format("The values average to {}{}. Expected {:.7g}{}.", mean, channel, d.difference.expected,
             b_ ? ", the mean of " + expected_.estimator->name() : "");
         if (d.state == State::wrong) {
-            v.size = std::fabs(off);
+            v.size = std::fabs(bias);
             v.message += fmt::format(" That is {} too {}.",
-                percent_with_error(std::fabs(off),
+                percent_with_error(std::fabs(bias),
                     half_width_95 * d.difference.error / std::max(std::fabs(d.difference.expected), 1e-300)),
-                off > 0 ? "large" : "small");
+                bias > 0 ? "large" : "small");
         } else if (d.state == State::right) {
             v.hidden["bias"] = d.hidden;
             v.evidence["would_have_found"] = {{"bias", d.hidden}};

@@ -371,42 +371,43 @@ public:
     }
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         inner().sample(t, wo, u, out);
+        const bool has_pdf = inner().traits().has_pdf;
         for (Draw& d : out) {
             if (!(d.pdf > 0) || !std::isfinite(dot(d.wi, d.wi))) continue;
-            const Vec3d there = own_->in_chart(*chart_, d.wi);
-            if (inner().traits().has_pdf) d.pdf = own_->density(d.wi, d.pdf) / chart_->density(there, 1);
-            d.wi = there;
+            const Vec3d moved = own_->in_chart(*chart_, d.wi);
+            if (has_pdf) d.pdf = own_->density(d.wi, d.pdf) / chart_->density(moved, 1);
+            d.wi = moved;
         }
     }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        inner().pdf(t, of_inner(at), out);
-        rescale(at, out);
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        inner().pdf(t, on_own_chart(pairs), out);
+        rescale(pairs, out);
     }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        inner().exact_pdf(t, of_inner(at), out);
-        rescale(at, out);
+    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        inner().exact_pdf(t, on_own_chart(pairs), out);
+        rescale(pairs, out);
     }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        inner().f(of_inner(at), out);
-        rescale(at, out);
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
+        inner().f(on_own_chart(pairs), out);
+        rescale(pairs, out);
     }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        inner().f_channels(of_inner(at), out);
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = out[i] * factor(at[i].wi);
+    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
+        inner().f_channels(on_own_chart(pairs), out);
+        rescale(pairs, out);
     }
 
 private:
     std::shared_ptr<const DomainChart> own_, chart_;
 
-    std::vector<Pair> of_inner(std::span<const Pair> at) const {
-        std::vector<Pair> out(at.begin(), at.end());
+    std::vector<Pair> on_own_chart(std::span<const Pair> pairs) const {
+        std::vector<Pair> out(pairs.begin(), pairs.end());
         for (Pair& p : out) p.wi = chart_->in_chart(*own_, p.wi);
         return out;
     }
     /// From a density on the chart of `inner` to one on the common chart.
     double factor(Vec3d w) const { return own_->density(chart_->in_chart(*own_, w), 1) / chart_->density(w, 1); }
-    void rescale(std::span<const Pair> at, std::span<double> values) const {
-        for (std::size_t i = 0; i < at.size(); ++i) values[i] *= factor(at[i].wi);
+    template <class Value> void rescale(std::span<const Pair> pairs, std::span<Value> values) const {
+        for (std::size_t i = 0; i < pairs.size(); ++i) values[i] = values[i] * factor(pairs[i].wi);
     }
 };
 

@@ -17,7 +17,6 @@
 
 #include "base/errors.h"
 #include "base/text.h"
-#include "check/estimate/stream.h"
 #include "check/sources/pipe_io.h"
 #include "check/sources/sampler_adapter.h"
 #include "samplers/external_sampler.h"
@@ -33,9 +32,6 @@ double for_float(double u) {
     const double nearest = below == in_steps ? below : below + (std::fmod(below, 2) == 0 ? 1 : 0);
     return std::min(nearest * 0x1p-24, 1 - 0x1p-24);
 }
-
-/// The random numbers of the draws to which the charts of infinite lines are fitted.
-constexpr check::StreamKey chart_key{.seed = 0x6c696e65, .purpose = check::Purpose::pilot};
 
 /// The mistake that a program found in its input: "FILE:LINE:COLUMN: TEXT", "FILE: TEXT" or TEXT about `label`.
 InputError error_of_program(std::string_view text, const std::string& label) {
@@ -374,15 +370,16 @@ private:
     }
     /// Fits the charts of infinite lines to draws, over all w_o that the program takes.
     void fit_domain() {
-        if (std::ranges::none_of(domain()->domain().parts(), &DomainPart::is_infinite)) return;
+        if (!domain()->domain().is_infinite()) return;
         std::vector<double> in, points;
-        for (std::uint32_t i = 0; i < draws_of_chart; ++i) {
-            const PrimarySample u = check::numbers_at(chart_key, i, numbers(), check::Resolution::standard);
-            add_row(tilt(15 + 15 * (i % 5)), [&](std::size_t k) { return u[static_cast<int>(k)]; }, example_, in);
+        double theta = 0;  // degrees
+        for (const PrimarySample& u : numbers_of_chart(numbers())) {
+            theta = theta < 75 ? theta + 15 : 15;
+            add_row(tilt(theta), [&](std::size_t k) { return u[static_cast<int>(k)]; }, example_, in);
         }
         query_samples(in, example_lights, draws_of_chart, [&](std::size_t, std::span<const double> a, bool) {
-            if (a[columns_of_point()] > 0)
-                points.insert(points.end(), a.begin(), a.begin() + std::ssize(a.first(columns_of_point())));
+            const std::span<const double> point = a.first(columns_of_point());
+            if (a[point.size()] > 0) points.insert(points.end(), point.begin(), point.end());
         });
         auto fitted = std::make_shared<DomainChart>(*domain());
         fitted->fit(points);
@@ -581,8 +578,7 @@ HandshakeError settle_domain(Handshake& out) {
     }
     if (!out.domain) return {};
     const auto chart = std::make_shared<const DomainChart>(*out.domain);
-    const int most = PrimarySample::most - static_cast<int>(chart->spreads());
-    if (out.traits.numbers > most)
+    if (const int most = most_numbers(*chart); out.traits.numbers > most)
         return {fmt::format("at most {} random numbers for this domain", most),
             fmt::format("got u={}", out.traits.numbers)};
     if (out.delta) return {"no delta=yes for a domain that is not of directions", "got delta=yes"};

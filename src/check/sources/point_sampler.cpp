@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/text.h"
-#include "check/estimate/stream.h"
 
 namespace crescent {
 
@@ -19,12 +17,10 @@ public:
     PointAdapter(PointSampler sampler, std::string name) : s_(std::move(sampler)), name_(std::move(name)) {
         const std::optional<Domain> domain = Domain::read(s_.domain);
         if (!domain)
-            throw InputError({name_, 0, 0},
-                fmt::format("the domain '{}' is not valid: expected {}{}", s_.domain, Domain::expected,
-                    did_you_mean(s_.domain.substr(0, s_.domain.find(':')), Domain::names())));
+            throw InputError(
+                {name_, 0, 0}, fmt::format("the domain '{}' is not valid: {}", s_.domain, Domain::refusal(s_.domain)));
         auto chart = std::make_shared<DomainChart>(*domain);
-        const int most = PrimarySample::most - static_cast<int>(chart->spreads());
-        if (s_.numbers < 1 || s_.numbers > most)
+        if (const int most = most_numbers(*chart); s_.numbers < 1 || s_.numbers > most)
             throw InputError({name_, 0, 0},
                 fmt::format(
                     "takes {} random numbers: expected 1 to {} over the domain {}", s_.numbers, most, s_.domain));
@@ -51,8 +47,10 @@ public:
             if (!traits_.has_pdf && out[i].pdf > 0) out[i].pdf = 1;
         }
     }
-    void pdf(int, std::span<const Pair> at, std::span<double> out) const override { evaluate(s_.pdf, "pdf", at, out); }
-    void f(std::span<const Pair> at, std::span<double> out) const override { evaluate(s_.f, "f", at, out); }
+    void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
+        evaluate(s_.pdf, "pdf", pairs, out);
+    }
+    void f(std::span<const Pair> pairs, std::span<double> out) const override { evaluate(s_.f, "f", pairs, out); }
 
 private:
     using Point = std::array<double, Domain::most_coordinates>;
@@ -74,14 +72,14 @@ private:
                 fmt::join(std::span(numbers).first(static_cast<std::size_t>(s_.numbers)), ", ")));
         }
     }
-    void evaluate(
-        const PointSampler::Function& call, const char* what, std::span<const Pair> at, std::span<double> out) const {
+    void evaluate(const PointSampler::Function& call, const char* what, std::span<const Pair> pairs,
+        std::span<double> out) const {
         if (!call) return std::fill(out.begin(), out.end(), 1.0);
-        count(at.size());
-        for (std::size_t i = 0; i < at.size(); ++i) {
+        count(pairs.size());
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
             Point x{};
             const std::span<double> point = std::span(x).first(coordinates());
-            const double factor = chart().point(at[i].wi, point);
+            const double factor = chart().point(pairs[i].wi, point);
             try {
                 out[i] = factor > 0 ? factor * call(point) : 0;
             } catch (const std::exception& e) {
@@ -90,12 +88,11 @@ private:
         }
     }
     void fit(DomainChart& chart) const {
-        if (std::ranges::none_of(chart.domain().parts(), &DomainPart::is_infinite)) return;
-        constexpr check::StreamKey key{.seed = 0x6c696e65, .purpose = check::Purpose::pilot};
+        if (!chart.domain().is_infinite()) return;
         std::vector<double> points;
-        for (std::uint32_t i = 0; i < draws_of_chart; ++i) {
+        for (const PrimarySample& u : numbers_of_chart(s_.numbers)) {
             Point x{};
-            if (drawn(check::numbers_at(key, i, s_.numbers, check::Resolution::standard), x) > 0)
+            if (drawn(u, x) > 0)
                 points.insert(points.end(), x.begin(), x.begin() + static_cast<std::ptrdiff_t>(coordinates()));
         }
         chart.fit(points);

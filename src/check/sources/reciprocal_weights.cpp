@@ -27,16 +27,20 @@ public:
             if (d.weight) *d.weight *= bounded(target[i], q);
         }
     }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        inner().f(at, out);
-        for (std::size_t i = 0; i < at.size(); ++i) {
-            const double target = traits_.density(at[i].wi, out[i]);
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
+        inner().f(pairs, out);
+        Vec3d wo{};
+        double q = 0;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            const Vec3d given = pairs[i].wo;
+            if (i == 0 || given.x != wo.x || given.y != wo.y || given.z != wo.z) wo = given, q = scale_at(wo);
+            const double target = traits_.density(pairs[i].wi, out[i]);
             // Over another domain f is the target times a factor of measure, which h has too.
-            out[i] = target > 0 ? bounded(target, scale_at(at[i].wo)) * (out[i] / target) : target;
+            out[i] = target > 0 ? bounded(target, q) * (out[i] / target) : target;
         }
     }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        SamplerAdapter::f_channels(at, out);
+    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
+        SamplerAdapter::f_channels(pairs, out);
     }
 
 private:
@@ -48,14 +52,14 @@ private:
 
     /// The target at each draw with a weight; 0 for the others.
     std::vector<double> targets_at(Vec3d wo, std::span<const Draw> draws) const {
-        std::vector<Pair> at;
-        std::vector<std::size_t> of;
+        std::vector<Pair> pairs;
+        std::vector<std::size_t> indices;
         for (std::size_t i = 0; i < draws.size(); ++i)
             if (draws[i].pdf > 0 && draws[i].weight && std::isfinite(dot(draws[i].wi, draws[i].wi)))
-                at.push_back({wo, draws[i].wi}), of.push_back(i);
-        std::vector<double> answers(at.size()), out(draws.size());
-        inner().f(at, answers);
-        for (std::size_t k = 0; k < of.size(); ++k) out[of[k]] = traits_.density(at[k].wi, answers[k]);
+                pairs.push_back({wo, draws[i].wi}), indices.push_back(i);
+        std::vector<double> answers(pairs.size()), out(draws.size());
+        inner().f(pairs, answers);
+        for (std::size_t k = 0; k < pairs.size(); ++k) out[indices[k]] = traits_.density(pairs[k].wi, answers[k]);
         return out;
     }
 

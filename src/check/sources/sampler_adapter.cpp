@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "base/text.h"
+#include "check/estimate/stream.h"
 #include "math/functions.h"
 #include "math/simd/random.h"
 #include "math/simd/scalar.h"
@@ -77,6 +78,14 @@ std::string CheckCase::text() const {
     return s;
 }
 
+std::vector<PrimarySample> numbers_of_chart(int count) {
+    constexpr check::StreamKey key{.seed = 0x6c696e65, .purpose = check::Purpose::pilot};
+    std::vector<PrimarySample> out(draws_of_chart);
+    for (std::uint32_t i = 0; i < draws_of_chart; ++i)
+        out[i] = check::numbers_at(key, i, count, check::Resolution::standard);
+    return out;
+}
+
 Draw draw_of_point(
     const DomainChart& domain, std::span<const double> point, double pdf, const PrimarySample& u, int numbers) {
     if (pdf == 0) return {{0, 0, 1}, 0};
@@ -89,8 +98,8 @@ Draw draw_of_point(
     const std::size_t count = domain.spreads();
     for (std::size_t k = 0; k < count; ++k) spread[k] = u[numbers + static_cast<int>(k)];
     const Vec3d w = domain.direction(point, std::span(spread).first(count));
-    std::array<double, Domain::most_coordinates> again{};
-    return {w, pdf * domain.point(w, std::span(again).first(point.size()))};
+    std::array<double, Domain::most_coordinates> image{};
+    return {w, pdf * domain.point(w, std::span(image).first(point.size()))};
 }
 
 std::string place_text(const Traits& traits, Vec3d w) {

@@ -112,8 +112,12 @@ struct Draw {
 Draw draw_of_point(
     const DomainChart& domain, std::span<const double> point, double pdf, const PrimarySample& u, int numbers);
 
-/// Draws to which the chart of an infinite line is fitted.
+/// Random numbers that a sampler of points may take, besides those that spread a point.
+inline int most_numbers(const DomainChart& domain) { return PrimarySample::most - static_cast<int>(domain.spreads()); }
+
+/// Draws to which the chart of an infinite line is fitted, and their random numbers, `count` each.
 inline constexpr std::uint32_t draws_of_chart = 4096;
+std::vector<PrimarySample> numbers_of_chart(int count);
 
 /// Marks a delta part with selection probability 0; the verdict `valid` reports it.
 inline constexpr double delta_never_chosen = -std::numeric_limits<double>::infinity();
