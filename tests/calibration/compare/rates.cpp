@@ -12,11 +12,13 @@
 #include <memory>
 #include <mutex>
 #include <numbers>
+#include <set>
 
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
+#include "rate_cell.h"
 #include "tests/support/synthetic_renders.h"
 
 namespace {
@@ -80,24 +82,24 @@ std::string coverage(const std::vector<CompareResult>& all, const std::string& m
         if (!m.interval) continue;
         ++stated, containing += m.interval->first <= truth && truth <= m.interval->second;
     }
-    if (!stated) return "none stated";
+    if (!stated) return "–";
     const std::string share = fmt::format("{:.3f}", static_cast<double>(containing) / static_cast<double>(stated));
-    return stated == values ? share : fmt::format("{} of {} stated", share, stated);
+    return stated == values ? share : fmt::format("{}/{}", share, stated);
 }
 
 std::string false_alarms(const std::vector<Calls>& scenes) {
     std::string out =
-        "| noise of A | of B | renders | calls with a difference found | of calls in which each arm contains its "
-        "rare events | of the others | heavy tail reported |\n|---|---|---|---|---|---|---|\n";
+        "| noise of A | of B | renders | all calls | calls in which each arm contains its rare events | others | heavy "
+        "tail reported |\n|---|---|---|---|---|---|---|\n";
     for (const Calls& c : scenes) {
         std::uint64_t with_events = 0, alarms = 0;
         for (std::size_t k = 0; k < c.have_events.size(); ++k)
             if (c.have_events[k]) ++with_events, alarms += c.results[k].differs();
         const std::uint64_t of = c.results.size(), found_differences = count(c.results, differs);
         out += fmt::format("| {} | {} | {} | {} | {} | {} | {} of {} |\n", to_string(c.scene.a), to_string(c.scene.b),
-            c.scene.renders, rate_text(found_differences, of),
+            c.scene.renders, rate_cell(found_differences, of),
             with_events == of ? "all"
-                : with_events ? rate_text(alarms, with_events)
+                : with_events ? rate_cell(alarms, with_events)
                               : "–",
             with_events == of ? "–" : fmt::format("{} of {}", found_differences - alarms, of - with_events),
             count(c.results, heavy), of);
@@ -125,11 +127,11 @@ constexpr SyntheticNoise moderate{NoiseKind::normal, 0.2}, coarse{NoiseKind::nor
 
 /// Why one column of the table may exceed alpha.
 const std::string indistinguishable_text =
-    "If the light of an arm comes from bright events that none of its renders contains, its renders equal those of a "
-    "darker arm, and no test can distinguish the two. (Their renders agree with at least the probability q that no "
-    "event occurs, so a test that is wrong about one arm in at most alpha of all calls is right about the other in at "
-    "most alpha + 1 - q.) Such calls are counted separately. Only knowledge from elsewhere helps, such as `brightest`, "
-    "a bound on a pixel of one render.\n\n";
+    "No test can distinguish an arm whose light comes from bright events that none of its renders contains from a "
+    "darker "
+    "arm: their renders agree with at least the probability q that no event occurs, so a test that is wrong about one "
+    "arm in at most alpha of all calls is right about the other in at most alpha + 1 - q. Such calls are counted "
+    "separately. `brightest`, a bound on a pixel of one render, helps.\n\n";
 
 std::vector<Calls> scenes_of(const std::vector<SyntheticNoise>& noises, bool both, const std::vector<int>& renders,
     const std::vector<CompareFlag>& more = {}) {
@@ -142,17 +144,34 @@ std::vector<Calls> scenes_of(const std::vector<SyntheticNoise>& noises, bool bot
 /// Each channel has a quarter of its noise of its own; the noise of two channels has a correlation of 0.9.
 constexpr double own_share = 0.25;
 
-/// The rate of calls that satisfy a condition, one line each; `first` has the columns that describe the scene.
+/// Calls of one kind, and the condition whose rate is a cell of a table.
 struct Counted {
-    std::string first;
+    std::string kind;
     const Calls* calls;
     std::function<bool(const CompareResult&)> condition;
 };
-std::string counts(const std::string& head, const std::vector<Counted>& lines) {
-    std::string out = head;
-    for (const Counted& l : lines)
-        out += fmt::format("| {} | {} | {} |\n", l.first, l.calls->scene.renders,
-            rate_text(count(l.calls->results, l.condition), l.calls->results.size()));
+/// Those rates: a line for each kind, a column for each number of renders.
+std::string counts(const std::string& kinds, const std::vector<Counted>& all) {
+    std::set<int> renders;
+    for (const Counted& c : all) renders.insert(c.calls->scene.renders);
+    std::vector<std::string> lines;
+    std::map<std::string, std::map<int, std::string>> rates;
+    for (const Counted& c : all) {
+        if (!rates.contains(c.kind)) lines.push_back(c.kind);
+        rates[c.kind][c.calls->scene.renders] =
+            rate_cell(count(c.calls->results, c.condition), c.calls->results.size());
+    }
+    std::string out = fmt::format("| {} |", kinds), rule = "|---|";
+    for (const int k : renders) {
+        out += fmt::format(" {} renders |", k);
+        rule += "---|";
+    }
+    out += '\n' + rule + '\n';
+    for (const std::string& kind : lines) {
+        out += fmt::format("| {} |", kind);
+        for (const int k : renders) out += fmt::format(" {} |", rates[kind].contains(k) ? rates[kind][k] : "–");
+        out += '\n';
+    }
     return out;
 }
 
@@ -221,25 +240,18 @@ std::string ColourRates::text() const {
         "### In colour\n\nTwo arms, no reference. Three quarters of a channel's noise are common to all three, a "
         "quarter "
         "is its own: the correlation of two channels is 0.9.\n\nEqual arms:\n\n";
-    out += counts("| noise of both | renders | calls with a difference found |\n|---|---|---|\n",
-        lines_of(alike, kind, arms_differ));
+    out += counts("noise of both", lines_of(alike, kind, arms_differ));
     out += "\nB is brighter by this share, gamma noise of 20 %:\n\n" +
-        counts("| bias | renders | found |\n|---|---|---|\n",
-            lines_of(bias, percent_of(&SyntheticNoise::bias), arms_differ));
+        counts("bias", lines_of(bias, percent_of(&SyntheticNoise::bias), arms_differ));
     out += "\nRed of B is brighter by this share and blue darker by 2.94 times as much, so Y is equal:\n\n" +
-        counts(
-            "| red | renders | found |\n|---|---|---|\n", lines_of(hue, percent_of(&SyntheticNoise::hue), arms_differ));
+        counts("red", lines_of(hue, percent_of(&SyntheticNoise::hue), arms_differ));
     out += "\n### Values that are not finite\n\nA pixel of a render is NaN with this probability in both arms:\n\n" +
-        counts("| probability | renders | calls with a difference found |\n|---|---|---|\n",
-            lines_of(failing_alike, chance, arms_differ));
-    out += "\nIn B only:\n\n" +
-        counts("| probability | renders | found |\n|---|---|---|\n", lines_of(failing, chance, arms_differ));
+        counts("probability", lines_of(failing_alike, chance, arms_differ));
+    out += "\nIn B only:\n\n" + counts("probability", lines_of(failing, chance, arms_differ));
     out +=
         "\n### Renders with shared seeds\n\nRenders with independent seeds that are taken for renders with shared "
         "seeds:\n\n" +
-        counts("| noise of both | renders | calls that take any two renders for such |\n|---|---|---|\n",
-            lines_of(alike, kind, some_seeds_found));
-    const std::string head = "| | renders | calls |\n|---|---|---|\n";
+        counts("noise of both", lines_of(alike, kind, some_seeds_found));
     std::vector<Counted> seen = lines_of(
         same_seeds, [](const SyntheticScene& w) { return fmt::format("bias {:g} %, all recognised", 100 * w.b.bias); },
         all_seeds_found);
@@ -261,19 +273,17 @@ std::string ColourRates::text() const {
     more(lines_of(other_noise, pair("all recognised"), all_seeds_found));
     more(lines_of(other_noise, pair("a difference is found"), arms_differ));
     return out + "\nThe same seeds in another order; gamma noise of 20 % unless stated otherwise:\n\n" +
-        counts(head, seen);
+        counts("", seen);
 }
 
 std::string powers(const std::vector<Calls>& biased) {
-    std::string out =
-        "| bias | renders | found | smallest difference that would be found, as stated without bias "
-        "|\n|---|---|---|---|\n";
+    std::string out = "| bias | renders | found | stated without bias |\n|---|---|---|---|\n";
     for (const Calls& c : biased) {
         double smallest = 0;
         for (const CompareResult& r : c.results)
             smallest += r.bias[1].regions.back().smallest / static_cast<double>(c.results.size());
         out += fmt::format("| {:g} % | {} | {} | {:.2g} % |\n", 100 * c.scene.b.bias, c.scene.renders,
-            rate_text(count(c.results, [](const CompareResult& r) { return r.bias[1].differs(); }), c.results.size()),
+            rate_cell(count(c.results, [](const CompareResult& r) { return r.bias[1].differs(); }), c.results.size()),
             100 * smallest);
     }
     return out;
@@ -307,7 +317,8 @@ std::string error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonit
         for (Calls& c : *scenes) call(c, repeats, seed, monitor);
     std::string out = fmt::format(
         "{} calls each, with two arms of 32 x 32 pixels and mean 1 and a reference without error: three comparisons "
-        "per call, which share alpha = 0.05.\n\n",
+        "per call, which share alpha = 0.05. Cells are the calls in which a difference is found, with the 95 % "
+        "interval of their rate.\n\n",
         repeats);
     out += "### False alarms\n\n" + indistinguishable_text;
     out += "Kinds of noise with which the rules were chosen:\n\n" + false_alarms(right);
@@ -321,7 +332,7 @@ std::string error_rates(std::uint32_t repeats, std::uint32_t seed, ProgressMonit
         powers(biased) + "\n" + colour.text();
     out +=
         "\n### Coverage of 95 % intervals\n\nStudent's t over renders, bias2 by the jackknife; for arm A, over the "
-        "frame. If a heavy tail is reported there is no interval.\n\n";
+        "frame. 0.900/10: of the 10 calls that state an interval; after a heavy tail there is none.\n\n";
     right.insert(right.end(), other.begin(), other.end());
     return out + covered(right);
 }

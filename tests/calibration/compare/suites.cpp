@@ -14,6 +14,7 @@
 #include "tests/support/synthetic_renders.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
+#include "rate_cell.h"
 
 namespace {
 
@@ -133,8 +134,8 @@ void print_false_alarms(
         "stated; alpha = {}.\n\n| of the suites | |\n|---|---|\n| some view is changed, noisier or improved | {} |\n| "
         "exit "
         "code 1: changed or noisier | {} |\n| some view is improved | {} |\n\n",
-        suites, views, side, side, renders, alpha, rate_text(alarms, suites), rate_text(failing, suites),
-        rate_text(improved, suites));
+        suites, views, side, side, renders, alpha, rate_cell(alarms, suites), rate_cell(failing, suites),
+        rate_cell(improved, suites));
     fmt::print(
         "| kind of view | views | changed | noisier | improved | too few renders | same "
         "|\n|---|---|---|---|---|---|---|\n");
@@ -180,7 +181,7 @@ void print_power(const std::vector<ViewKind>& kinds, std::uint32_t repeats, std:
         if (of == 0) fmt::print("| {} | heavy tail: none is stated | – | – |\n", kind.name);
         else
             fmt::print("| {} | {:.2g} % | {} | {} |\n", kind.name, 100 * sum / static_cast<double>(of),
-                rate_text(whole, of), rate_text(halved, of));
+                rate_cell(whole, of), rate_cell(halved, of));
         std::fflush(stdout);
     }
 }
@@ -278,10 +279,10 @@ void print_nights(std::uint32_t most_nights, std::uint32_t seed) {
             changed[n] = result.views[0].state == ViewState::changed;
         });
         const auto of = [&](int code) {
-            return rate_text(static_cast<std::uint64_t>(std::count(codes.begin(), codes.end(), code)), nights);
+            return rate_cell(static_cast<std::uint64_t>(std::count(codes.begin(), codes.end(), code)), nights);
         };
         fmt::print("| {} | {} | {} | {} | {} |\n", planted.name, of(0), of(1), of(4),
-            rate_text(static_cast<std::uint64_t>(std::count(changed.begin(), changed.end(), 1)), nights));
+            rate_cell(static_cast<std::uint64_t>(std::count(changed.begin(), changed.end(), 1)), nights));
         std::fflush(stdout);
     }
 }

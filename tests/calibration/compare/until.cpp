@@ -11,6 +11,7 @@
 #include "compare/suite/until.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
+#include "rate_cell.h"
 #include "output/tone_map.h"
 #include "tests/support/synthetic_renders.h"
 
@@ -191,7 +192,7 @@ int main(int argc, char** argv) {
             "{} suites of {} unchanged views, {} x {} pixels, {} renders of the baseline, at most {} of the "
             "candidate, smallest = {:g} %, alpha = {:g}: {} report a change.\n",
             suites, kinds.size(), side, side, baseline_renders, most_renders, 100 * smallest, alpha,
-            rate_text(alarms, suites));
+            rate_cell(alarms, suites));
         print_outcomes(all, "unchanged views");
         for (const double bias : {0.03, 0.1})
             print_outcomes(outcomes(std::max(20u, suites / 10), bias, seed_of(seed, 99)),
