@@ -1,6 +1,6 @@
 #!/bin/bash
-# Every code block of the documentation runs as it is printed (tests/system/docs/run_blocks.py); errors on a page are
-# found.
+# Every code block of the documentation but README.md, which first.sh has, runs as it is printed
+# (tests/system/docs/run_blocks.py); errors on a page are found.
 . "$(dirname "$0")/common.sh"
 . "$here/docs/python.sh"
 python=$(page_python)
@@ -87,4 +87,5 @@ for page in bare indented; do
     grep -q "^$page.md:[13]: .*expected one" printed || die "$page.md is not refused: $(cat printed)"
 done
 
-run_blocks
+mapfile -t pages < <(find "$CRESCENT_SOURCE"/{CONTRIBUTING.md,docs,examples} -name '*.md' | sort)
+run_blocks "${pages[@]}"
