@@ -7,7 +7,7 @@ if [ -d "$made" ]; then
 fi
 render() { # SEED N FILE
     crescent run tests/system/tiny.toml --quiet --set seed=$1 --set arms.cosine.n=$2 --set image.width=560 \
-        --set image.height=440 --seeds 1 --only films --out renders
+        --set image.height=440 --set reference.kind=paired --set reference.n=1 --seeds 1 --only films --out renders
     mv renders/films/cosine.exr "$3"
 }
 mkdir old new
