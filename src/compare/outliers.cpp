@@ -158,9 +158,13 @@ void set_outliers_apart(RenderStats& all, const OutlierPixels& found) {
     for (PixelSet& set : all.regions) std::erase_if(set.pixels, [&](std::uint32_t i) { return all.bad[i]; });
 }
 
-double upper_quartile(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(3 * values.size() / 4);
+/// A few bright pixels are in fewer tiles than this.
+constexpr std::size_t least_tiles = 4;
+
+/// Returns the value that a quarter of the tiles, and `least_tiles` of them, reach.
+double reached_by_quarter(std::vector<double> values) {
+    const std::size_t index = std::min(3 * values.size() / 4, values.size() - least_tiles);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(index);
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
@@ -231,7 +235,7 @@ std::optional<OutlierRender> outlier_render(const RenderStats& all) {
         if (n < 3) continue;
         renders += n;
         const std::vector<std::size_t> tiles = lit_tiles(side);
-        if (tiles.empty()) continue;
+        if (tiles.size() < least_tiles) continue;
         const double other_noise = other.files.size() > 1 ? tile_noise(other, tiles, other.files.size()) : 0;
         const double degrees = static_cast<double>(n - 2 + other.files.size() - 1);
         for (std::size_t k = 0; k < n; ++k) {
@@ -247,7 +251,7 @@ std::optional<OutlierRender> outlier_render(const RenderStats& all) {
             }
             const double noise = std::max(other_noise, tile_noise(side, tiles, k));
             const double deviation =
-                upper_quartile(std::move(off)) / (noise * std::sqrt(1 + 1 / static_cast<double>(n - 1)));
+                reached_by_quarter(std::move(off)) / (noise * std::sqrt(1 + 1 / static_cast<double>(n - 1)));
             if (std::isnan(deviation) || (out && deviation <= out->deviation)) continue;
             out = OutlierRender{s, k, 0, own / others, deviation, student_p(deviation, degrees)};
         }

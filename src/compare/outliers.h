@@ -51,11 +51,12 @@ struct OutlierRender {
 };
 
 /// Returns the render of the first two arms that deviates the most from the others of its side; nothing if no side has
-/// three. Outlier pixels deviate if one render has too many of them for equal rates (binomial tail), all else by its
-/// tiles: the deviation is the upper quartile, over tiles, of |mean - mean of the others|, relative to the root
-/// mean square of the standard deviation, over the others or over the other side, the larger of the two: a few bright
-/// pixels do not increase it. p is that of Student's t if all tiles deviate together, as with noise that is common to
-/// all pixels, times the number of renders and 2 (Bonferroni); with independent tiles it is smaller.
+/// three, with light in four tiles. Outlier pixels deviate if one render has too many of them for equal rates (binomial
+/// tail), all else by its tiles: the deviation is the |mean - mean of the others| that a quarter of the tiles, and four
+/// of them, reach, relative to the root mean square of the standard deviation, over the others or over the other side,
+/// the larger of the two: a few bright pixels do not increase it. p is that of Student's t if all tiles deviate
+/// together, as with noise that is common to all pixels, times the number of renders and 2 (Bonferroni); with
+/// independent tiles it is smaller.
 std::optional<OutlierRender> outlier_render(const RenderStats& all);
 
 }  // namespace crescent::inline comparison

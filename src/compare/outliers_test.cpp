@@ -19,9 +19,9 @@ constexpr int width = 40;
 
 /// Renders of two sides with equal noise, to be changed before they are read.
 struct TwoSides {
-    TwoSides(const SyntheticNoise& noise, int baseline, int candidate, std::uint32_t seed) {
+    TwoSides(const SyntheticNoise& noise, int baseline, int candidate, std::uint32_t seed, int side = width) {
         SyntheticScene scene;
-        scene.width = width;
+        scene.width = side;
         plan.arms.resize(2);
         for (const auto& [side, count] : {std::pair(0, baseline), std::pair(1, candidate)}) {
             for (int k = 0; k < count; ++k) {
@@ -124,6 +124,21 @@ TEST(Outliers, ARenderWithAnotherExposureDeviates) {
     EXPECT_EQ(found->render, 3u);
     EXPECT_NEAR(found->ratio, 1.5, 0.03);
     EXPECT_LT(found->p, 1e-3);
+}
+
+// Of 16 x 16 pixels there are four tiles: a bright pixel decides the mean of one of them.
+TEST(Outliers, AFewBrightPixelsOfASmallViewMakeNoOutlierRender) {
+    for (std::uint32_t seed = 0; seed < 30; ++seed) {
+        const auto found = outlier_render(TwoSides({Kind::pareto, 1.5}, 12, 8, 3000 + 50 * seed, 16).read());
+        ASSERT_TRUE(found);
+        EXPECT_GT(found->p, 0.01) << seed;
+    }
+    TwoSides sides({Kind::gamma, 0.3}, 5, 5, 40, 16);
+    for (std::vector<float>* plane :
+        {&sides.renders.at("1 2").r, &sides.renders.at("1 2").g, &sides.renders.at("1 2").b})
+        for (float& x : *plane) x = 0;
+    EXPECT_LT(outlier_render(sides.read())->p, 1e-3);
+    EXPECT_FALSE(outlier_render(TwoSides({Kind::gamma, 0.3}, 5, 5, 40, 8).read()));  // one tile
 }
 
 TEST(Outliers, TwoRendersOfEachSideHaveNoOutlierRender) {

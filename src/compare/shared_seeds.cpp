@@ -40,8 +40,24 @@ struct Correlation {
     bool found = false;
 };
 
-/// Returns the correlation of two renders' residuals, and whether it is above 0 at this level.
-Correlation correlation(const std::vector<float>& a, const std::vector<float>& b, const SeedSamples& at, double level) {
+/// The quantiles of Student's t for means of n values at one level; each is computed once.
+class MeanLimits {
+public:
+    explicit MeanLimits(double level) : level_(level) {}
+    double of(std::size_t n) {
+        if (n >= limits_.size()) limits_.resize(n + 1, 0);
+        if (limits_[n] == 0) limits_[n] = student_quantile(1 - level_, static_cast<double>(n - 1));
+        return limits_[n];
+    }
+
+private:
+    double level_;
+    std::vector<double> limits_;  // 0: not yet known
+};
+
+/// Returns the correlation of two renders' residuals, and whether it is above 0 at the level of the limits.
+Correlation correlation(
+    const std::vector<float>& a, const std::vector<float>& b, const SeedSamples& at, MeanLimits& limits) {
     std::vector<double> blocks;
     double product = 0, squares_a = 0, squares_b = 0;
     for (std::size_t block = 0, k = 0; block < at.ends.size(); ++block) {
@@ -56,9 +72,11 @@ Correlation correlation(const std::vector<float>& a, const std::vector<float>& b
     if (!(squares_a > 0) || !(squares_b > 0)) return {};
     const double r = product / std::sqrt(squares_a * squares_b);
     if (blocks.size() < blocks_least) return {r, false};
-    const MeanInterval mean = mean_interval(blocks, 0.95);
-    const double limit = student_quantile(1 - level, static_cast<double>(blocks.size() - 1));
-    return {r, mean.mean > limit * mean.se};
+    const double n = static_cast<double>(blocks.size());
+    const double mean = std::accumulate(blocks.begin(), blocks.end(), 0.0) / n;
+    double squares = 0;
+    for (const double sum : blocks) squares += (sum - mean) * (sum - mean);
+    return {r, mean > limits.of(blocks.size()) * std::sqrt(squares / (n - 1) / n)};
 }
 
 using Correlations = std::vector<std::vector<double>>;  // [render of a][render of b]
@@ -153,13 +171,13 @@ std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, 
 std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, const ArmStats& b) {
     if (a.files.size() < 2 || b.files.size() < 2 || a.sampled.empty() || b.sampled.empty()) return {};
     const SeedSamples at = seed_samples(all);
-    const double level = shared_seed_level / static_cast<double>(a.files.size() * b.files.size());
+    MeanLimits limits(shared_seed_level / static_cast<double>(a.files.size() * b.files.size()));
     std::vector<SeedPair> found;
     Correlations all_r(a.files.size(), std::vector<double>(b.files.size()));
     double largest = 0;
     for (std::size_t i = 0; i < a.files.size(); ++i)
         for (std::size_t j = 0; j < b.files.size(); ++j) {
-            const Correlation c = correlation(a.sampled[i], b.sampled[j], at, level);
+            const Correlation c = correlation(a.sampled[i], b.sampled[j], at, limits);
             all_r[i][j] = c.r;
             if (c.found) found.push_back({i, j, c.r}), largest = std::max(largest, c.r);
         }

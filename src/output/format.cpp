@@ -209,4 +209,36 @@ std::string junit_text(const JunitSuite& suite) {
     return out + "  </testsuite>\n</testsuites>\n";
 }
 
+namespace {
+
+/// A path as a URI (RFC 3986, 3.3); relative ones stay relative.
+std::string uri_of(const std::string& path) {
+    std::string out = path.starts_with('/') ? "file://" : "";
+    for (const char c : path) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+            std::string_view("-._~/").find(c) != std::string_view::npos;
+        out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string sarif_text(
+    const std::string& version, const std::vector<std::string>& rules, const std::vector<SarifResult>& results) {
+    Json all_rules = Json::array(), all = Json::array();
+    for (const std::string& rule : rules) all_rules.push_back({{"id", rule}});
+    for (const SarifResult& each : results) {
+        const std::string uri = each.file.empty() ? "." : uri_of(each.file);
+        const Json place = {{"physicalLocation",
+            {{"artifactLocation", {{"uri", uri}}}, {"region", {{"startLine", std::max(1u, each.line)}}}}}};
+        all.push_back({{"ruleId", each.rule}, {"level", each.level}, {"message", {{"text", each.message}}},
+            {"locations", Json::array({place})}, {"partialFingerprints", {{"crescent", each.identity}}}});
+    }
+    const Json driver = {{"name", "crescent"}, {"version", version}, {"rules", all_rules}};
+    const Json run = {{"tool", {{"driver", driver}}}, {"results", all}};
+    return text({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"}, {"version", "2.1.0"},
+        {"runs", Json::array({run})}});
+}
+
 }  // namespace crescent::inline output

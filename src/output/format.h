@@ -113,4 +113,18 @@ struct JunitSuite {
 /// Returns the file. Any text is allowed in it: it is escaped here. Equal suites give equal bytes.
 std::string junit_text(const JunitSuite& suite);
 
+// ---- The Static Analysis Results Interchange Format 2.1.0, which code hosts show at lines of files.
+
+struct SarifResult {
+    std::string rule, level;  // level: error, warning or note
+    std::string message;
+    std::string file;      // with a line; "": of no file
+    unsigned line = 0;     // 0: unknown
+    std::string identity;  // equal in two calls if both find the same
+};
+
+/// Returns the file. `rules`: every rule that a result may have.
+std::string sarif_text(
+    const std::string& version, const std::vector<std::string>& rules, const std::vector<SarifResult>& results);
+
 }  // namespace crescent::inline output

@@ -55,8 +55,14 @@ expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/glass.py"
 expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/glass.py" --wo 150 --json below.json
 grep -q '"case": "w_o 150 deg' below.json || die "w_o under the surface is not judged"
 sed 's/1 \/ eta\*\*2, 1\.0)  # of radiance/1.0, 1.0)/' "$pipes/glass.py" >unscaled.py
-expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 unscaled.py" --wo 45
+expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 unscaled.py" --wo 45 --sarif unscaled.sarif
 grep -q "physics: wrong" printed || die "a missing eta^2 is not reported: $(cat printed)"
+/usr/bin/python3 -c 'import json
+run = json.load(open("unscaled.sarif"))["runs"][0]
+places = {r["ruleId"]: r["locations"][0]["physicalLocation"] for r in run["results"]}
+line = 1 + [each.startswith("def sample(") for each in open("unscaled.py")].index(True)
+assert places["physics"] == {"artifactLocation": {"uri": "unscaled.py"}, "region": {"startLine": line}}, places' ||
+    die "the SARIF file: $(cat unscaled.sarif)"
 expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/sky.py 512 1024"
 sed 's/(j + np.clip(along/(j + 1 + np.clip(along/' "$pipes/sky.py" >next_texel.py
 expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 next_texel.py 256 512"

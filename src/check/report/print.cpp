@@ -168,6 +168,29 @@ std::string verdict_junit(const CheckResult& result) {
     return junit_text(suite);
 }
 
+std::string verdict_sarif(
+    const CheckResult& result, const std::pair<std::string, unsigned>& place, const ResultSource& source) {
+    std::vector<SarifResult> results;
+    const auto add = [&](const std::string& rule, const char* level, const std::string& message,
+                         const std::string& identity) {
+        results.push_back({rule, level, message, place.first, place.second, identity});
+    };
+    for (const Verdict& v : result.verdicts) {
+        if (v.waived || (!v.why_expected.empty() && v.expected)) continue;
+        const bool fails = v.state == State::wrong || v.state == State::error || !v.expected;
+        if (!fails && v.state != State::inconclusive) continue;
+        const bool open = v.state == State::inconclusive;
+        add(v.name, open ? "warning" : "error",
+            fmt::format("{} is {} at {}: {}{}", v.arm, word(v.state), v.check_case, v.message,
+                v.cause.empty() ? "" : " " + v.cause),
+            fmt::format("{} {} {}", v.arm, v.check_case, v.name));
+    }
+    for (const std::string& line : result.unmet) add("expectation", "error", line, line);
+    std::vector<std::string> rules(verdict_names.begin(), verdict_names.end());
+    rules.emplace_back("expectation");
+    return sarif_text(source.version, rules, results);
+}
+
 // ---- The terms of each front end for a next step.
 
 namespace {

@@ -24,6 +24,10 @@ std::string verdict_json(const CheckResult& result, const ResultSource& source =
 /// Seconds of each verdict, nanoseconds of a sample, variance x time and the resulting ranks.
 std::string verdict_timing(const CheckResult& result, const ResultSource& source = {});
 std::string verdict_junit(const CheckResult& result);
+/// Verdicts that fail or are inconclusive and that the caller does not expect, at the file and line of the sampler
+/// (line 0: unknown), for code hosts.
+std::string verdict_sarif(
+    const CheckResult& result, const std::pair<std::string, unsigned>& place, const ResultSource& source = {});
 /// The summary, a matrix of w_o and verdicts, then for each case: maps of observed, expected and standardised
 /// difference, weight histograms with their tail, and polar plots of p and f L cos. For a sampler without pdf(w): the
 /// map and the table of the density that its draws imply. Not in crescent::check built alone.

@@ -56,6 +56,23 @@ TEST(ResultAsJunit, HasACaseForEachVerdict) {
     EXPECT_THAT(verdict_junit(result), HasSubstr("tests=\"6\" failures=\"2\" errors=\"1\" skipped=\"1\""));
 }
 
+TEST(ResultAsSarif, HasWhatFailsAtThePlaceOfTheSampler) {
+    CheckResult result = every_state();
+    const nlohmann::json sarif = nlohmann::json::parse(verdict_sarif(result, {"a b.py", 7}, {"1.2", "", ""}));
+    EXPECT_EQ(sarif["version"], "2.1.0");
+    const nlohmann::json& results = sarif["runs"][0]["results"];
+    ASSERT_EQ(results.size(), 3u);  // wrong, inconclusive, error
+    EXPECT_EQ(results[0]["ruleId"], result.verdicts[1].name);
+    EXPECT_EQ(results[0]["level"], "error");
+    const nlohmann::json& place = results[0]["locations"][0]["physicalLocation"];
+    EXPECT_EQ(place["artifactLocation"]["uri"], "a%20b.py");
+    EXPECT_EQ(place["region"]["startLine"], 7);
+    EXPECT_EQ(results[1]["level"], "warning");
+    EXPECT_EQ(results[2]["level"], "error");
+    result.verdicts[1].waived = true;
+    EXPECT_EQ(nlohmann::json::parse(verdict_sarif(result, {}, {}))["runs"][0]["results"].size(), 2u);
+}
+
 TEST(ResultAsTable, HasTheWorstStateOfEachArm) {
     const std::string table = verdict_table(every_state());
     const std::size_t made = table.find("\nmade "), other = table.find("\nother ");

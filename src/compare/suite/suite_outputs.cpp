@@ -102,17 +102,6 @@ std::string cell(const std::string& text) {
     return out;
 }
 
-/// A path as part of a URI: RFC 3986, 3.3.
-std::string uri_path(const std::string& path) {
-    std::string out;
-    for (const char c : path) {
-        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-            std::string_view("-._~/").find(c) != std::string_view::npos;
-        out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    }
-    return out;
-}
-
 const char* mark_of(ViewState state) {
     switch (state) {
         case ViewState::unreadable:
@@ -159,29 +148,19 @@ std::string suite_junit(const Suite& suite, const SuiteResult& result, bool new_
 
 std::string suite_sarif(
     const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& provenance) {
-    Json rules = Json::array(), results = Json::array();
-    for (const char* state : view_state_names) rules.push_back({{"id", state}});
+    std::vector<SarifResult> results;
     for (const ViewResult* view : by_state(result)) {
         const JunitCase::State state = junit_state(*view, new_baseline);
         if (state == JunitCase::State::passed) continue;
         const auto stated = std::find_if(
             suite.views.begin(), suite.views.end(), [&](const SuiteView& each) { return each.name == view->name; });
-        const unsigned line = stated == suite.views.end() ? 1 : std::max(1u, stated->at.line);
-        const Json place = {{"physicalLocation",
-            {{"artifactLocation", {{"uri", suite.file.empty() ? "." : uri_path(suite.file)}}},
-                {"region", {{"startLine", line}}}}}};
-        results.push_back({{"ruleId", name_of(view->state)},
-            {"level",
-                state == JunitCase::State::failed      ? "error"
-                    : state == JunitCase::State::error ? "warning"
-                                                       : "note"},
-            {"message", {{"text", view->name + ": " + view->headline}}}, {"locations", Json::array({place})},
-            {"partialFingerprints", {{"view", view->name}}}});
+        const char* level = state == JunitCase::State::failed ? "error"
+            : state == JunitCase::State::error                ? "warning"
+                                                              : "note";
+        results.push_back({name_of(view->state), level, view->name + ": " + view->headline, suite.file,
+            stated == suite.views.end() ? 0 : stated->at.line, view->name});
     }
-    const Json driver = {{"name", "crescent"}, {"version", provenance.version}, {"rules", rules}};
-    const Json run = {{"tool", {{"driver", driver}}}, {"results", results}};
-    return text({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"}, {"version", "2.1.0"},
-        {"runs", Json::array({run})}});
+    return sarif_text(provenance.version, {view_state_names.begin(), view_state_names.end()}, results);
 }
 
 std::string failure_junit(const std::string& file, const std::string& message) {

@@ -28,6 +28,7 @@ struct Made {
     SyntheticNoise before{Kind::gamma, 0.2}, after{Kind::gamma, 0.2};
     bool constant = false;
     std::size_t most = 200;
+    int width = side;
     std::string failure;
 
     Made() {
@@ -47,7 +48,7 @@ struct Made {
             auto number = static_cast<std::uint32_t>(std::stoul(path.substr(dash + 1)));
             if (constant && is_candidate) number = 1;
             SyntheticScene scene;
-            scene.width = side;
+            scene.width = width;
             return synthetic_render(
                 path, is_candidate ? after : before, seed_of(seed, 2 * number + (is_candidate ? 1 : 0)), scene);
         };
@@ -109,10 +110,13 @@ TEST(Until, ProgramsThatFailOrIgnoreTheSeedAreNamed) {
 }
 
 TEST(Until, HeavyTailsEndAsUndecided) {
-    Made heavy;
-    heavy.before = heavy.after = {Kind::pareto, 1.5};
-    heavy.most = 60;
-    EXPECT_EQ(heavy.decide().views[0].state, ViewState::too_few);
+    for (const int width : {side, 16})
+        for (std::uint32_t seed = 1; seed < 5; ++seed) {
+            Made heavy;
+            heavy.before = heavy.after = {Kind::pareto, 1.5};
+            heavy.most = 60, heavy.width = width;
+            EXPECT_EQ(heavy.decide(seed).views[0].state, ViewState::too_few) << width << " " << seed;
+        }
 }
 
 /// Normal noise, tested after each of 60 renders: p is ever below alpha at most as often as alpha.
