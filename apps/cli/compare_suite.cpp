@@ -14,6 +14,10 @@ namespace {
 
 /// The keys of [suite] that the flags replace.
 SuiteFlags suite_flags(const CompareFlags& f) {
+    for (const auto& [flag, folder] : {std::pair{"--baseline", f.baseline}, std::pair{"--candidate", f.candidate}})
+        if (folder.find("://") != std::string::npos)
+            throw InputError({fmt::format("{} {}", flag, folder), 0, 0},
+                "expected a folder, found an address: mount it, and give the folder where it is mounted");
     SuiteFlags out;
     out.baseline = f.baseline, out.candidate = f.candidate,
     out.baseline_only = f.plan || (f.accept && !f.views.empty()) || !f.render.empty();
