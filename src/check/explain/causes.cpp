@@ -366,6 +366,8 @@ bool unusable_draws_explain(std::span<const Place> places) {
 }  // namespace
 
 std::optional<Cause> cause_of(std::span<const CheckCase> check_cases, const CheckOutcome& outcome) {
+    if (!outcome.check_cases.empty() && check_cases[outcome.check_cases[0]].adapter->traits().reciprocal_weight)
+        return reciprocal_weight_cause(check_cases, outcome);
     const bool few =
         std::ranges::any_of(outcome.check_cases, [&](std::size_t i) { return check_cases[i].adapter->serial(); });
     const bool of_points = std::ranges::any_of(

@@ -177,6 +177,8 @@ std::optional<Cause> unreached_cause(std::span<const Place> places);
 // at every draw, without noise.
 
 std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome);
+/// A constant or a factor by which random weights W that estimate 1/p are off (explain/reciprocal_weights.cpp).
+std::optional<Cause> reciprocal_weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome);
 
 /// "Weights are f cos / p over cos theta_i and a constant 0.5 = 1/2."
 std::string ratio_sentence(const char* given, const char* expected, const RatioCause& cause, const Traits& traits);

@@ -1,0 +1,217 @@
+// Causes for random weights W that estimate 1/p. With W times a candidate factor the draws must give the integral of h
+// in every region: then the factor is the cause. The draws and their points are fresh.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <vector>
+
+#include "check/constants.h"
+#include "check/decide/check_sampler.h"
+#include "check/estimate/source.h"
+#include "check/explain/causes.h"
+#include "math/functions.h"
+#include "math/simd/scalar.h"
+#include "math/statistics.h"
+#include "output/format.h"
+
+namespace crescent::check {
+
+namespace {
+
+/// A factor by which W may be off, as a function of the direction and of the target over q.
+struct WeightFactor {
+    const char* name;
+    double (*value)(Vec3d wi, double target);
+    const char* text;  // the cause in words
+};
+constexpr WeightFactor weight_factors[] = {
+    {"constant", [](Vec3d, double) { return 1.0; }, ""},
+    {"target", [](Vec3d, double target) { return target; },
+        "W is not divided by the target of the direction that is kept"},
+    {"1/target", [](Vec3d, double target) { return 1 / target; },
+        "W is divided twice by the target of the direction that is kept"},
+    {"cos theta_i", [](Vec3d w, double) { return std::fabs(w.z); }, "W has cos theta_i once too often"},
+    {"1/cos theta_i", [](Vec3d w, double) { return 1 / std::max(std::fabs(w.z), 1e-6); },
+        "W lacks a factor cos theta_i"},
+};
+
+constexpr std::size_t of_height = 8, of_azimuth = 4, of_target = 2, regions = of_height * of_azimuth * of_target;
+constexpr std::uint32_t draws_of_weights = 1u << 18, points_of_target = 1u << 16, batch = 1u << 14;
+constexpr double golden_ratio = 0.618033988749894848;
+constexpr double least_mass = 2e-3;  // of a region, relative to all
+constexpr double least_p = 0.01;     // of a factor that explains the weights
+constexpr double none_p = 1e-6;      // a factor that is rejected so clearly is none
+
+std::size_t region_of(Vec3d w, double h) {
+    const auto part = [](double share, std::size_t count) {
+        return std::min(static_cast<std::size_t>(std::max(share, 0.0) * static_cast<double>(count)), count - 1);
+    };
+    const double azimuth = math::atan2(w.y, w.x) / two_pi;
+    return (part((1 - w.z) / 2, of_height) * of_azimuth + part(azimuth < 0 ? azimuth + 1 : azimuth, of_azimuth)) *
+        of_target +
+        part(h, of_target);
+}
+
+struct RegionSum {
+    double sum = 0, squares = 0;
+    void add(double x) { sum += x, squares += x * x; }
+};
+using RegionSums = std::array<RegionSum, regions>;
+
+/// h W over the fresh draws of one w_o, and h over points of the whole sphere.
+struct ReservoirSums {
+    std::array<RegionSums, std::size(weight_factors)> drawn{};  // of W over each factor
+    std::array<double, regions> integral{}, error{};
+    double draws = 0, empty = 0;  // draws, and those without a weight
+    /// Shares of directions whose target is above 0: uniform over the sphere, over the hemisphere, by the cosine.
+    std::array<double, 3> with_target{};
+};
+
+void add_draws(Source& source, const StreamKey& key, ReservoirSums& out) {
+    std::vector<Draw> draws(batch);
+    std::vector<Vec3d> w;
+    std::vector<double> weights;
+    std::vector<Vec3d> h;
+    for (std::uint32_t i = 0; i < draws_of_weights; i += batch) {
+        StreamKey part = key;
+        part.part = static_cast<std::uint16_t>(i / batch);
+        source.draw(first_numbers(part, batch, source.traits), draws);
+        w.clear(), weights.clear();
+        for (const Draw& d : draws)
+            if (d.pdf > 0 && d.weight && *d.weight > 0 && std::isfinite(*d.weight + dot(d.wi, d.wi)))
+                w.push_back(d.wi), weights.push_back(*d.weight);
+        h.resize(w.size());
+        source.f_cos(w, h);
+        out.draws += batch, out.empty += static_cast<double>(batch - w.size());
+        for (std::size_t k = 0; k < w.size(); ++k) {
+            if (!(h[k].x > 0 && h[k].x < 1)) continue;
+            const std::size_t region = region_of(w[k], h[k].x);
+            for (std::size_t f = 0; f < std::size(weight_factors); ++f)
+                out.drawn[f][region].add(weights[k] / weight_factors[f].value(w[k], h[k].x / (1 - h[k].x)));
+        }
+    }
+}
+
+/// A spiral by the golden ratio: the error of a region with n of N points is below n^(1/4) / N of its area.
+void add_points(Source& source, ReservoirSums& out) {
+    std::vector<Vec3d> w(points_of_target), h(points_of_target);
+    for (std::uint32_t i = 0; i < points_of_target; ++i) {
+        const double turns = golden_ratio * i;
+        w[i] = from_chart({2 * (i + 0.5) / points_of_target, two_pi * (turns - std::floor(turns))});
+    }
+    source.f_cos(w, h);
+    const double area = 2 * two_pi / points_of_target;
+    std::array<double, regions> count{};
+    std::array<double, 3> all{};
+    for (std::size_t i = 0; i < w.size(); ++i) {
+        const double of[] = {1, w[i].z > 0 ? 1.0 : 0.0, std::max(w[i].z, 0.0)};
+        for (std::size_t k = 0; k < all.size(); ++k) all[k] += of[k], out.with_target[k] += h[i].x > 0 ? of[k] : 0;
+        if (!(h[i].x > 0)) continue;
+        const std::size_t region = region_of(w[i], h[i].x);
+        out.integral[region] += h[i].x * area, ++count[region];
+    }
+    for (std::size_t k = 0; k < all.size(); ++k) out.with_target[k] /= std::max(all[k], 1.0);
+    for (std::size_t r = 0; r < regions; ++r) {
+        const double root = std::sqrt(std::max(count[r], 1.0));
+        out.error[r] = out.integral[r] / (root * std::sqrt(root));
+    }
+}
+
+/// The constant that remains besides a factor, and whether the two explain the weights in all regions.
+struct WeightFit {
+    double constant = 1, error = 0, p = 0;  // W is constant x factor times what it should be
+};
+WeightFit fit_of(const ReservoirSums& sums, std::size_t factor) {
+    const RegionSums& drawn = sums.drawn[factor];
+    double all = 0, integral = 0, variance = 0;
+    for (std::size_t r = 0; r < regions; ++r) {
+        all += drawn[r].sum / sums.draws, integral += sums.integral[r];
+        variance += drawn[r].squares / sqr(sums.draws);
+    }
+    if (!(all > 0) || !(integral > 0)) return {};
+    WeightFit out{.constant = all / integral, .error = std::sqrt(variance) / integral};
+    double chi2 = 0, counted = 0;
+    for (std::size_t r = 0; r < regions; ++r) {
+        const double d = drawn[r].sum / sums.draws, expected = out.constant * sums.integral[r];
+        if (std::max(d, expected) < least_mass * all) continue;
+        const double v = std::max(drawn[r].squares - sqr(drawn[r].sum) / sums.draws, 0.0) / sqr(sums.draws) +
+            sqr(out.constant * sums.error[r]);
+        chi2 += sqr(d - expected) / std::max(v, 1e-300), ++counted;
+    }
+    out.p = counted > 1 ? chi_squared_p(chi2, counted - 1) : 1;
+    return out;
+}
+
+/// Candidates whose target is 0 do not count in M. With a share s of candidates that count and a share e of empty
+/// reservoirs, W is (1 - e) / s times what it should be, for every M.
+std::string count_sentence(const ReservoirSums& sums, const WeightFit& fit, const Traits& traits) {
+    if (traits.domain) return "";
+    constexpr const char* names[] = {"uniform over the sphere", "uniform over the hemisphere", "by the cosine"};
+    const double reservoirs = 1 - sums.empty / sums.draws;
+    std::string candidates;
+    double least = 1;
+    for (std::size_t k = 0; k < sums.with_target.size(); ++k) {
+        const double share = sums.with_target[k], explained = reservoirs / std::max(share, 1e-9);
+        if (std::fabs(explained - 1) < 0.01 || std::fabs(fit.constant - explained) > 4 * fit.error + 0.005 * explained)
+            continue;
+        candidates += fmt::format("{}{}", candidates.empty() ? "" : " or ", names[k]);
+        least = std::min(least, share);
+    }
+    if (!candidates.empty())
+        return fmt::format(
+            " Of candidates {} a share of {:.3g} has a target above 0: only these are counted in M, and "
+            "all have to be.",
+            candidates, least);
+    return "";
+}
+
+std::string text_of(const WeightFactor& factor, const WeightFit& fit, const ReservoirSums& sums, const Traits& traits) {
+    const double half = half_width_95 * fit.error;
+    const std::string number = number_name(fit.constant, std::max(2 * fit.error, detection_floor), traits);
+    const std::string constant =
+        with_error(fit.constant, half) + (number.empty() || number == "1" ? "" : " = " + number);
+    if (factor.name != std::string_view("constant"))
+        return fmt::format("With {} in the place of W the draws follow the target: {}.",
+            factor.name == std::string_view("target")         ? "W / target"
+                : factor.name == std::string_view("1/target") ? "W x target"
+                : factor.name[0] == '1'                       ? "W cos theta_i"
+                                                              : "W / cos theta_i",
+            factor.text);
+    std::string out = fmt::format("W is {} times what it should be, by the same factor in all directions.", constant);
+    if (fit.constant > 1) return out + count_sentence(sums, fit, traits);
+    if (number.empty())
+        out += " M counts candidates or neighbours that add nothing, or reservoirs are dropped after W was computed.";
+    return out;
+}
+
+}  // namespace
+
+std::optional<Cause> reciprocal_weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome) {
+    for (std::size_t k = 0; k < outcome.at.size(); ++k)
+        for (const CheckAt& c : outcome.at[k]) {
+            if (c.findings.empty()) continue;
+            const CheckCase& check_case = check_cases[outcome.check_cases[k]];
+            Source source(*check_case.adapter, c.technique, check_case.wo, check_case.light);
+            ReservoirSums sums;
+            add_points(source, sums);
+            add_draws(source,
+                {23, static_cast<std::uint16_t>(outcome.check_cases[k]), static_cast<std::uint8_t>(c.technique), 8,
+                    Purpose::light, 0},
+                sums);
+            std::optional<Cause> found;
+            for (std::size_t f = 0; f < std::size(weight_factors); ++f) {
+                const WeightFactor& factor = weight_factors[f];
+                const WeightFit fit = fit_of(sums, f);
+                if (fit.p < none_p) continue;
+                if (fit.p < least_p || found) return {};  // unclear, or two of them
+                if (f == 0 && std::fabs(fit.constant - 1) < 4 * fit.error) return {};
+                found = Cause{factor.name, fit.constant, fit.error, text_of(factor, fit, sums, source.traits), "mean"};
+                if (f == 0) return found;
+            }
+            return found;
+        }
+    return {};
+}
+
+}  // namespace crescent::check
