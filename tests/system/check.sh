@@ -31,7 +31,7 @@ refused 'const char* pdf(V, V) const;' "pdf returns one number, 1/sr"
 
 pipes=$CRESCENT_SOURCE/examples/pipe_samplers
 expect 0 "${CC:-cc}" -O2 -o cosine "$pipes/cosine.c" -lm
-# Every built-in sampler gets its expected verdicts: README.md's first command (tests/system/docs.sh).
+# Every built-in sampler gets its expected verdicts: tests/conformance/.
 
 expect 0 "$CRESCENT" check --quiet --exec ./cosine --json c.json --junit c.xml --html c.html
 grep -q '"state": "right"' c.json || die "cosine.c is not right: $(head -c 300 c.json)"
