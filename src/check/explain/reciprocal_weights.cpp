@@ -23,25 +23,29 @@ namespace {
 struct WeightFactor {
     const char* name;
     double (*value)(Vec3d wi, double target);
-    const char* text;  // the cause in words
+    const char* corrected;  // W without it
+    const char* fault;      // in words
 };
 constexpr WeightFactor weight_factors[] = {
-    {"constant", [](Vec3d, double) { return 1.0; }, ""},
-    {"target", [](Vec3d, double target) { return target; },
+    {"constant", [](Vec3d, double) { return 1.0; }, "", ""},
+    {"target", [](Vec3d, double target) { return target; }, "W / target",
         "W is not divided by the target of the direction that is kept"},
-    {"1/target", [](Vec3d, double target) { return 1 / target; },
+    {"1/target", [](Vec3d, double target) { return 1 / target; }, "W x target",
         "W is divided twice by the target of the direction that is kept"},
-    {"cos theta_i", [](Vec3d w, double) { return std::fabs(w.z); }, "W has cos theta_i once too often"},
-    {"1/cos theta_i", [](Vec3d w, double) { return 1 / std::max(std::fabs(w.z), 1e-6); },
+    {"cos theta_i", [](Vec3d w, double) { return std::fabs(w.z); }, "W / cos theta_i",
+        "W has cos theta_i once too often"},
+    {"1/cos theta_i", [](Vec3d w, double) { return 1 / std::max(std::fabs(w.z), 1e-6); }, "W x cos theta_i",
         "W lacks a factor cos theta_i"},
 };
+constexpr std::size_t by_constant = 0;  // its index
 
 constexpr std::size_t of_height = 8, of_azimuth = 4, of_target = 2, regions = of_height * of_azimuth * of_target;
 constexpr std::uint32_t draws_of_weights = 1u << 18, points_of_target = 1u << 16, batch = 1u << 14;
 constexpr double golden_ratio = 0.618033988749894848;
-constexpr double least_mass = 2e-3;  // of a region, relative to all
-constexpr double least_p = 0.01;     // of a factor that explains the weights
-constexpr double none_p = 1e-6;      // a factor that is rejected so clearly is none
+constexpr double least_mass = 2e-3;    // of a region, relative to all
+constexpr double least_p = 0.01;       // of a factor that explains the weights
+constexpr double distinct_errors = 4;  // by which a constant differs from 1
+constexpr double none_p = 1e-6;        // a factor that is rejected so clearly is none
 
 std::size_t region_of(Vec3d w, double h) {
     const auto part = [](double share, std::size_t count) {
@@ -153,7 +157,8 @@ std::string count_sentence(const ReservoirSums& sums, const WeightFit& fit, cons
     double least = 1;
     for (std::size_t k = 0; k < sums.with_target.size(); ++k) {
         const double share = sums.with_target[k], explained = reservoirs / std::max(share, 1e-9);
-        if (std::fabs(explained - 1) < 0.01 || std::fabs(fit.constant - explained) > 4 * fit.error + 0.005 * explained)
+        if (std::fabs(explained - 1) < 0.01 ||
+            std::fabs(fit.constant - explained) > distinct_errors * fit.error + 0.005 * explained)
             continue;
         candidates += fmt::format("{}{}", candidates.empty() ? "" : " or ", names[k]);
         least = std::min(least, share);
@@ -166,19 +171,13 @@ std::string count_sentence(const ReservoirSums& sums, const WeightFit& fit, cons
     return "";
 }
 
-std::string text_of(const WeightFactor& factor, const WeightFit& fit, const ReservoirSums& sums, const Traits& traits) {
-    const double half = half_width_95 * fit.error;
-    const std::string number = number_name(fit.constant, std::max(2 * fit.error, detection_floor), traits);
-    const std::string constant =
-        with_error(fit.constant, half) + (number.empty() || number == "1" ? "" : " = " + number);
-    if (factor.name != std::string_view("constant"))
+std::string text_of(std::size_t factor, const WeightFit& fit, const ReservoirSums& sums, const Traits& traits) {
+    if (factor != by_constant)
         return fmt::format("With {} in the place of W the draws follow the target: {}.",
-            factor.name == std::string_view("target")         ? "W / target"
-                : factor.name == std::string_view("1/target") ? "W x target"
-                : factor.name[0] == '1'                       ? "W cos theta_i"
-                                                              : "W / cos theta_i",
-            factor.text);
-    std::string out = fmt::format("W is {} times what it should be, by the same factor in all directions.", constant);
+            weight_factors[factor].corrected, weight_factors[factor].fault);
+    const std::string number = number_name(fit.constant, std::max(2 * fit.error, detection_floor), traits);
+    std::string out = fmt::format("W is {}{} times what it should be, by the same factor in all directions.",
+        with_error(fit.constant, half_width_95 * fit.error), number.empty() || number == "1" ? "" : " = " + number);
     if (fit.constant > 1) return out + count_sentence(sums, fit, traits);
     if (number.empty())
         out += " M counts candidates or neighbours that add nothing, or reservoirs are dropped after W was computed.";
@@ -201,13 +200,13 @@ std::optional<Cause> reciprocal_weight_cause(std::span<const CheckCase> check_ca
                 sums);
             std::optional<Cause> found;
             for (std::size_t f = 0; f < std::size(weight_factors); ++f) {
-                const WeightFactor& factor = weight_factors[f];
                 const WeightFit fit = fit_of(sums, f);
                 if (fit.p < none_p) continue;
                 if (fit.p < least_p || found) return {};  // unclear, or two of them
-                if (f == 0 && std::fabs(fit.constant - 1) < 4 * fit.error) return {};
-                found = Cause{factor.name, fit.constant, fit.error, text_of(factor, fit, sums, source.traits), "mean"};
-                if (f == 0) return found;
+                if (f == by_constant && std::fabs(fit.constant - 1) < distinct_errors * fit.error) return {};
+                found = Cause{
+                    weight_factors[f].name, fit.constant, fit.error, text_of(f, fit, sums, source.traits), "mean"};
+                if (f == by_constant) return found;
             }
             return found;
         }
