@@ -1,11 +1,13 @@
 // Means over renders as photographs; the difference of the means over their mean brightness, blue if the candidate is
-// darker and orange if it is brighter. All pictures of a report together take at most 36 MB.
+// darker and orange if it is brighter; and where noise does not explain it. All pictures of a report together take at
+// most 36 MB.
 #include "compare/suite/suite.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "compare/outputs.h"
+#include "math/functions.h"
 #include "math/statistics.h"
 #include "report/plates/raster.h"
 
@@ -19,6 +21,8 @@ constexpr int largest_width = 800, smallest_width = 48;
 /// The colours of the difference map end at this multiple of the difference that must be found, or at the value that 1
 /// % of the map exceeds.
 constexpr double ends_at = 5, beyond = 0.99;
+/// Of a tile that differs: p of the full colour, and the least share of it.
+constexpr double full_p = 1e-9, least_colour = 0.4;
 
 std::size_t budget(const Suite& suite) {
     return std::min(most_of_view, most_bytes / std::max<std::size_t>(1, suite.views.size()));
@@ -35,25 +39,27 @@ plates::Block photograph(const Render& r, int width, double exposure) {
     return plates::photograph_block(view, plates::whole(view), fit, exposure);
 }
 
+/// Returns the cell of a picture, row by row from the top, in which a pixel of the render is.
+std::size_t cell_of(const RenderStats& all, std::size_t pixel, int width, int height) {
+    const auto across = static_cast<std::size_t>(all.width), down = static_cast<std::size_t>(all.height);
+    const std::size_t x = pixel % across, y = pixel / across;
+    return (down - 1 - y) * static_cast<std::size_t>(height) / down * static_cast<std::size_t>(width) +
+        x * static_cast<std::size_t>(width) / across;
+}
+
 /// Returns means of d / brightness over cells of the picture, row by row from the top.
 std::vector<double> relative_differences(const RenderStats& all, const BiasResult& means, int width, int height) {
     const std::size_t q = means.shown();
     const MeanPlane &a = all.arms[means.arm_a].film.of(q), &b = all.arms[means.arm_b].film.of(q);
     const auto cells = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     std::vector<double> difference(cells), brightness(cells), count(cells);
-    for (int y = 0; y < all.height; ++y)
-        for (int x = 0; x < all.width; ++x) {
-            const auto i =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
-            if (all.bad[i]) continue;
-            const int cx = static_cast<int>(static_cast<std::int64_t>(x) * width / all.width),
-                      cy = static_cast<int>(static_cast<std::int64_t>(all.height - 1 - y) * height / all.height);
-            const auto c =
-                static_cast<std::size_t>(cy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(cx);
-            difference[c] += a.mean[i] - b.mean[i];
-            brightness[c] += (std::fabs(a.mean[i]) + std::fabs(b.mean[i])) / 2;
-            count[c] += 1;
-        }
+    for (std::size_t i = 0; i < all.bad.size(); ++i) {
+        if (all.bad[i]) continue;
+        const std::size_t c = cell_of(all, i, width, height);
+        difference[c] += a.mean[i] - b.mean[i];
+        brightness[c] += (std::fabs(a.mean[i]) + std::fabs(b.mean[i])) / 2;
+        count[c] += 1;
+    }
     double mean = 0, counted = 0;
     for (std::size_t c = 0; c < cells; ++c) mean += brightness[c], counted += count[c];
     mean = counted > 0 ? mean / counted : 0;
@@ -74,6 +80,29 @@ plates::Block difference_block(const std::vector<double>& values, int width, int
     return out;
 }
 
+/// The tiles that differ by more than noise, by their p, and the pixels; NaN, the colour of no value, where no test is.
+plates::Block significance_block(const RenderStats& all, const BiasResult& means, int width, int height) {
+    const PlaceTests& tiles = means.tiles;
+    std::vector<double> of_pixel(all.bad.size());
+    for (std::size_t i = 0; i < of_pixel.size(); ++i) {
+        const auto across = static_cast<std::size_t>(all.width);
+        const std::size_t t = all.tiles.of(static_cast<int>(i % across), static_cast<int>(i / across));
+        if (std::isnan(tiles.p[t])) of_pixel[i] = std::nan("");
+        if (!tiles.differs[t]) continue;
+        const double share = math::log(std::max(tiles.p[t], full_p)) / math::log(full_p);
+        of_pixel[i] = std::copysign(std::max(share, least_colour), tiles.difference[tiles.quantity[t]][t]);
+    }
+    const std::size_t q = means.shown();
+    const MeanPlane &a = all.arms[means.arm_a].film.of(q), &b = all.arms[means.arm_b].film.of(q);
+    for (const std::uint32_t i : means.different_pixels) of_pixel[i] = std::copysign(1, a.mean[i] - b.mean[i]);
+    std::vector<double> cells(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), std::nan(""));
+    for (std::size_t i = 0; i < of_pixel.size(); ++i) {  // of the pixels of a cell the most significant one
+        double& cell = cells[cell_of(all, i, width, height)];
+        if (std::isnan(cell) || std::fabs(of_pixel[i]) > std::fabs(cell)) cell = of_pixel[i];
+    }
+    return difference_block(cells, width, height, 1);
+}
+
 double scale_of(const std::vector<double>& values, double smallest) {
     std::vector<double> sizes;
     for (const double v : values)
@@ -90,7 +119,8 @@ void within_budget(const Suite& suite, int width, std::size_t bytes_of_one, View
     const int widest = std::min(width, largest_width);
     for (int w = std::clamp(static_cast<int>(widest * first), std::min(widest, smallest_width), widest);;) {
         draw(w);
-        const std::size_t bytes = to.baseline.size() + to.candidate.size() + to.difference.size();
+        const std::size_t bytes =
+            to.baseline.size() + to.candidate.size() + to.difference.size() + to.significance.size();
         if (bytes <= budget(suite) || w <= smallest_width) return;
         const double share = std::sqrt(static_cast<double>(budget(suite)) / static_cast<double>(bytes));
         w = std::max(smallest_width, static_cast<int>(w * std::min(0.9, 0.97 * share)));
@@ -130,6 +160,8 @@ void picture_both_sides(const Suite& suite, const RenderStats& all, const BiasRe
         const std::vector<double> values = relative_differences(all, means, to.width, to.height);
         to.scale = scale_of(values, out.smallest);
         to.difference = png_of(difference_block(values, to.width, to.height, to.scale));
+        if (means.tiles.different > 0 || means.pixels_different > 0)
+            to.significance = png_of(significance_block(all, means, to.width, to.height));
     });
 }
 

@@ -1,5 +1,6 @@
 // The pictures of a view: which there are, their size, and the scale of their differences.
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include "compare/suite/suite.h"
 #include "tests/support/memory_renders.h"
@@ -11,6 +12,16 @@ namespace pictures_test {
 std::vector<float> ramp(float factor) {
     std::vector<float> out(64 * 4);
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = factor * static_cast<float>(i % 64);
+    return out;
+}
+
+std::vector<unsigned char> pixels_of(const std::vector<unsigned char>& png) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    EXPECT_TRUE(png_image_begin_read_from_memory(&image, png.data(), png.size())) << image.message;
+    image.format = PNG_FORMAT_RGB;
+    std::vector<unsigned char> out(PNG_IMAGE_SIZE(image));
+    EXPECT_TRUE(png_image_finish_read(&image, nullptr, out.data(), 0, nullptr)) << image.message;
     return out;
 }
 
@@ -47,6 +58,30 @@ TEST(SuitePictures, DifferencesAreRelativeToTheBrightness) {
     out.smallest = 0.1;
     picture_both_sides({}, all, means, out);
     EXPECT_DOUBLE_EQ(out.pictures.scale, 0.5);  // five times the difference that must be found
+}
+
+TEST(SuitePictures, SignificanceIsShownWhereNoiseDoesNotExplainIt) {
+    MemoryRenders m;
+    m.put_grey("a", 64, ramp(1)), m.put_grey("b", 64, ramp(1.5f));
+    const RenderStats all = m.read();
+    BiasResult means;
+    means.arm_a = 1, means.arm_b = 0;
+    ViewResult out;
+    picture_both_sides({}, all, means, out);
+    EXPECT_TRUE(out.pictures.significance.empty());  // nothing differs
+    const std::size_t count = all.tiles.count();
+    ASSERT_GT(count, 2u);
+    means.tiles.p.assign(count, 0.5), means.tiles.quantity.assign(count, 0), means.tiles.differs.assign(count, false);
+    means.tiles.difference = {std::vector<double>(count, 1)};
+    means.tiles.p[0] = 1e-20, means.tiles.differs[0] = true, means.tiles.different = 1;
+    means.tiles.p[1] = std::nan("");
+    picture_both_sides({}, all, means, out);
+    const std::vector<unsigned char> image = pixels_of(out.pictures.significance);
+    const auto red = [&](int x) { return image[3 * static_cast<std::size_t>(x)]; };
+    const int side = all.tiles.size;
+    EXPECT_GT(red(0), red(2 * side));     // the candidate is brighter there
+    EXPECT_NE(red(side), red(2 * side));  // not tested
+    EXPECT_EQ(red(2 * side), red(63));
 }
 
 TEST(SuitePictures, OfManyViewsAreSmaller) {

@@ -150,7 +150,7 @@ struct ViewOutlierRender {
 /// PNG files of one view, all of the same size.
 struct ViewPictures {
     int width = 0, height = 0;
-    std::vector<unsigned char> baseline, candidate, difference;  // empty: none
+    std::vector<unsigned char> baseline, candidate, difference, significance;  // empty: none
     double scale = 0;  // relative difference at the ends of the colours of `difference`
 };
 

@@ -256,6 +256,12 @@ Json regions_of(const ViewResult& view) {
     return out;
 }
 
+/// The places that the map of significance shows.
+std::string places_of(const BiasResult& means) {
+    return fmt::format("{} of {} tiles, {} of {} pixels", means.tiles.different, means.tiles.tested,
+        means.pixels_different, means.pixels_tested);
+}
+
 Json view_of(const ViewResult& view) {
     const ViewPictures& p = view.pictures;
     return {{"name", view.name}, {"lower_case", lower_case(view.name)}, {"state", name_of(view.state)},
@@ -263,7 +269,9 @@ Json view_of(const ViewResult& view) {
         {"details", view.sentence == view.headline ? "" : view.sentence}, {"width", p.width}, {"height", p.height},
         {"thumbnail", base64(p.candidate.empty() ? p.baseline : p.candidate)},
         {"only", p.baseline.empty() ? "candidate" : "baseline"}, {"baseline", base64(p.baseline)},
-        {"difference", base64(p.difference)}, {"baseline_renders", plural(view.baseline_renders, "render")},
+        {"difference", base64(p.difference)}, {"significance", base64(p.significance)},
+        {"places", p.significance.empty() ? "" : places_of(*view.means)},
+        {"baseline_renders", plural(view.baseline_renders, "render")},
         {"candidate_renders", plural(view.candidate_renders, "render")}, {"frames", frames_of(view)},
         {"full_colour", with_minus(percent(p.scale, 2))}, {"regions", regions_of(view)}, {"notes", view.notes}};
 }
@@ -275,7 +283,11 @@ std::string suite_html(const Suite& suite, const SuiteResult& result, const Prov
     for (std::size_t k = 0; k < view_state_names.size(); ++k)
         if (const std::size_t n = result.count(static_cast<ViewState>(k)))
             states.push_back({{"state", view_state_names[k]}, {"count", n}});
-    for (const ViewResult* view : by_state(result)) views.push_back(view_of(*view));
+    constexpr std::size_t shown_at_once = 3;  // of the views that fail
+    for (const ViewResult* view : by_state(result)) {
+        views.push_back(view_of(*view));
+        views.back()["is_open"] = is_bad(view->state) && views.size() <= shown_at_once;
+    }
     return render_page(compare_templates(), "suite.html",
         {{"title", suite.options.title}, {"version", provenance.version}, {"command", provenance.command},
             {"sentence", result.sentence}, {"states", states}, {"views", views}});
