@@ -131,8 +131,8 @@ std::string command_of(const CompareFlags& f) {
 /// InputError if a flag is given that only a suite has.
 void forbid_suite_flags(const CompareFlags& f) {
     const std::pair<const char*, bool> only[] = {{"--json", !f.json.empty()}, {"--junit", !f.junit.empty()},
-        {"--markdown", !f.markdown.empty()}, {"--sarif", !f.sarif.empty()}, {"--because", !f.because.empty()},
-        {"--store", !f.store.empty()}, {"--new-baseline", f.new_baseline}, {"--plan", f.plan}, {"--accept", f.accept}};
+        {"--markdown", !f.markdown.empty()}, {"--because", !f.because.empty()}, {"--store", !f.store.empty()},
+        {"--new-baseline", f.new_baseline}, {"--plan", f.plan}, {"--accept", f.accept}};
     for (const auto& [flag, given] : only)
         if (given)
             throw InputError(
@@ -141,6 +141,7 @@ void forbid_suite_flags(const CompareFlags& f) {
 
 int compare_arms(const CompareFlags& flags, const std::string& out) {
     const ComparePlan plan = plan_of(flags_of(flags), flags.file);
+    if (!flags.sarif.empty()) can_write(flags.sarif);
     Provenance provenance;
     provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(),
     provenance.command = command_of(flags);
@@ -150,6 +151,7 @@ int compare_arms(const CompareFlags& flags, const std::string& out) {
     const CompareResult result = crescent::compare_renders(plan, {out}, provenance, progress, summary);
     progress.clear();
     print(summary);
+    if (!flags.sarif.empty()) write_whole(flags.sarif, compare_sarif(plan, result, flags.file, provenance));
     return result.state == CompareResult::State::holds ? passed
         : result.state == CompareResult::State::fails  ? failed
         : flags.allow_inconclusive                     ? passed

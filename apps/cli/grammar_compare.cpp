@@ -70,7 +70,7 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
          "of a suite: every number; with --schema: as a JSON Schema")
         ->type_name("[FILE]")
         ->expected(0, 1);
-    file("--sarif", f->sarif, "of a suite: what fails, for the annotations of a code host");
+    file("--sarif", f->sarif, "write what fails, for the annotations of a code host");
     file("--junit", f->junit, "of a suite: one case for each view");
     file("--markdown", f->markdown, "of a suite: a table of what changed, for a summary page");
 }

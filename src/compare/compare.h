@@ -80,4 +80,8 @@ struct CompareOptions {
 CompareResult compare_renders(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
     ProgressMonitor& monitor, std::string& summary);
 
+/// The assertions and the expectation that fail, as SARIF 2.1.0, at the compare file; file: "" without one.
+std::string compare_sarif(
+    const ComparePlan& plan, const CompareResult& result, const std::string& file, const Provenance& provenance);
+
 }  // namespace crescent::inline comparison

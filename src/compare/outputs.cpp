@@ -221,7 +221,10 @@ std::string compare_csv(const CompareResult& result) {
     return out;
 }
 
-std::string compare_junit(const ComparePlan& plan, const CompareResult& result) {
+namespace {
+
+/// The assertions and the expectation as test cases.
+JunitSuite cases_of(const ComparePlan& plan, const CompareResult& result) {
     JunitSuite suite{plan.title, {}, {}};
     const auto add = [&](const std::string& name, bool holds, const std::string& message) {
         suite.cases.push_back(
@@ -232,7 +235,24 @@ std::string compare_junit(const ComparePlan& plan, const CompareResult& result) 
             fmt::format("{}: measured {}, must be {} {}", a.text, shortest(a.measured), a.op, shortest(a.bound)));
     if (plan.expect == Expectation::same)
         add("the arms are the same", result.state == CompareResult::State::holds, result.sentence);
-    return junit_text(suite);
+    return suite;
+}
+
+}  // namespace
+
+std::string compare_junit(const ComparePlan& plan, const CompareResult& result) {
+    return junit_text(cases_of(plan, result));
+}
+
+std::string compare_sarif(
+    const ComparePlan& plan, const CompareResult& result, const std::string& file, const Provenance& provenance) {
+    std::vector<std::string> rules;
+    std::vector<SarifResult> results;
+    for (const JunitCase& c : cases_of(plan, result).cases) {
+        rules.push_back(c.name);
+        if (c.state != JunitCase::State::passed) results.push_back({c.name, "error", c.message, file, 0, c.name});
+    }
+    return sarif_text(provenance.version, rules, results);
 }
 
 std::string compare_summary(

@@ -75,5 +75,15 @@ TEST(CompareJunit, HasACaseForEachClaim) {
     EXPECT_THAT(junit({bright, check("dark", "y_mean.frame(b) < 1"), same}), HasSubstr("tests=\"3\" failures=\"2\""));
 }
 
+TEST(CompareSarif, HasAResultForEachClaimThatFails) {
+    const Compared c({check("bright", "y_mean.frame(b) > 1"), check("dark", "y_mean.frame(b) < 1")});
+    const output::Json sarif = output::Json::parse(compare_sarif(c.plan, c.result, "compare.toml", {}));
+    const output::Json& run = sarif["runs"][0];
+    EXPECT_EQ(run["tool"]["driver"]["rules"].size(), 2u);
+    ASSERT_EQ(run["results"].size(), 1u);
+    EXPECT_EQ(run["results"][0]["ruleId"], "dark");
+    EXPECT_EQ(run["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"], "compare.toml");
+}
+
 }  // namespace outputs_test
 }  // namespace crescent::inline comparison

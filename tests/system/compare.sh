@@ -27,7 +27,8 @@ for file in metrics.json metrics.csv junit.xml report.html plates/renders.png pl
 done
 expect 0 /usr/bin/python3 -c 'import sys, xml.etree.ElementTree as e; [e.parse(f) for f in sys.argv[1:]]' one/junit.xml
 
-expect 1 "$CRESCENT" compare "${arms[@]}" --assert 'rmse.ball(u) < 1e-9' --out failing --quiet
+expect 1 "$CRESCENT" compare "${arms[@]}" --assert 'rmse.ball(u) < 1e-9' --out failing --quiet --sarif failing.sarif
+grep -q '"ruleId": *"rmse.ball(u) < 1e-9"' failing.sarif || die "not the assertion: $(cat failing.sarif)"
 expect 1 "$CRESCENT" compare "${arms[@]}" --assert 'efficiency.ball(u) > 1' --out failing --quiet
 grep -q 'a side of it was not measured' printed ||
     die "a claim that cannot be measured is not said to be: $(cat printed)"
