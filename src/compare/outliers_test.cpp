@@ -19,9 +19,9 @@ constexpr int width = 40;
 
 /// Renders of two sides with equal noise, to be changed before they are read.
 struct TwoSides {
-    TwoSides(const SyntheticNoise& noise, int baseline, int candidate, std::uint32_t seed, int side = width) {
+    TwoSides(const SyntheticNoise& noise, int baseline, int candidate, std::uint32_t seed, int pixels = width) {
         SyntheticScene scene;
-        scene.width = side;
+        scene.width = pixels;
         plan.arms.resize(2);
         for (const auto& [side, count] : {std::pair(0, baseline), std::pair(1, candidate)}) {
             for (int k = 0; k < count; ++k) {

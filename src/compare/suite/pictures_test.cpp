@@ -42,12 +42,16 @@ TEST(SuitePictures, OfOneSideShowItsFirstRender) {
     EXPECT_TRUE(missing.pictures.candidate.empty());
 }
 
-TEST(SuitePictures, DifferencesAreRelativeToTheBrightness) {
+std::pair<RenderStats, BiasResult> a_ramp_and_a_brighter_one() {
     MemoryRenders m;
     m.put_grey("a", 64, ramp(1)), m.put_grey("b", 64, ramp(1.5f));
-    const RenderStats all = m.read();
     BiasResult means;
     means.arm_a = 1, means.arm_b = 0;
+    return {m.read(), means};
+}
+
+TEST(SuitePictures, DifferencesAreRelativeToTheBrightness) {
+    auto [all, means] = a_ramp_and_a_brighter_one();
     ViewResult out;
     out.smallest = 0.01;
     picture_both_sides({}, all, means, out);
@@ -61,11 +65,7 @@ TEST(SuitePictures, DifferencesAreRelativeToTheBrightness) {
 }
 
 TEST(SuitePictures, SignificanceIsShownWhereNoiseDoesNotExplainIt) {
-    MemoryRenders m;
-    m.put_grey("a", 64, ramp(1)), m.put_grey("b", 64, ramp(1.5f));
-    const RenderStats all = m.read();
-    BiasResult means;
-    means.arm_a = 1, means.arm_b = 0;
+    auto [all, means] = a_ramp_and_a_brighter_one();
     ViewResult out;
     picture_both_sides({}, all, means, out);
     EXPECT_TRUE(out.pictures.significance.empty());  // nothing differs
