@@ -180,7 +180,9 @@ std::string text_of(std::size_t factor, const WeightFit& fit, const ReservoirSum
         with_error(fit.constant, half_width_95 * fit.error), number.empty() || number == "1" ? "" : " = " + number);
     if (fit.constant > 1) return out + count_sentence(sums, fit, traits);
     if (number.empty())
-        out += " M counts candidates or neighbours that add nothing, or reservoirs are dropped after W was computed.";
+        out +=
+            " So it is if M counts candidates or neighbours that add nothing, or if reservoirs are dropped after W was "
+            "computed.";
     return out;
 }
 
