@@ -164,9 +164,9 @@ constexpr std::size_t least_tiles = 4;
 /// Returns the value that a quarter of the tiles, and `least_tiles` of them, reach.
 double reached_by_quarter(std::vector<double> values) {
     const std::size_t index = std::min(3 * values.size() / 4, values.size() - least_tiles);
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(index);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
+    const auto value = values.begin() + static_cast<std::ptrdiff_t>(index);
+    std::nth_element(values.begin(), value, values.end());
+    return *value;
 }
 
 /// Returns the root mean square over tiles of the standard deviation over renders, without one of them.

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "base/errors.h"
+#include "compare/outputs.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
 
@@ -72,11 +73,8 @@ Correlation correlation(
     if (!(squares_a > 0) || !(squares_b > 0)) return {};
     const double r = product / std::sqrt(squares_a * squares_b);
     if (blocks.size() < blocks_least) return {r, false};
-    const double n = static_cast<double>(blocks.size());
-    const double mean = std::accumulate(blocks.begin(), blocks.end(), 0.0) / n;
-    double squares = 0;
-    for (const double sum : blocks) squares += (sum - mean) * (sum - mean);
-    return {r, mean > limits.of(blocks.size()) * std::sqrt(squares / (n - 1) / n)};
+    const MeanInterval mean = mean_and_error(blocks);
+    return {r, mean.mean > limits.of(blocks.size()) * mean.se};
 }
 
 using Correlations = std::vector<std::vector<double>>;  // [render of a][render of b]

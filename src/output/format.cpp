@@ -226,17 +226,17 @@ std::string uri_of(const std::string& path) {
 
 std::string sarif_text(
     const std::string& version, const std::vector<std::string>& rules, const std::vector<SarifResult>& results) {
-    Json all_rules = Json::array(), all = Json::array();
-    for (const std::string& rule : rules) all_rules.push_back({{"id", rule}});
+    Json rule_list = Json::array(), result_list = Json::array();
+    for (const std::string& rule : rules) rule_list.push_back({{"id", rule}});
     for (const SarifResult& each : results) {
         const std::string uri = each.file.empty() ? "." : uri_of(each.file);
         const Json place = {{"physicalLocation",
             {{"artifactLocation", {{"uri", uri}}}, {"region", {{"startLine", std::max(1u, each.line)}}}}}};
-        all.push_back({{"ruleId", each.rule}, {"level", each.level}, {"message", {{"text", each.message}}},
+        result_list.push_back({{"ruleId", each.rule}, {"level", each.level}, {"message", {{"text", each.message}}},
             {"locations", Json::array({place})}, {"partialFingerprints", {{"crescent", each.identity}}}});
     }
-    const Json driver = {{"name", "crescent"}, {"version", version}, {"rules", all_rules}};
-    const Json run = {{"tool", {{"driver", driver}}}, {"results", all}};
+    const Json driver = {{"name", "crescent"}, {"version", version}, {"rules", rule_list}};
+    const Json run = {{"tool", {{"driver", driver}}}, {"results", result_list}};
     return text({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"}, {"version", "2.1.0"},
         {"runs", Json::array({run})}});
 }

@@ -28,7 +28,7 @@ Estimator = tuple[Draw, float]  # of values by their number, and their mean with
 
 
 def medium(rng: np.random.Generator) -> tuple[Callable[[Array], Array], float, float, float, float]:
-    """Extinction along a ray, its bounds from below and above, the ray's length and its optical depth."""
+    """Extinction along a ray, its minorant and majorant, the ray's length and its optical depth."""
     low, more, phase, length = (
         log_uniform(rng, 0.1, 2),
         log_uniform(rng, 0.1, 2),
@@ -52,50 +52,45 @@ def collisions(
         each(t, inside)
 
 
-def ratio(rng: np.random.Generator, bias: float) -> Estimator:
-    """Transmittance by ratio tracking (Novak et al. 2014)."""
-    extinction, _, most, length, depth = medium(rng)
+def by_ratio(rng: np.random.Generator, bias: float, with_control: bool) -> Estimator:
+    """Transmittance by ratio tracking, besides a constant control that is known (Novak et al. 2014)."""
+    extinction, minorant, majorant, length, depth = medium(rng)
+    control = minorant if with_control else 0
 
-    def draw(of: np.random.Generator, n: int) -> Array:
-        w = np.ones(n)
+    def draw(generator: np.random.Generator, n: int) -> Array:
+        w = np.full(n, np.exp(-control * length))
 
         def each(t: Array, inside: Array) -> None:
-            w[inside] *= 1 - extinction(t[inside]) * (1 + bias) / most
+            w[inside] *= 1 - (extinction(t[inside]) - control) * (1 + bias) / (majorant - control)
 
-        collisions(of, n, most, length, each)
+        collisions(generator, n, majorant - control, length, each)
         return w
 
     return draw, float(np.exp(-depth))
 
 
-def delta(rng: np.random.Generator, bias: float) -> Estimator:
-    """Transmittance by delta tracking: 0 or 1."""
-    extinction, _, most, length, depth = medium(rng)
-
-    def draw(of: np.random.Generator, n: int) -> Array:
-        alive = np.ones(n)
-
-        def each(t: Array, inside: Array) -> None:
-            alive[inside & (of.random(n) < extinction(t) * (1 + bias) / most)] = 0
-
-        collisions(of, n, most, length, each)
-        return alive
-
-    return draw, float(np.exp(-depth))
+def ratio(rng: np.random.Generator, bias: float) -> Estimator:
+    """Transmittance by ratio tracking."""
+    return by_ratio(rng, bias, False)
 
 
 def residual(rng: np.random.Generator, bias: float) -> Estimator:
     """Transmittance by residual ratio tracking."""
-    extinction, low, most, length, depth = medium(rng)
+    return by_ratio(rng, bias, True)
 
-    def draw(of: np.random.Generator, n: int) -> Array:
-        w = np.full(n, np.exp(-low * length))
+
+def delta(rng: np.random.Generator, bias: float) -> Estimator:
+    """Transmittance by delta tracking: 0 or 1."""
+    extinction, _, majorant, length, depth = medium(rng)
+
+    def draw(generator: np.random.Generator, n: int) -> Array:
+        alive = np.ones(n)
 
         def each(t: Array, inside: Array) -> None:
-            w[inside] *= 1 - (extinction(t[inside]) - low) * (1 + bias) / (most - low)
+            alive[inside & (generator.random(n) < extinction(t) * (1 + bias) / majorant)] = 0
 
-        collisions(of, n, most - low, length, each)
-        return w
+        collisions(generator, n, majorant, length, each)
+        return alive
 
     return draw, float(np.exp(-depth))
 
@@ -104,11 +99,11 @@ def series(rng: np.random.Generator, bias: float) -> Estimator:
     """exp(-x) of a noisy x by its power series with roulette."""
     x, noise, go_on = log_uniform(rng, 0.1, 1.5), rng.uniform(0.05, 0.5), 0.7
 
-    def draw(of: np.random.Generator, n: int) -> Array:
+    def draw(generator: np.random.Generator, n: int) -> Array:
         out, term, alive = np.ones(n), np.ones(n), np.ones(n, bool)
         for k in range(1, 60):
-            alive &= of.random(n) < go_on
-            factor = x * (1 + bias) * (1 + noise * of.standard_normal(n))
+            alive &= generator.random(n) < go_on
+            factor = x * (1 + bias) * (1 + noise * generator.standard_normal(n))
             term = np.where(alive, -term * factor / (k * go_on), 0)
             out += term
         return out
@@ -120,11 +115,11 @@ def inverse(rng: np.random.Generator, bias: float) -> Estimator:
     """1/m of a noisy m by a geometric number of factors (Booth 2007)."""
     m, go_on = rng.uniform(0.3, 0.95), 0.85
 
-    def draw(of: np.random.Generator, n: int) -> Array:
+    def draw(generator: np.random.Generator, n: int) -> Array:
         out, term, alive = np.ones(n), np.ones(n), np.ones(n, bool)
         while alive.any():
-            alive &= of.random(n) < go_on
-            term = np.where(alive, term * (1 - of.beta(4 * m, 4 * (1 - m), n) * (1 + bias)) / go_on, 0)
+            alive &= generator.random(n) < go_on
+            term = np.where(alive, term * (1 - generator.beta(4 * m, 4 * (1 - m), n) * (1 + bias)) / go_on, 0)
             out += term
         return out
 
@@ -135,8 +130,8 @@ def roulette(rng: np.random.Generator, bias: float) -> Estimator:
     """An integral with Russian roulette."""
     survive, c = log_uniform(rng, 0.05, 0.9), rng.uniform(0.2, 3)
 
-    def draw(of: np.random.Generator, n: int) -> Array:
-        return np.where(of.random(n) < survive, np.exp(-c * of.random(n)) / survive * (1 + bias), 0)
+    def draw(generator: np.random.Generator, n: int) -> Array:
+        return np.where(generator.random(n) < survive, np.exp(-c * generator.random(n)) / survive * (1 + bias), 0)
 
     return draw, float(-np.expm1(-c) / c)
 
@@ -145,8 +140,8 @@ def splitting(rng: np.random.Generator, bias: float) -> Estimator:
     """A double integral, the inner one by 2 to 8 values."""
     k, c = int(rng.integers(2, 9)), rng.uniform(0.2, 3)
 
-    def draw(of: np.random.Generator, n: int) -> Array:
-        return np.exp(-c * of.random((n, 1)) * of.random((n, k))).mean(1) * (1 + bias)
+    def draw(generator: np.random.Generator, n: int) -> Array:
+        return np.exp(-c * generator.random((n, 1)) * generator.random((n, k))).mean(1) * (1 + bias)
 
     return draw, integrate.quad(lambda b: -np.expm1(-c * b) / (c * b), 0, 1)[0]
 
@@ -154,25 +149,25 @@ def splitting(rng: np.random.Generator, bias: float) -> Estimator:
 def power(rng: np.random.Generator, bias: float) -> Estimator:
     """Values without a variance."""
     a = rng.uniform(1.2, 1.9)
-    return lambda of, n: of.random(n) ** (-1 / a) * (1 + bias), a / (a - 1)
+    return lambda generator, n: generator.random(n) ** (-1 / a) * (1 + bias), a / (a - 1)
 
 
 def lognormal(rng: np.random.Generator, bias: float) -> Estimator:
     """Log-normal values."""
     s = rng.uniform(0.5, 1.6)
-    return lambda of, n: np.exp(s * of.standard_normal(n) - s * s / 2) * (1 + bias), 1.0
+    return lambda generator, n: np.exp(s * generator.standard_normal(n) - s * s / 2) * (1 + bias), 1.0
 
 
 def constant(rng: np.random.Generator, bias: float) -> Estimator:
     """The same value at each draw."""
     c = log_uniform(rng, 1e-6, 1e6)
-    return lambda of, n: np.full(n, c * (1 + bias)), c
+    return lambda generator, n: np.full(n, c * (1 + bias)), c
 
 
 def signed(rng: np.random.Generator, bias: float) -> Estimator:
     """Normal values of both signs about a smaller mean."""
     m = rng.uniform(0.3, 1) * rng.choice([-1, 1])
-    return lambda of, n: m * (1 + bias) + of.standard_normal(n), m
+    return lambda generator, n: m * (1 + bias) + generator.standard_normal(n), m
 
 
 NUMBERS = (ratio, delta, residual, series, inverse, roulette, splitting, power, lognormal, constant, signed)
@@ -275,9 +270,9 @@ RESERVOIRS = (ris, mis, merged)
 # ---- Checks.
 
 
-def record(result: Any, **of: Any) -> dict[str, Any]:
+def record(result: Any, **known: Any) -> dict[str, Any]:
     not_right = [v for v in result.verdicts if v.state not in ("right", "skipped")]
-    return {**of, "state": result.state, "say": [v.say for v in not_right], "causes": [v.cause for v in not_right]}
+    return {**known, "state": result.state, "say": [v.say for v in not_right], "causes": [v.cause for v in not_right]}
 
 
 def check_number(rng: np.random.Generator, number: int, wrong: bool) -> dict[str, Any]:

@@ -28,8 +28,8 @@ def rest_of(u: Array, before: Array, share: Array) -> Array:
 
 
 def located(d: Callable[..., Any], rng: np.random.Generator) -> Case:
-    at, scale = rng.uniform(-5, 5), log_uniform(rng, 0.01, 50)
-    return by_scipy("line:-inf,inf", d(at, scale), f"loc={at:.4g} scale={scale:.4g}")
+    loc, scale = rng.uniform(-5, 5), log_uniform(rng, 0.01, 50)
+    return by_scipy("line:-inf,inf", d(loc, scale), f"loc={loc:.4g} scale={scale:.4g}")
 
 
 def logistic(rng: np.random.Generator) -> Case:
@@ -301,14 +301,14 @@ def ridge(rng: np.random.Generator) -> Case:
 
 def cut_triangle(rng: np.random.Generator) -> Case:
     """Uniform where b0 is below a number."""
-    most = rng.uniform(0.1, 0.9)
-    share = 1 - (1 - most) ** 2
+    limit = rng.uniform(0.1, 0.9)
+    share = 1 - (1 - limit) ** 2
 
     def draw(u: Array) -> Array:
         b0 = 1 - np.sqrt(1 - share * u[:, 0])
         return np.column_stack([b0, (1 - b0) * u[:, 1]])
 
-    return Case("triangle", 2, draw, lambda b: (b[:, 0] <= most * (1 + 1e-12)) * 2 / share, f"most={most:.4g}")
+    return Case("triangle", 2, draw, lambda b: (b[:, 0] <= limit * (1 + 1e-12)) * 2 / share, f"limit={limit:.4g}")
 
 
 def linear_triangle(rng: np.random.Generator) -> Case:

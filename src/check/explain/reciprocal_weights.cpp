@@ -10,8 +10,6 @@
 #include "check/decide/check_sampler.h"
 #include "check/estimate/source.h"
 #include "check/explain/causes.h"
-#include "math/functions.h"
-#include "math/simd/scalar.h"
 #include "math/statistics.h"
 #include "output/format.h"
 
@@ -51,9 +49,8 @@ std::size_t region_of(Vec3d w, double h) {
     const auto part = [](double share, std::size_t count) {
         return std::min(static_cast<std::size_t>(std::max(share, 0.0) * static_cast<double>(count)), count - 1);
     };
-    const double azimuth = math::atan2(w.y, w.x) / two_pi;
-    return (part((1 - w.z) / 2, of_height) * of_azimuth + part(azimuth < 0 ? azimuth + 1 : azimuth, of_azimuth)) *
-        of_target +
+    const ChartPoint place = to_chart(w);
+    return (part(place.t / 2, of_height) * of_azimuth + part(place.phi / two_pi, of_azimuth)) * of_target +
         part(h, of_target);
 }
 
@@ -107,15 +104,16 @@ void add_points(Source& source, ReservoirSums& out) {
     source.f_cos(w, h);
     const double area = 2 * two_pi / points_of_target;
     std::array<double, regions> count{};
-    std::array<double, 3> all{};
+    std::array<double, 3> whole{};
     for (std::size_t i = 0; i < w.size(); ++i) {
-        const double of[] = {1, w[i].z > 0 ? 1.0 : 0.0, std::max(w[i].z, 0.0)};
-        for (std::size_t k = 0; k < all.size(); ++k) all[k] += of[k], out.with_target[k] += h[i].x > 0 ? of[k] : 0;
+        const double densities[] = {1, w[i].z > 0 ? 1.0 : 0.0, std::max(w[i].z, 0.0)};  // up to a constant
+        for (std::size_t k = 0; k < whole.size(); ++k)
+            whole[k] += densities[k], out.with_target[k] += h[i].x > 0 ? densities[k] : 0;
         if (!(h[i].x > 0)) continue;
         const std::size_t region = region_of(w[i], h[i].x);
         out.integral[region] += h[i].x * area, ++count[region];
     }
-    for (std::size_t k = 0; k < all.size(); ++k) out.with_target[k] /= std::max(all[k], 1.0);
+    for (std::size_t k = 0; k < whole.size(); ++k) out.with_target[k] /= std::max(whole[k], 1.0);
     for (std::size_t r = 0; r < regions; ++r) {
         const double root = std::sqrt(std::max(count[r], 1.0));
         out.error[r] = out.integral[r] / (root * std::sqrt(root));
@@ -128,17 +126,17 @@ struct WeightFit {
 };
 WeightFit fit_of(const ReservoirSums& sums, std::size_t factor) {
     const RegionSums& drawn = sums.drawn[factor];
-    double all = 0, integral = 0, variance = 0;
+    double estimate = 0, integral = 0, variance = 0;
     for (std::size_t r = 0; r < regions; ++r) {
-        all += drawn[r].sum / sums.draws, integral += sums.integral[r];
+        estimate += drawn[r].sum / sums.draws, integral += sums.integral[r];
         variance += drawn[r].squares / sqr(sums.draws);
     }
-    if (!(all > 0) || !(integral > 0)) return {};
-    WeightFit out{.constant = all / integral, .error = std::sqrt(variance) / integral};
+    if (!(estimate > 0) || !(integral > 0)) return {};
+    WeightFit out{.constant = estimate / integral, .error = std::sqrt(variance) / integral};
     double chi2 = 0, counted = 0;
     for (std::size_t r = 0; r < regions; ++r) {
         const double d = drawn[r].sum / sums.draws, expected = out.constant * sums.integral[r];
-        if (std::max(d, expected) < least_mass * all) continue;
+        if (std::max(d, expected) < least_mass * estimate) continue;
         const double v = std::max(drawn[r].squares - sqr(drawn[r].sum) / sums.draws, 0.0) / sqr(sums.draws) +
             sqr(out.constant * sums.error[r]);
         chi2 += sqr(d - expected) / std::max(v, 1e-300), ++counted;
