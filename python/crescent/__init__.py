@@ -22,7 +22,7 @@ from .arms import Tail, arm, arm_names, brdf, brdf_names, pdf_of, tail
 from ._sweep import sweep, sweep_check
 from .combinations import Combination, mis, mixture, ris
 from ._summaries import Summary
-from .experiments import Experiment, Film, Measured, RunInterrupted, join, load, parse, run
+from .experiments import Experiment, Film, Measured, RunInterrupted, join, load, open, parse, run
 
 if TYPE_CHECKING:
     from . import adapters, scenes, testing
@@ -55,6 +55,7 @@ __all__ = [
     "load",
     "mis",
     "mixture",
+    "open",
     "parse",
     "pdf_of",
     "ris",

@@ -137,6 +137,11 @@ def all_counts(arms: Iterable[Mapping[str, Any]]) -> list[int]:
     return sorted({n for arm in arms for n in arm["n"]})
 
 
+def counts_of(sampler: Sampler | Combination, others: Sequence[int]) -> list[int]:
+    """The sample counts of a sampler's arm: its own, or those of the others."""
+    return list(others) if sampler.n is None else list(np.atleast_1d(sampler.n).tolist())
+
+
 def table_of(sampler: Sampler | Combination) -> dict[str, Any]:
     """The keys of a sampler's arm, without its sample counts."""
     if isinstance(sampler, Sampler):

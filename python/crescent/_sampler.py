@@ -34,6 +34,17 @@ def whole(what: str, value: Any, least: int, most: int, expected: str) -> int:
     return number
 
 
+def counts(n: int | Sequence[int] | None) -> tuple[int, ...] | None:
+    """Sample counts of an arm."""
+    if n is None:
+        return None
+    expected = "expected a sample count, 1 to 16777216, or several, such as [4, 16]"
+    given = list(n) if isinstance(n, Iterable) and not isinstance(n, str) else [n]
+    if not given:
+        raise ValueError(f"n is {n!r}: {expected}")
+    return tuple(sorted({whole("n", k, 1, 1 << 24, expected) for k in given}))
+
+
 def _uses(given: Any) -> tuple[str, ...]:
     """The names of a sequence, each once."""
     if isinstance(given, str) or not isinstance(given, Iterable):
@@ -95,9 +106,11 @@ class Sampler:
     radiance: Callable[..., Any] | None = None
     #: "reciprocal": sample(wo, u) -> (wi, W), where W is random and estimates 1/p, as that of a reservoir does
     weight: Literal["reciprocal"] | None = None
+    n: int | Sequence[int] | None = None  #: the sample counts of its arm in a run; None: those of the other arms
     target: Callable[..., Any] | None = None  #: target(wo[n,3], wi[n,3]) -> [n], on whose support E[h W] is the integral of h
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "n", counts(self.n))
         if self.radiance is not None:
             if not callable(self.radiance):
                 raise TypeError(f"radiance is {type(self.radiance).__name__}: expected a callable radiance(wi)")

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from ._context import ARRAYS
+from ._sampler import counts
 
 #: weights(wo, wi, p) -> w, all of n rows: p[n, K] and w[n, K] have a column for each sampler
 WeightFunction = Callable[..., Any]
@@ -31,10 +32,11 @@ class Combination:
     candidates: int | None = None
     target: str | None = None
     uses: tuple[str, ...] = ()  #: what a function for the weights uses, as of a Sampler
+    n: tuple[int, ...] | None = None  #: its sample counts in a run; None: those of the other arms
 
     def table(self) -> dict[str, Any]:
         """The keys that are given, without a function for the weights."""
-        own = {key: value for key, value in vars(self).items() if key != "uses" and value is not None}
+        own = {key: value for key, value in vars(self).items() if key not in ("uses", "n") and value is not None}
         return {key: value for key, value in own.items() if not callable(value)}
 
 
@@ -61,6 +63,7 @@ def mis(
     samples: int | Sequence[int] | None = None,
     probabilities: Sequence[Weight] | None = None,
     uses: Sequence[str] = (),
+    n: int | Sequence[int] | None = None,
 ) -> Combination:
     """Multiple importance sampling of these samplers.
 
@@ -69,7 +72,8 @@ def mis(
     ``weights(wo[n, 3], wi[n, 3], p[n, K]) -> w[n, K]`` of NumPy arrays, with the densities of all K samplers at each
     direction, whose rows sum to one. It takes a fourth argument with the surface and the lights if `uses` names any,
     as the callables of a :class:`Sampler` do. `draw`: a sample is a
-    direction of "every" sampler (`samples` of each), or of "one" that is chosen with `probabilities`.
+    direction of "every" sampler (`samples` of each), or of "one" that is chosen with `probabilities`. `n`: the sample
+    counts of its arm, by default those of the other arms.
     """
     count = tuple(samples) if isinstance(samples, Sequence) else samples
     own = weights if callable(weights) else _weights(weights)
@@ -81,17 +85,21 @@ def mis(
     for name in uses:
         if name not in ARRAYS:
             raise ValueError(f"uses has {name!r}: expected one of {', '.join(ARRAYS)}")
-    return Combination("mis", _names(of), heuristic, draw, own, _weights(probabilities), count, uses=tuple(uses))
+    return Combination("mis", _names(of), heuristic, draw, own, _weights(probabilities), count, uses=tuple(uses), n=counts(n))
 
 
-def mixture(*of: str, weights: Sequence[Weight] | None = None) -> Combination:
+def mixture(
+    *of: str, weights: Sequence[Weight] | None = None, n: int | Sequence[int] | None = None
+) -> Combination:
     """One density, the sum of weight times density; `weights` are equal by default, numbers or formulas of s, alpha,
     rho_d, rho_s and cos_o, and their sum is one."""
-    return Combination("mixture", _names(of), weights=_weights(weights))
+    return Combination("mixture", _names(of), weights=_weights(weights), n=counts(n))
 
 
-def ris(*of: str, candidates: int, target: str | None = None) -> Combination:
+def ris(
+    *of: str, candidates: int, target: str | None = None, n: int | Sequence[int] | None = None
+) -> Combination:
     """Resampled importance sampling: of `candidates` directions, drawn from the samplers in turn, one is chosen by
     `target`: "product" (default; f L cos without shadows), "brdf" (f cos), or the name of a sampler whose density it
     is."""
-    return Combination("ris", _names(of), candidates=candidates, target=target)
+    return Combination("ris", _names(of), candidates=candidates, target=target, n=counts(n))

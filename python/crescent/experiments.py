@@ -1,6 +1,6 @@
 """Experiments and runs in memory: :func:`load`, :func:`parse`, :func:`run`, :func:`join`.
 
-e = crescent.load("experiments/gallery.toml")
+e = crescent.load("gallery")
 e["image.width"] = 320                      # checked as the file is; ValueError names what is wrong
 measured = crescent.run(e)
 measured.films["phong", 64].y               # [height, width], the memory of the run itself
@@ -13,7 +13,8 @@ import io
 import json
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike, fspath
 from os.path import abspath, dirname
@@ -23,179 +24,136 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _crescent
-from ._callable_arms import Samplers, all_counts, callable_arms, table_of
+from . import _crescent, _saved
+from ._callable_arms import Samplers, all_counts, callable_arms, counts_of, table_of
+from ._installed import experiment_file
+from ._live import live
+from ._paths import found, inside, overrides, path_of, quoted
 from ._progress import bar
+from ._resize import resize_hint, resized
 from ._sampler import whole
+from ._source import Source, taken_out
 from ._summaries import Summary
 
 Progress = Callable[[str, float, float], None]
-
-
-def _toml(value: Any) -> str:
-    """Formats a value for an override."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return json.dumps(value)
-    if isinstance(value, (int, float, np.number)):
-        return repr(value.item() if isinstance(value, np.number) else value)
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{json.dumps(str(key))} = {_toml(v)}" for key, v in value.items()) + "}"
-    if isinstance(value, Iterable):
-        return "[" + ", ".join(_toml(v) for v in value) + "]"
-    raise TypeError(
-        f"{type(value).__name__} is not a value of an experiment: expected a number, a text, or a list of them"
-    )
-
-
-def _quoted(key: str) -> str:
-    """Formats a key as a step of a path: quoted if it is more than a bare word."""
-    return key if re.fullmatch(r"[\w-]+", key) else f"'{key}'" if '"' in key else f'"{key}"'
-
-
-def _overrides(changes: Mapping[str, Any]) -> list[str]:
-    """Returns KEY=VALUE for each; a table gives one for each of its keys."""
-    out: list[str] = []
-    for path, value in changes.items():
-        if isinstance(value, Mapping) and value:
-            out += _overrides({f"{path}.{_quoted(key)}": v for key, v in value.items()})
-        else:
-            out.append(f"{path}={_toml(value)}")
-    return out
-
-
-def _steps(path: str) -> list[str]:
-    """Splits shapes.'a ball'.center[1] into shapes, a ball, center, 1, as --set reads a path."""
-    found = [next(filter(None, step)) for step in re.findall(r"\"([^\"]*)\"|'([^']*)'|([^.\[\]\"']+)", path)]
-    if not found:
-        raise KeyError(f"{path!r}: expected a path such as sphere.s or shapes.sphere.s")
-    return found
-
-
-def _inside(at: Any, step: str) -> Any:
-    """Returns the value of a key of a table or at an index of a list; KeyError names the existing keys, and the
-    nearest."""
-    if isinstance(at, Mapping):
-        if step in at:
-            return at[step]
-        near = _crescent.nearest(step, list(at))
-        raise KeyError(f"has {', '.join(at)}" + (f"; did you mean '{near}'?" if near else ""))
-    if isinstance(at, list) and at:
-        if step.isdecimal() and int(step) < len(at):
-            return at[int(step)]
-        raise KeyError(f"has items 0 to {len(at) - 1}")
-    raise KeyError("has no keys")
-
-
-def _found(tree: Mapping[str, Any], path: str) -> tuple[list[str], Any]:
-    """Returns the steps from the top to a value, and the value. A path may begin at a name, as for --set: key.radius.
-    """
-    steps = _steps(path)
-    families = [key for key, value in tree.items() if isinstance(value, Mapping) and steps[0] in value]
-    starts = [steps] if steps[0] in tree else []
-    starts += [[family, *steps] for family in families if isinstance(tree[family][steps[0]], Mapping)]
-    found, problem = [], ""
-    for start in starts:
-        at: Any = tree
-        for i, step in enumerate(start):
-            try:
-                at = _inside(at, step)
-            except KeyError as e:
-                problem = problem or f"{path}: {'.'.join(start[:i])} {e.args[0]}"
-                break
-        else:
-            found.append((start, at))
-    if len(found) > 1 and found[0][0] is not steps:
-        raise KeyError(f"{path} is ambiguous: expected {' or '.join('.'.join(start) for start, _ in found)}")
-    if found:
-        return found[0]
-    if problem:
-        raise KeyError(problem)
-    tables = [value for value in tree.values() if isinstance(value, Mapping)]
-    names = [name for table in tables for name, inside in table.items() if isinstance(inside, Mapping)]
-    near = _crescent.nearest(steps[0], [*tree, *names])
-    hint = f"; did you mean '{near}'?" if near else ""
-    raise KeyError(f"{path}: the experiment has {', '.join(tree)}, and the names {', '.join(names)}{hint}")
-
-
-def _lines(table: Mapping[str, Any], path: str = "") -> Iterator[str]:
-    """A table as the lines of a file."""
-    inside = {key: value for key, value in table.items() if isinstance(value, Mapping)}
-    yield from (f"{json.dumps(key)} = {_toml(value)}" for key, value in table.items() if key not in inside)
-    for key, value in inside.items():
-        at = f"{path}.{json.dumps(key)}" if path else json.dumps(key)
-        yield from (f"[{at}]", *_lines(value, at))
-
-
-@dataclass(frozen=True)
-class _Source:
-    """What was read, and what was changed since. A change is applied to what was read, as by --set: a value that a file
-    does not give may depend on the changed key."""
-
-    text: str
-    name: str  #: of the file, in messages
-    folder: str  #: absolute; paths of the file are relative to it
-    changes: tuple[str, ...] = ()
-
-    def changed(self, more: Sequence[str]) -> _Source:
-        """With more changes; one of the key that was changed last replaces it."""
-        kept = list(self.changes)
-        for change in more:
-            if kept and kept[-1].partition("=")[0] == change.partition("=")[0]:
-                kept.pop()
-            kept.append(change)
-        return _Source(self.text, self.name, self.folder, tuple(kept))
-
-    def core(self) -> _crescent.Experiment:
-        return _crescent.parse(self.text, self.name, list(self.changes), self.folder)
-
-    def tree(self) -> dict[str, Any]:
-        """The keys that the file, or a change, gives."""
-        return tomllib.loads(_crescent.text_with_overrides(self.text, self.name, list(self.changes)))
 
 
 class Experiment:
     """A checked experiment: read and change it by its keys, ``e["sphere.s"] = 8``. The whole is checked after a change.
 
     Keys are those of ``crescent run --set``: a whole path, ``shapes.sphere.s``, or one that begins at a name,
-    ``sphere.s``; an item of a list is ``camera.eye[1]``. A table is set by a dictionary, ``e["arms.phong"] = {"n":
-    [4]}``, and removed by ``del e["arms.phong"]``. Values are read as copies.
+    ``sphere.s``; an item of a list is ``camera.eye[1]``. Tables and lists that are read are those of the experiment:
+    ``e["image"]["width"] = 320`` and ``e["arms"].pop("phong")`` change it. A table is replaced by a dictionary,
+    ``e["arms.phong"] = {"n": [4]}``. ``del e["arms.phong"]`` removes it together with the plates, assertions and other
+    tables that name it, which a warning lists; :meth:`remove` returns them.
     """
 
     def __init__(
-        self, core: _crescent.Experiment, samplers: Mapping[str, Any] | None = None, source: _Source | None = None
+        self, core: _crescent.Experiment, samplers: Mapping[str, Any] | None = None, source: Source | None = None
     ) -> None:
         self._core = core
-        self._source = source or _Source(core.text, core.file, dirname(abspath(core.file)))
-        self.samplers: Samplers = Samplers()  #: samplers in Python by the name of their arm, which :func:`run` adds
+        self._source = source or Source(core.text, core.file, dirname(abspath(core.file)))
+        self.samplers = Samplers()
         self.samplers.update(samplers or {})
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name == "samplers":
+            samplers = Samplers()  #: samplers in Python by the name of their arm, which :func:`run` adds
+            samplers.update(value)
+            object.__setattr__(self, name, samplers)
+        elif name in ("_core", "_source"):
+            object.__setattr__(self, name, value)
+        else:
+            raise AttributeError(self._without_attribute(name, f" = {value!r}"))
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise AttributeError(self._without_attribute(name, ""))
+
+    def _without_attribute(self, name: str, rest: str) -> str:
+        if name in dir(type(self)):
+            return f"'{name}' cannot be set: a change of a key changes it, such as e['seed'] = 7"
+        return f"an experiment has no attribute '{name}': expected e[{name!r}]{rest}"
 
     def _tree(self) -> dict[str, Any]:
         """Returns every value, including those that a shape inherits."""
         return tomllib.loads(re.sub(r"(?m)^# inherited: ", "", self._core.text))
 
+    def _at(self, steps: Sequence[str]) -> Any:
+        """The value at these steps."""
+        at: Any = self._tree()
+        for step in steps:
+            at = inside(at, step)
+        return at
+
     def __getitem__(self, path: str) -> Any:
-        return _found(self._tree(), path)[1]
+        return live(self, *found(self._tree(), path))
 
     def __setitem__(self, path: str, value: Any) -> None:
-        changed = self.with_({path: value})
+        self._change({path: value}, stacklevel=4)
+
+    def _change(self, changes: Mapping[str, Any], stacklevel: int) -> None:
+        changed, removed = self._changed(changes)
         self._core, self._source = changed._core, changed._source
+        _warn_of(removed, stacklevel)
+
+    def _set(self, changes: Mapping[tuple[str, ...], Any]) -> None:
+        """Sets values at steps; inside a list, the list is set as a whole."""
+        tree, out = self._tree(), {}
+        for steps, value in changes.items():
+            at: Any = tree
+            for k, step in enumerate(steps):
+                if isinstance(at, list):
+                    _put(at, steps[k:], value)
+                    steps, value = steps[:k], at
+                    break
+                at = at.get(step, {}) if isinstance(at, Mapping) else {}
+            out[path_of(steps)] = value
+        self._change(out, stacklevel=5)
 
     def __delitem__(self, path: str) -> None:
-        whole = self._source.tree()
+        self._take_out(self._steps_to_remove(path), stacklevel=3)
+
+    def remove(self, path: str) -> list[str]:
+        """Removes a key or a table, and the tables that name it: plates, assertions, regions, arms and others without
+        which the experiment would be wrong. Returns the paths of these."""
+        return self._take_out(self._steps_to_remove(path), stacklevel=0)
+
+    def _steps_to_remove(self, path: str) -> tuple[str, ...]:
         try:
-            steps, _ = _found(whole, path)
+            return tuple(found(self._source.tree(), path)[0])
         except KeyError:
             if path in self:
                 raise KeyError(f"{path}: has its default value; expected a key that the file, or a change, gives") from None
             raise
-        at: Any = whole
-        for step in steps[:-1]:
-            at = _inside(at, step)
-        del at[int(steps[-1]) if isinstance(at, list) else steps[-1]]
-        source = _Source("\n".join(_lines(whole)), self._source.name, self._source.folder)
-        self._core, self._source = source.core(), source
+
+    def _take_out(self, steps: tuple[str, ...], stacklevel: int) -> list[str]:
+        """Removes what is at these steps; `stacklevel` 0: without a warning of what is removed with it."""
+        before: Any = self._source.tree()
+        at, in_list = before, 0
+        for k, step in enumerate(steps):
+            if isinstance(at, list):
+                in_list = in_list or k
+            try:
+                at = inside(at, step)
+            except KeyError:
+                raise KeyError(
+                    f"{path_of(steps)}: has its default value; expected a key that the file, or a change, gives"
+                ) from None
+        if in_list:
+            items = self._at(steps[:in_list])
+            _put(items, steps[in_list:], None, remove=True)
+            source, core, removed = taken_out(
+                self._source.changed(overrides({path_of(steps[:in_list]): items})), [], self._source
+            )
+        else:
+            source, core, removed = taken_out(self._source.without([steps]), [steps], self._source)
+        self._core, self._source = core, source
+        paths = [path_of(steps) for steps in removed]
+        if stacklevel:
+            _warn_of(paths, stacklevel + 1)
+        return paths
 
     def __contains__(self, path: object) -> bool:
         try:
@@ -208,17 +166,60 @@ class Experiment:
         """The keys and tables of the file."""
         return iter(self._tree())
 
-    def with_(self, changes: Mapping[str, Any]) -> Experiment:
-        """Another experiment, with these keys changed all at once."""
-        return self._with_overrides(_overrides(changes))
+    def with_(self, changes: Mapping[str, Any] | None = None, /, **more: Any) -> Experiment:
+        """Another experiment, with these keys changed all at once: ``e.with_({"sphere.s": 8}, n=16)``."""
+        changed, removed = self._changed({**(changes or {}), **more})
+        _warn_of(removed, 3)
+        return changed
 
-    def _with_overrides(self, overrides: Sequence[str]) -> Experiment:
+    def _changed(self, changes: Mapping[str, Any]) -> tuple[Experiment, list[str]]:
+        """With these changes, and what was removed because it named what is no longer there."""
+        source, lost = self._source, []
+        for path, value in changes.items():
+            source, names = source.with_value(*self._whole_list(source, path, value))
+            lost += names
+        try:
+            source, core, removed = taken_out(source, lost, self._source)
+        except ValueError as error:
+            hint = resize_hint(self._tree(), source, str(error))
+            raise (ValueError(f"{error}\n{hint}") if hint else error) from None
+        return Experiment(core, self.samplers, source), [path_of(steps) for steps in removed]
+
+    def _whole_list(self, source: Source, path: str, value: Any) -> tuple[str, Any]:
+        """The change of an item of a list that the file does not give, as the change of the list."""
+        try:
+            found(source.tree(), path)
+        except KeyError:
+            try:
+                steps = found(self._tree(), path)[0]
+            except KeyError:
+                return path, value
+            for k in range(1, len(steps)):
+                if isinstance(items := self._at(steps[:k]), list):
+                    _put(items, steps[k:], value)
+                    return path_of(steps[:k]), items
+        return path, value
+
+    def _with_overrides(self, changes: Sequence[str]) -> Experiment:
         """The same with PATH=VALUE each, as --set takes it."""
-        source = self._source.changed(overrides)
+        source = self._source.changed(changes)
         return Experiment(source.core(), self.samplers, source)
 
+    def resize(self, width: int, height: int) -> Experiment:
+        """Changes the size of the picture, and with it the boxes of regions and the crops of plates, which show what
+        they showed. Returns the experiment."""
+        changes = resized(self._tree(), width, height)
+        self._change(changes, stacklevel=4)
+        return self
+
+    def diff(self, other: Experiment) -> dict[str, tuple[Any, Any]]:
+        """The keys whose values differ, by their paths: the value here and the value there, None where it has none."""
+        here, there = (dict(_leaves({**e._tree(), "samplers": dict(e.samplers)})) for e in (self, other))
+        paths = [*here, *(path for path in there if path not in here)]
+        return {path: (here.get(path), there.get(path)) for path in paths if here.get(path) != there.get(path)}
+
     def _with_arms(self) -> Experiment:
-        """With an arm for each of `samplers`, at the sample counts of the other arms."""
+        """With an arm for each of `samplers`, at its own sample counts or those of the other arms."""
         arms = self._tree()["arms"]
         for name in self.samplers:
             if name in arms:
@@ -226,8 +227,8 @@ class Experiment:
         if not self.samplers:
             return self
         counts = all_counts(arms.values())
-        tables = {f"arms.{_quoted(n)}": {**table_of(s), "n": counts} for n, s in self.samplers.items()}
-        return Experiment(_crescent.with_arms(self._core, _overrides(tables)))
+        tables = {f"arms.{quoted(n)}": {**table_of(s), "n": counts_of(s, counts)} for n, s in self.samplers.items()}
+        return Experiment(_crescent.with_arms(self._core, overrides(tables)))
 
     @property
     def text(self) -> str:
@@ -250,23 +251,60 @@ class Experiment:
     def __repr__(self) -> str:
         return f"<Experiment {self._core.file} {self.hash}>"
 
+    def _repr_html_(self) -> str:
+        """The arms, lights, shapes and regions as a table."""
+        from ._html import of_experiment
 
-def _restored(source: _Source, samplers: Mapping[str, Any]) -> Experiment:
+        return of_experiment(self)
+
+
+def _warn_of(removed: Sequence[str], stacklevel: int) -> None:
+    """Lists what was removed with a name."""
+    if removed:
+        warnings.warn(f"also removed, because it names what was removed: {', '.join(removed)}", stacklevel=stacklevel)
+
+
+def _put(at: Any, steps: Sequence[str], value: Any, remove: bool = False) -> None:
+    """Sets or removes a value inside a list."""
+    for step in steps[:-1]:
+        at = inside(at, step)
+    key: Any = int(steps[-1]) if isinstance(at, list) else steps[-1]
+    if remove:
+        del at[key]
+    else:
+        at[key] = value
+
+
+def _leaves(tree: Mapping[str, Any], path: tuple[str, ...] = ()) -> Iterator[tuple[str, Any]]:
+    """Every value that is not a table, with its path."""
+    for key, value in tree.items():
+        if isinstance(value, Mapping):
+            yield from _leaves(value, (*path, key))
+        else:
+            yield path_of((*path, key)), value
+
+
+def _restored(source: Source, samplers: Mapping[str, Any]) -> Experiment:
     """An experiment that was pickled or copied."""
     return Experiment(source.core(), samplers, source)
 
 
 def load(path: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> Experiment:
-    """An experiment file; ValueError names every mistake with line and column."""
-    name, overrides = fspath(path), _overrides(changes or {})
-    core = _crescent.load(name, overrides)
-    text = Path(name).read_bytes().decode("utf-8-sig")
-    return Experiment(core, None, _Source(text, name, dirname(abspath(name)), tuple(overrides)))
+    """An experiment file, or an installed experiment by its name, such as "gallery"; ValueError names every mistake with
+    line and column."""
+    name = experiment_file(path)
+    text = Path(name).read_bytes().decode("utf-8-sig") if Path(name).is_file() else ""
+    if not changes:
+        return Experiment(_crescent.load(name, []), None, Source(text, name, dirname(abspath(name))))
+    if not any(isinstance(value, Mapping) for value in changes.values()):
+        core = _crescent.load(name, overrides(changes))
+        return Experiment(core, None, Source(text, name, dirname(abspath(name)), tuple(overrides(changes))))
+    return load(path).with_(changes)
 
 
 def parse(text: str, name: str = "text.toml") -> Experiment:
     """The same from text; `name` is the file's name in messages."""
-    return Experiment(_crescent.parse(text, name, []), None, _Source(text, name, dirname(abspath(name))))
+    return Experiment(_crescent.parse(text, name, []), None, Source(text, name, dirname(abspath(name))))
 
 
 @dataclass(frozen=True, repr=False)
@@ -287,6 +325,12 @@ class Film:
     def __repr__(self) -> str:
         height, width = self.planes["y"].shape
         return f"<Film {self.arm} n={self.n} s={self.s:g} seed={self.seed}: {width} x {height}>"
+
+    def _repr_html_(self) -> str:
+        """The picture, with its size."""
+        from ._html import of_film
+
+        return of_film(self)
 
     @property
     def rgb(self) -> NDArray[np.float32]:
@@ -367,6 +411,11 @@ class Measured:
         arms = dict.fromkeys(arm for arm, _ in rows)
         return {arm: float(np.median([t for a, t in rows if a == arm])) for arm in arms}
 
+    @property
+    def threads(self) -> int:
+        """The number of threads with which :attr:`times` were measured; 0: unknown."""
+        return int(self._core.threads)
+
     def metric(self, name: str, arm: str, n: int, region: str = "", s: float | None = None) -> Summary:
         """A metric of :meth:`records`, "tail_k", "bias_sq", "flip" (of the first `flip_seeds` seeds; of the frame of the
         first seed), or "efficiency_n" and "efficiency_time": 1 / (variance of one sample) and 1 / (variance times
@@ -437,8 +486,17 @@ class Measured:
         return xarray.Dataset(out)
 
     def write(self, folder: str | PathLike[str]) -> None:
-        """Writes metrics.json, metrics.csv, junit.xml and films/*.exr, all at once; only the program draws plates."""
-        self._core.write(fspath(folder))
+        """Writes metrics.json, metrics.csv, junit.xml, films/*.exr and arrays.npz, all at once, for :func:`open`; only the
+        program draws plates."""
+        self._core.write(fspath(folder), [(_saved.ARRAYS, _saved.arrays_of(self._core))])
+
+    save = write
+
+    def _repr_html_(self) -> str:
+        """The films of every arm at its largest N, a table with intervals, and the assertions."""
+        from ._html import of_measured
+
+        return of_measured(self)
 
     def __repr__(self) -> str:
         return f"<Measured: {len(self.films)} films; assertions {'hold' if self.holds else 'fail'}>"
@@ -525,11 +583,17 @@ def run(
 def join(parts: Sequence[str | PathLike[str]], out: str | PathLike[str] | None = None) -> Measured:
     """Joins runs of parts of one experiment's seeds, as `crescent join` does.
 
-    `parts`: folders of runs, or their metrics.json. `out`: a folder for the metrics. There are no films.
+    `parts`: folders of runs, or their metrics.json. `out`: a folder for the result. It has the times of all parts, and the
+    films and references of those that :meth:`Measured.write` wrote.
     """
     folder = None if out is None else abspath(out)
-    core = _crescent.join([fspath(part) for part in parts])
-    measured = Measured(core)
+    measured = Measured(_saved.joined([fspath(part) for part in parts]))
     if folder is not None:
         measured.write(folder)
     return measured
+
+
+def open(folder: str | PathLike[str]) -> Measured:
+    """The result in a folder that :meth:`Measured.write`, ``run(out=...)`` or the program wrote: metrics, provenance and
+    times, and films and references, which the program does not write for this."""
+    return Measured(_saved.opened(Path(folder)))

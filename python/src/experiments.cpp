@@ -21,7 +21,7 @@ RunResult result_of(Measured&& m) {
     RunResult out{m.experiment.s(), m.metrics.all_hold(), metrics_json(in), metrics_csv(in), junit_xml(in),
         {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
             {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.backend}},
-        {}, {}, {}, {}};
+        {}, {}, {}, m.timing.threads, {}};
     for (const Region& r : m.experiment.regions) out.boxes.emplace_back(r.name, r.box.x0, r.box.y0, r.box.x1, r.box.y1);
     for (const ArmTiming& t : m.timing.arms) out.times.emplace_back(t.arm, t.n, t.s, t.samples, t.seconds);
     for (auto& [key, film] : m.films) out.films.emplace_back(key, std::move(film));
@@ -68,18 +68,20 @@ ReferenceList references_of(nb::handle self) {
     return reference_list(nb::cast<const RunResult&>(self).references, self);
 }
 
-using State =
-    std::tuple<double, bool, std::string, std::string, std::string, Attributes, Boxes, nb::object, nb::object>;
+using State = std::tuple<double, bool, std::string, std::string, std::string, Attributes, Boxes, nb::object, nb::object,
+    Times, int>;
 
 State state_of(nb::handle self) {
     const RunResult& r = nb::cast<const RunResult&>(self);
-    return {r.s, r.holds, r.json, r.csv, r.junit, r.attributes, r.boxes, films_of(self), references_of(self)};
+    return {r.s, r.holds, r.json, r.csv, r.junit, r.attributes, r.boxes, films_of(self), references_of(self), r.times,
+        r.threads};
 }
 
 void restore(RunResult& into, const State& state) {
     RunResult* const r = new (&into) RunResult;
     nb::object films, references;
-    std::tie(r->s, r->holds, r->json, r->csv, r->junit, r->attributes, r->boxes, films, references) = state;
+    std::tie(r->s, r->holds, r->json, r->csv, r->junit, r->attributes, r->boxes, films, references, r->times,
+        r->threads) = state;
     for (const nb::handle entry : films) {
         const nb::tuple at = nb::cast<nb::tuple>(entry);
         const nb::dict planes = nb::cast<nb::dict>(at[4]);
@@ -174,8 +176,9 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
     return out;
 }
 
-/// Writes metrics.json, metrics.csv, junit.xml and films/*.exr, all at once; only the program writes plates and report.
-void write_folder(const RunResult& r, const std::string& folder) {
+/// Writes metrics.json, metrics.csv, junit.xml, films/*.exr and `more`, all at once; only the program writes plates.
+void write_folder(
+    const RunResult& r, const std::string& folder, const std::vector<std::pair<std::string, nb::bytes>>& more) {
     ProgressMonitor monitor;
     const Work here(&monitor);
     Staging staging(folder);
@@ -185,6 +188,8 @@ void write_folder(const RunResult& r, const std::string& folder) {
     std::map<std::string, std::vector<std::pair<std::string, const Film*>>> files;
     for (const auto& [key, film] : r.films)
         files[film_file(key.arm, key.s, r.s)].emplace_back(fmt::format("n={}", key.n), &film);
+    for (const auto& [name, bytes] : more)
+        staging.write(name, std::span(static_cast<const unsigned char*>(bytes.data()), bytes.size()));
     for (const auto& [name, parts] : files) write_exr(staging.path("films/" + name + ".exr"), parts, r.attributes);
     staging.commit(monitor);
 }
@@ -305,7 +310,8 @@ void add_experiments(nb::module_& m) {
         .def_ro("boxes", &RunResult::boxes)
         .def_prop_ro("films", [](nb::handle self) { return films_of(self); })
         .def_prop_ro("references", [](nb::handle self) { return references_of(self); })
-        .def("write", &write_folder, "folder"_a)
+        .def_ro("threads", &RunResult::threads)
+        .def("write", &write_folder, "folder"_a, "more"_a = std::vector<std::pair<std::string, nb::bytes>>{})
         .def("__getstate__", [](nb::handle self) { return state_of(self); })
         .def("__setstate__", &restore);
     m.def("flip", &flip_of, "reference_r"_a, "reference_g"_a, "reference_b"_a, "test_r"_a, "test_g"_a, "test_b"_a,

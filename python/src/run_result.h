@@ -59,6 +59,8 @@ inline void restore_references(const nb::list& from, std::vector<ReferenceFilm>&
 /// Name, x0, y0, x1, y1 of each region, both ends inclusive, from the bottom-left.
 using Boxes = std::vector<std::tuple<std::string, int, int, int, int>>;
 
+using Times = std::vector<std::tuple<std::string, std::uint64_t, double, std::uint64_t, double>>;
+
 /// The results of a run, as plain data: texts, films and references.
 struct RunResult {
     double s = 0;  // the experiment's own
@@ -67,9 +69,9 @@ struct RunResult {
     Attributes attributes;  // of the films' files
     std::vector<std::pair<RunKey, Film>> films;
     std::vector<ReferenceFilm> references;
-    /// (arm, highest N, s, samples, seconds of wall-clock time) of each job; not pickled, as it varies between equal
-    /// runs.
-    std::vector<std::tuple<std::string, std::uint64_t, double, std::uint64_t, double>> times;
+    /// (arm, highest N, s, samples, seconds of wall-clock time) of each job, which vary between equal runs.
+    Times times;
+    int threads = 0;  // with which they were measured
     Boxes boxes;
 };
 

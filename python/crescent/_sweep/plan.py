@@ -13,7 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..experiments import Experiment, _found, _lines, _overrides, parse
+from .._paths import found as found_at
+from .._paths import lines, overrides
+from ..experiments import Experiment, parse
 from .engines import InProcess, Job
 from .grid import label
 from .identity import NOT_OF_THE_SCENE, NUMERICS, Arm, arms_of, digest, reference_id, scene_id
@@ -81,7 +83,7 @@ class Point:
 def families_of(tree: Mapping[str, Any], path: str) -> str:
     """The table of a path, which may begin at a name: "arms" of "phong.n"."""
     try:
-        return _found(tree, path)[0][0]
+        return found_at(tree, path)[0][0]
     except KeyError:
         return path.partition(".")[0]
 
@@ -96,7 +98,7 @@ def points_of(
         try:
             e = base.with_({**at, "seeds": seeds})
             with_arms = e._with_arms()
-            changes = _overrides({**at, "seeds": seeds})
+            changes = overrides({**at, "seeds": seeds})
             point = Point(
                 dict(at), with_arms, changes, scene_id(with_arms), reference_id(with_arms), arms_of(e, versions)
             )
@@ -137,7 +139,7 @@ def _small(base: Experiment) -> tuple[Experiment, int]:
     scale = min(1.0, (_CALIBRATION_PIXELS / (width * height)) ** 0.5)
     kept["image"] = {**whole["image"], "width": max(int(width * scale), 16), "height": max(int(height * scale), 16)}
     kept["seeds"] = 80
-    small = parse("\n".join(_lines(kept)), base._core.file)
+    small = parse("\n".join(lines(kept)), base._core.file)
     return small, kept["image"]["width"] * kept["image"]["height"]
 
 

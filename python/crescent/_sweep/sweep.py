@@ -16,7 +16,8 @@ from typing import Any
 
 from .. import _crescent
 from .._sampler import whole
-from ..experiments import Experiment, Measured, _steps, load
+from .._paths import steps_of
+from ..experiments import Experiment, Measured, load
 from .dataset import COLUMNS, Dataset
 from .engines import DaskEngine, EngineError, InProcess, Job, engine_of, profile_of, usable_cores
 from .grid import Axis, UsageError, axes_of, grid
@@ -118,7 +119,7 @@ _NO_AXES = {
 def _check_axes(axes: Sequence[Axis]) -> None:
     """Refuses keys that a sweep gives its points itself."""
     for axis in axes:
-        steps = _steps(axis.path)
+        steps = steps_of(axis.path)
         if len(steps) == 1 and steps[0] in _NO_AXES:
             raise UsageError(f"--over {axis.path}: {_NO_AXES[steps[0]]}")
         if axis.path in COLUMNS:
@@ -512,11 +513,7 @@ def experiment_of(given: Experiment | str | PathLike[str]) -> Experiment:
     """An experiment, the file of one, or the name of an installed one."""
     if isinstance(given, Experiment):
         return given
-    text = os.fspath(given)
-    installed = Path(_crescent.__file__ or "").parent / "share" / "crescent" / "experiments" / f"{text}.toml"
-    if "/" not in text and "." not in text and not Path(text).exists() and installed.is_file():
-        return load(installed)
-    return load(text)
+    return load(given)
 
 
 def with_settings(e: Experiment, settings: Sequence[str]) -> Experiment:

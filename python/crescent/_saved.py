@@ -1,0 +1,113 @@
+"""Results in folders: metrics as the program writes them, and ``arrays.npz`` with the films, references and times."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _crescent
+
+ARRAYS = "arrays.npz"
+
+
+def core_of(state: Sequence[Any]) -> _crescent.RunResult:
+    """The result with this state: s, holds, json, csv, junit, attributes, boxes, films, references, times, threads."""
+    core = _crescent.RunResult.__new__(_crescent.RunResult)
+    core.__setstate__(tuple(state))
+    return core
+
+
+def arrays_of(core: _crescent.RunResult) -> bytes:
+    """The contents of arrays.npz: planes, and an index in JSON."""
+    state: Any = core.__getstate__()
+    s, holds, _, _, _, attributes, boxes, films, references, times, threads = state
+    index = {
+        "s": s,
+        "holds": holds,
+        "attributes": attributes,
+        "boxes": boxes,
+        "films": [film[:4] for film in films],
+        "references": [s for s, _ in references],
+        "times": times,
+        "threads": threads,
+    }
+    planes = {f"film/{k}/{name}": plane for k, film in enumerate(films) for name, plane in film[4].items()}
+    planes |= {f"reference/{k}/{name}": plane for k, (_, of) in enumerate(references) for name, plane in of.items()}
+    out = io.BytesIO()
+    np.savez(out, index=np.frombuffer(json.dumps(index).encode(), np.uint8), **planes)
+    return out.getvalue()
+
+
+def _planes(arrays: Any, kind: str, k: int) -> dict[str, Any]:
+    start = f"{kind}/{k}/"
+    return {name.removeprefix(start): arrays[name] for name in arrays.files if name.startswith(start)}
+
+
+def arrays_in(folder: Path) -> dict[str, Any] | None:
+    """The index of a folder's arrays.npz, with the planes in its films and references; None if there is no such file."""
+    path = folder / ARRAYS
+    if not path.is_file():
+        return None
+    with np.load(path, allow_pickle=False) as arrays:
+        index: dict[str, Any] = json.loads(arrays["index"].tobytes())
+        index["films"] = [(*film, _planes(arrays, "film", k)) for k, film in enumerate(index["films"])]
+        index["references"] = [(s, _planes(arrays, "reference", k)) for k, s in enumerate(index["references"])]
+    index["boxes"] = [tuple(box) for box in index["boxes"]]
+    index["times"] = [tuple(row) for row in index["times"]]
+    index["attributes"] = [tuple(pair) for pair in index["attributes"]]
+    return index
+
+
+def _text(path: Path) -> str:
+    return path.read_bytes().decode()
+
+
+def opened(folder: Path) -> _crescent.RunResult:
+    """The result in a folder; of a run of the program, which has no arrays.npz, without films and references."""
+    if not (folder / "metrics.json").is_file():
+        raise ValueError(f"{folder}: expected a folder of a result, with metrics.json")
+    index = arrays_in(folder)
+    texts = [
+        _text(folder / name) if (folder / name).is_file() else ""
+        for name in ("metrics.json", "metrics.csv", "junit.xml")
+    ]
+    if index is None:
+        joined = list(_crescent.join([str(folder)]).__getstate__())
+        joined[2:5] = [text or other for text, other in zip(texts, joined[2:5], strict=True)]
+        joined[9:11] = _timing(folder)
+        return core_of(joined)
+    rest = ("attributes", "boxes", "films", "references", "times", "threads")
+    return core_of([index["s"], index["holds"], *texts, *(index[name] for name in rest)])
+
+
+def _timing(folder: Path) -> tuple[list[Any], int]:
+    """The times and threads of timing.json."""
+    path = folder / "timing.json"
+    timing = json.loads(_text(path)) if path.is_file() else {}
+    rows = [(a["arm"], a["n"], a["s"], a["samples"], a["seconds"]) for a in timing.get("arms", [])]
+    return rows, int(timing.get("threads", 0))
+
+
+def joined(parts: Sequence[str]) -> _crescent.RunResult:
+    """The result of parts of the seeds: the films of the first seed that has any, all times, and the references."""
+    state = list(_crescent.join(list(parts)).__getstate__())
+    folders = [path.parent if path.is_file() else path for path in map(Path, parts)]
+    found = [index for index in map(arrays_in, folders) if index is not None]
+    order = [row.split(",")[3] for row in str(state[3]).splitlines()[1:]]
+    rank = {seed: k for k, seed in reversed(list(enumerate(order)))}
+    films = sorted((film for index in found for film in index["films"]), key=lambda film: rank.get(str(film[3]), 0))
+    first = {film[:3]: film for film in reversed(films)}
+    state[7] = [film for film in films if first[film[:3]] is film]
+    state[8] = list({s: (s, of) for index in found for s, of in index["references"]}.values())
+    timed = [
+        _timing(folder) if (index := arrays_in(folder)) is None else (index["times"], index["threads"])
+        for folder in folders
+    ]
+    state[9] = [row for rows, _ in timed for row in rows]
+    state[10] = max((threads for _, threads in timed), default=0)
+    return core_of(state)
