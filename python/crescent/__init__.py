@@ -25,7 +25,7 @@ from ._summaries import Summary
 from .experiments import Experiment, Film, Measured, RunInterrupted, join, load, open, parse, run
 
 if TYPE_CHECKING:
-    from . import adapters, scenes, testing
+    from . import adapters, plot, scenes, testing
 
 __all__ = [
     "Combination",
@@ -58,6 +58,7 @@ __all__ = [
     "open",
     "parse",
     "pdf_of",
+    "plot",
     "ris",
     "run",
     "scenes",
@@ -71,7 +72,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Loads a module of the package on first use."""
-    if name in ("adapters", "scenes", "testing"):
+    if name in ("adapters", "plot", "scenes", "testing"):
         return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
 

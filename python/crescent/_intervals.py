@@ -35,6 +35,25 @@ def half_width(values: Values, level: float = 0.95) -> float:
     return t_quantile((1 + level) / 2, values.size - 1) * float(np.std(values, ddof=1)) / math.sqrt(values.size)
 
 
+def rounded(mean: float, half: float | None, digits: int = 3) -> tuple[str, str | None]:
+    """A mean and the half width of its interval as texts: the half width with two digits, the mean with the same places;
+    a mean without an interval with so many digits. Both have an exponent, or none has."""
+    if half is None or not math.isfinite(half) or not math.isfinite(mean):
+        return f"{mean:.{digits}g}", None
+    if half == 0:
+        return f"{mean:.{digits}g}", "0"
+    places = 1 - math.floor(math.log10(half))
+    if round(half, places) >= 10 ** (2 - places):  # 0.0999 is 0.10
+        places -= 1
+    largest = max(abs(mean), half)
+    if places > 6 or largest >= 1e6:
+        power = math.floor(math.log10(largest))
+        shown = max(places + power, 0)
+        return f"{mean / 10**power:.{shown}f}e{power}", f"{half / 10**power:.{shown}f}e{power}"
+    shown = max(places, 0)
+    return f"{round(mean, places):.{shown}f}", f"{round(half, places):.{shown}f}"
+
+
 def log_interval(values: Values | Sequence[float], level: float = 0.95) -> tuple[float, float] | None:
     """The interval of the mean of the logarithm over seeds, as values; None with one seed or where a value is not
     positive."""

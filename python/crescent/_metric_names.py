@@ -4,6 +4,8 @@ RADIANCE = "W sr$^{-1}$ m$^{-2}$"
 UNITS = {
     **dict.fromkeys(("y_mean", "rmse", "rmse_frame", "largest"), RADIANCE),
     **dict.fromkeys(("var", "bias_sq", "mse"), f"({RADIANCE})$^2$"),
+    "efficiency_n": f"({RADIANCE})$^{{-2}}$",
+    "efficiency_time": f"({RADIANCE})$^{{-2}}$ s$^{{-1}}$",
 }
 NAMES = {
     "rmse": "RMSE",
@@ -16,5 +18,10 @@ NAMES = {
     "bias_sq": "squared bias",
     "flip": "FLIP",
     "horizon_frac": "horizon share",
+    "efficiency_n": "efficiency at equal N",
+    "efficiency_time": "efficiency at equal time",
 }
 RANKED = frozenset({"rmse", "rmse_frame", "var", "mse", "rel_mse", "smape", "flip", "fireflies"})
+
+#: Efficiencies, 1 / (variance of N samples times N) and 1 / (variance times seconds): the largest is the best.
+LARGEST_IS_BEST = frozenset({"efficiency_n", "efficiency_time"})

@@ -121,6 +121,16 @@ def _dependents(tree: Mapping[str, Any], lost: Sequence[Steps]) -> list[Steps]:
         words |= {steps[-1] for steps in more}
 
 
+_ROUNDS = 4  # of messages: each names the tables that became wrong by the removal of those before
+_MEASURED = ("plates", "assertions", "furnaces", "regions")  # they need others, and no scene needs them
+
+
+def _in_message(tree: Mapping[str, Any], message: str) -> list[Steps]:
+    """The tables that a message finds wrong."""
+    named = [(family, name) for family in _MEASURED for name in tree.get(family, {})]
+    return [steps for steps in named if f": {'.'.join(steps)}." in message or f": {path_of(steps)}." in message]
+
+
 def taken_out(
     source: Source, lost: Sequence[Steps], before: Source
 ) -> tuple[Source, _crescent.Experiment, list[Steps]]:
@@ -130,14 +140,19 @@ def taken_out(
     try:
         return source, source.core(), []
     except ValueError as error:
-        needed = _dependents(before.tree(), lost) if lost else []
-        if not needed:
-            raise
         refused = error
-    try:
-        source.without(needed).core()
-    except ValueError:
-        raise refused from None
+    needed = _dependents(before.tree(), lost) if lost else []
+    for _ in range(_ROUNDS if lost else 0):
+        try:
+            source.without(needed).core()
+            break
+        except ValueError as error:
+            wrong = [steps for steps in _in_message(before.tree(), str(error)) if steps not in needed]
+            if not wrong:
+                raise refused from None
+            needed += wrong
+    else:
+        raise refused
     for steps in list(needed):
         kept = [other for other in needed if other != steps]
         try:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._intervals import Values, half_width
+from ._intervals import Values, half_width, rounded
 
 if TYPE_CHECKING:
     from .experiments import Measured
@@ -35,7 +35,8 @@ class Summary:
     def __str__(self) -> str:
         if self.heavy:
             return f"{self.mean:.4g} (heavy tail)"
-        return f"{self.mean:.4g}" + ("" if self.half is None else f" ± {self.half:.2g}")
+        mean, half = rounded(self.mean, self.half, 4)
+        return mean if half is None else f"{mean} ± {half}"
 
 
 def _rows(result: Measured, meter: str, arm: str, n: int, region: str, s: float) -> list[dict[str, Any]]:

@@ -2,62 +2,76 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ._intervals import Values, best_of, half_width
-from ._metric_names import NAMES, RANKED, UNITS
+from ._cost import Costs, at_cost, budget_of
+from ._intervals import Values, half_width, rounded
+from ._metric_names import NAMES, UNITS
+from ._values import arms_of, best_in, heavy_arms, only_region, values_of
 
 if TYPE_CHECKING:
     from .experiments import Measured
 
 _SPECIAL = str.maketrans({c: "\\" + c for c in "&%$#_{}"})
+_BUDGETS = 3  # columns at equal time, each with a quarter of the next
 
 
-def _cell(values: Values, digits: int, bold: bool) -> str:
-    mean = float(np.mean(values))
-    places = max(0, digits - 1 - math.floor(math.log10(abs(mean)))) if mean else digits - 1
-    half = 0.0
-    if values.size > 1:
-        half = half_width(values)
-        if half > 0:  # its first figure at least
-            places = max(places, min(places + 3, -math.floor(math.log10(half))))
-    text = f"{mean:.{places}f}"
-    out = rf"\mathbf{{{text}}}" if bold else text
-    if values.size > 1:
-        out += rf" \pm {half:.{places}f}"
-    return f"${out}$"
+def _cell(values: Values, digits: int, bold: bool, heavy: bool) -> str:
+    mean, half = rounded(float(np.mean(values)), half_width(values) if values.size > 1 else None, digits)
+    mean, _, power = mean.partition("e")
+    text = rf"\mathbf{{{mean}}}" if bold else mean
+    if half is not None:
+        text += rf" \pm {half.partition('e')[0]}"
+    if power:
+        text = rf"({text}) \times 10^{{{int(power)}}}"
+    return f"${text}" + (r"^{\dagger}$" if heavy else "$")
 
 
-def latex(result: Measured, metric: str, region: str | None, s: float, rank: bool, digits: int) -> str:
-    rows = [r for r in result.records() if r["meter"] == metric and r["s"] == s and r["value"] is not None]
-    region = next((r["region"] for r in rows), "") if region is None else region
-    rows = [r for r in rows if r["region"] == region]
-    if not rows:
-        there = sorted({(r["meter"], r["region"]) for r in result.records()})
-        raise KeyError(f"no {metric} of {region or 'the frame'} at s = {s:g}: there are {there}")
-    counts = sorted({r["n"] for r in rows})
-    arms = list(dict.fromkeys(r["arm"] for r in rows))
-    by = {
-        (a, n): np.array([r["value"] for r in rows if (r["arm"], r["n"]) == (a, n)], float) for a in arms for n in counts
-    }
-    best: dict[int, set[str]] = {}
-    for n in counts:
-        of = {a: by[a, n] for a in arms if by[a, n].size}
-        found = best_of(of) if rank and metric in RANKED else set()
-        best[n] = found if len(found) < len(of) else set()
+def latex(
+    result: Measured, metric: str, region: str | None, s: float, rank: bool, digits: int, against: str = "n",
+    budgets: Sequence[float] | None = None, arms: Sequence[str] | None = None, labels: Mapping[str, str] | None = None,
+) -> str:  # fmt: skip
+    """See :meth:`crescent.Measured.to_latex`."""
+    region = only_region(result, metric, region)
+    by_arm = values_of(result, metric, region, s)
+    costs = Costs(result, against, s)
+    order = [arm for arm in arms_of(result, arms) if arm in by_arm and costs.knows(arm)]
+    by_arm = {arm: by_arm[arm] for arm in order}
+    if against == "n":
+        columns = [float(n) for n in (budgets or sorted({n for of in by_arm.values() for n in of}))]
+    else:
+        most = budget_of(by_arm, costs)
+        columns = sorted(float(b) for b in budgets) if budgets else [most / 4**k for k in reversed(range(_BUDGETS))]
+    heavy = heavy_arms(result, region, s)
+    cells: dict[tuple[str, float], str] = {}
+    for column in columns:
+        found = {
+            arm: at.values
+            for arm, of in by_arm.items()
+            if (at := at_cost(of, arm, costs, column, metric, against == "n")) is not None
+        }
+        best = best_in(found, metric) if rank else set()
+        for arm, values in found.items():
+            cells[arm, column] = _cell(values, digits, arm in best, arm in heavy)
     name = NAMES.get(metric, metric.translate(_SPECIAL)) + (f", region {region}".translate(_SPECIAL) if region else "")
     name += f" [{UNITS[metric]}]" if metric in UNITS else ""
+    heads = [f"$N = {n:g}$" if against == "n" else costs.text(n).replace("µs", r"\textmu s") for n in columns]
     lines = [
         rf"% {result.provenance}".translate({ord("\n"): " "}),
-        rf"\begin{{tabular}}{{l{'r' * len(counts)}}}",
+        rf"\begin{{tabular}}{{l{'r' * len(columns)}}}",
         r"\toprule",
-        rf"{name} & " + " & ".join(f"$N = {n}$" for n in counts) + r" \\",
+        rf"{name} & " + " & ".join(heads) + r" \\",
         r"\midrule",
     ]
-    for a in arms:
-        cells = [_cell(by[a, n], digits, a in best[n]) if by[a, n].size else "--" for n in counts]
-        lines.append(f"{a.translate(_SPECIAL)} & " + " & ".join(cells) + r" \\")
-    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", ""])
+    for arm in order:
+        row = [cells.get((arm, column), "--") for column in columns]
+        lines.append(f"{(labels or {}).get(arm, arm).translate(_SPECIAL)} & " + " & ".join(row) + r" \\")
+    lines.append(r"\bottomrule")
+    notes = [r"$^{\dagger}$ heavy tail: the intervals mean nothing"] if heavy & set(order) else []
+    if against == "time":
+        notes.append(f"{costs.threads} threads, the median of the measured times")
+    lines += [rf"\multicolumn{{{len(columns) + 1}}}{{l}}{{\footnotesize {note}}} \\" for note in notes]
+    return "\n".join([*lines, r"\end{tabular}", ""])

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from . import _crescent, _saved
 from ._callable_arms import Samplers, all_counts, callable_arms, counts_of, table_of
+from ._cost import Against
 from ._installed import experiment_file
 from ._live import live
 from ._paths import found, inside, overrides, path_of, quoted
@@ -148,7 +149,7 @@ class Experiment:
                 self._source.changed(overrides({path_of(steps[:in_list]): items})), [], self._source
             )
         else:
-            source, core, removed = taken_out(self._source.without([steps]), [steps], self._source)
+            source, core, removed = taken_out(self._source.without([steps]), [steps] if isinstance(at, Mapping) else [], self._source)
         self._core, self._source = core, source
         paths = [path_of(steps) for steps in removed]
         if stacklevel:
@@ -372,6 +373,7 @@ class Measured:
 
     def __init__(self, core: _crescent.RunResult) -> None:
         self._core = core
+        self._rows: list[dict[str, Any]] | None = None
         self.films: Films = Films([Film(*film) for film in core.films], core.s)
         self.references: dict[float, Mapping[str, NDArray[np.float32]]] = {s: planes for s, planes in core.references}  #: by s: r, g, b, y, error
 
@@ -395,8 +397,10 @@ class Measured:
         Counts are int, other numbers float, None if there is none; region is "" for the whole frame. Each changed key
         has a column, whose values are those of the file.
         """
-        rows = csv.DictReader(io.StringIO(self._core.csv, newline=""))
-        return [{key: _field(key, text, row["meter"]) for key, text in row.items()} for row in rows]
+        if self._rows is None:
+            rows = csv.DictReader(io.StringIO(self._core.csv, newline=""))
+            self._rows = [{key: _field(key, text, row["meter"]) for key, text in row.items()} for row in rows]
+        return [dict(row) for row in self._rows]
 
     @property
     def boxes(self) -> dict[str, tuple[int, int, int, int]]:
@@ -438,19 +442,25 @@ class Measured:
         s: float | None = None,
         bold: str | None = "best",
         digits: int = 3,
+        against: Against = "n",
+        budgets: Sequence[float] | None = None,
+        arms: Sequence[str] | None = None,
+        labels: Mapping[str, str] | None = None,
     ) -> str:
-        """A metric as a LaTeX table (booktabs): a row an arm, a column a sample count, means over seeds with the half
-        width of their 95 % intervals.
+        """A metric as a LaTeX table (booktabs): a row an arm, in the order of `arms` and with the names of `labels`; a
+        column a sample count, or with `against="time"` or "rays" a budget of `budgets`, in s or rays a pixel. Means over
+        seeds with the half width of their 95 % intervals, rounded by these; `digits` of a mean with one seed.
 
-        `bold="best"`: arms of which none is significantly worse than the best are bold, if some other arm is (paired t
-        over seeds at 5 %, shared by the arms); with one seed, or a metric of which the smallest is not the best, nothing is
-        ranked. None: nothing is bold.
+        `bold="best"`: what is not significantly worse than the best is bold (paired t over seeds at 5 %, shared by the
+        arms); with one seed, or a metric that has no order, nothing is ranked. None: nothing is bold. A dagger marks heavy
+        tails. At equal time an arm is interpolated between sample counts, as in :func:`crescent.plot.bars`.
         """
         from ._tables import latex
 
         if bold not in ("best", None):
             raise ValueError(f"bold is {bold!r}: expected 'best' or None")
-        return latex(self, table, region, self.s if s is None else s, bold == "best", digits)
+        at = self.s if s is None else s
+        return latex(self, table, region, at, bold == "best", digits, against, budgets, arms, labels)
 
     @property
     def s(self) -> float:

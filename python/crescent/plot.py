@@ -14,22 +14,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import channels
-from ._intervals import fitted_slope, half_width, log_interval
-from ._metric_names import NAMES, RADIANCE, UNITS
+from ._cost import Against, Costs
+from ._html import tone
+from ._intervals import fitted_slope, half_width
+from ._metric_names import LARGEST_IS_BEST, NAMES, RADIANCE, UNITS
+from ._values import arms_of, compared_at, film_at, heavy_arms, only_region, values_of, with_interval
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from .experiments import Film, Measured
 
-__all__ = ["bars", "crops", "heat", "hemisphere", "ladder", "save", "style", "where_noise_moved"]
+__all__ = ["bars", "crops", "heat", "hemisphere", "ladder", "page", "save", "style", "where_noise_moved"]
 
 COLUMN_MM = 85.0  #: width of one column
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#f0e442")
@@ -64,11 +69,17 @@ def style() -> AbstractContextManager[None]:
     return mpl.rc_context(_STYLE)
 
 
-def save(ax: Axes | Sequence[Axes], path: str | PathLike[str]) -> None:
-    """Writes the figure of these axes as PDF, SVG or PNG, by the ending of `path`; 300 dots an inch."""
+def save(ax: Axes | Sequence[Axes] | Figure, path: str | PathLike[str]) -> None:
+    """Writes the figure of these axes, or a figure, as PDF, SVG or PNG, by the ending of `path`; 300 dots an inch."""
+    import matplotlib as mpl
+
     with style():
-        figure: Any = (ax[0] if isinstance(ax, Sequence) else ax).figure
-        figure.savefig(path)
+        first: Any = ax[0] if isinstance(ax, Sequence) else ax
+        figure: Any = getattr(first, "figure", None) or first
+        with mpl.rc_context(
+            {"savefig.bbox": None} if figure.get_label() == "page" else {}
+        ):  # a page has its exact width
+            figure.savefig(path)
 
 
 def _axes(ax: Axes | None, height_mm: float = 60.0) -> Axes:
@@ -79,38 +90,38 @@ def _axes(ax: Axes | None, height_mm: float = 60.0) -> Axes:
     return plt.subplots(figsize=(COLUMN_MM / 25.4, height_mm / 25.4), layout="constrained")[1]
 
 
-def _arms(r: Measured, arms: Sequence[str] | None) -> list[str]:
-    known = list(dict.fromkeys(film.arm for film in r.films.values()))
-    known = known or list(dict.fromkeys(row["arm"] for row in r.records()))
-    for arm in arms or ():
-        if arm not in known:
-            raise KeyError(f"no arm {arm!r}: there are {', '.join(known)}")
-    return list(arms) if arms else known
+_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "p")
+_DASHES: tuple[Any, ...] = ("-", "--", "-.", (0, (1, 1)), (0, (5, 1, 1, 1, 1, 1)))
+_HATCHES = ("", "////", "....", "xxxx", "----", "\\\\\\\\", "++++", "||||", "oooo")
 
 
-def _colour(r: Measured, arm: str) -> str:
-    return _COLOURS[_arms(r, None).index(arm) % len(_COLOURS)]
+@dataclass(frozen=True)
+class _Look:
+    """How an arm is drawn: readers tell two arms apart in grey too, by marker, dashes and hatching."""
+
+    colour: str
+    marker: str
+    dashes: Any
+    hatch: str
+    label: str
 
 
-def _values(r: Measured, metric: str, region: str, s: float | None) -> dict[str, dict[int, list[float]]]:
-    """By arm and N, the metric's values over seeds. KeyError where the result has no such metric or region."""
-    at = r.s if s is None else s
-    rows = r.records()
-    out: dict[str, dict[int, list[float]]] = {}
-    for row in rows:
-        if row["meter"] == metric and row["region"] == region and row["s"] == at and row["value"] is not None:
-            out.setdefault(row["arm"], {}).setdefault(row["n"], []).append(row["value"])
-    if not out:
-        there = sorted({f"{row['meter']} of {row['region']}" if row["region"] else row["meter"] for row in rows})
-        raise KeyError(f"no {metric} of {region or 'the frame'} at s = {at:g}: there are {', '.join(there)}")
-    return out
-
-
-def _only_region(r: Measured, metric: str, region: str | None) -> str:
-    """`region`, or the first of the experiment's where the metric has regions and none is named."""
-    if region is not None:
-        return region
-    return next((row["region"] for row in r.records() if row["meter"] == metric), "")
+def _look(
+    r: Measured, arm: str, labels: Mapping[str, str] | None = None, colours: Mapping[str, str] | None = None
+) -> _Look:
+    known = arms_of(r, None)
+    for given, what in ((labels, "labels"), (colours, "colours")):
+        for name in given or {}:
+            if name not in known:
+                raise KeyError(f"{what} has {name!r}: there are {', '.join(known)}")
+    k = known.index(arm)
+    return _Look(
+        (colours or {}).get(arm, _COLOURS[k % len(_COLOURS)]),
+        _MARKERS[k % len(_MARKERS)],
+        _DASHES[k % len(_DASHES)],
+        _HATCHES[k % len(_HATCHES)],
+        (labels or {}).get(arm, arm),
+    )
 
 
 def _label(metric: str, region: str) -> str:
@@ -125,47 +136,96 @@ def ladder(
     arms: Sequence[str] | None = None,
     s: float | None = None,
     ax: Axes | None = None,
+    *,
+    against: Against = "n",
+    labels: Mapping[str, str] | None = None,
+    colours: Mapping[str, str] | None = None,
+    log: bool = True,
+    legend: bool = True,
 ) -> Axes:
-    """A metric against the sample count N on two logarithmic axes, one line an arm, with its band over seeds.
+    """A metric against the sample count N, the seconds (`against="time"`) or the rays of an arm, one line an arm, with
+    its band over seeds; on two logarithmic axes, or with `log=False` on linear ones.
 
     The legend states the fitted slope with its 95 % interval over seeds (two seeds at least); independent samples of
-    finite variance have -0.5.
+    finite variance have -0.5. An arm whose metric is 0 is at the lower edge. A heavy tail is named. `labels` and
+    `colours` are by arm.
     """
-    region = _only_region(r, metric, region)
-    values = _values(r, metric, region, s)
+    region = only_region(r, metric, region)
+    values = values_of(r, metric, region, s)
+    costs = Costs(r, against, r.s if s is None else s)
+    heavy = heavy_arms(r, region, s)
     with style():
-        ax = _axes(ax, 62.0 + 2.0 * len(values))
-        for arm in _arms(r, arms):
-            if arm not in values:
+        ax = _axes(ax, 62.0 + 2.0 * len(values) * legend)
+        ticks: set[float] = set()
+        at_the_edge = []
+        for arm in arms_of(r, arms):
+            if arm not in values or not costs.knows(arm):
                 continue
             n = np.array(sorted(values[arm]))
             over = [np.array(values[arm][k]) for k in n]
+            x = np.array([costs.of(arm, k) for k in n])
             low, high = (5.0, 95.0) if min(map(len, over)) >= 20 else (0.0, 100.0)
             middle = np.array([np.median(v) for v in over])
+            look = _look(r, arm, labels, colours)
             slope = fitted_slope(n, over)
-            name = arm if slope is None else f"{arm}: slope {slope.text().replace('-', '−')}"
-            ax.plot(n, middle, "o-", ms=3, color=_colour(r, arm), label=name)
-            ax.fill_between(
-                n, [np.percentile(v, low) for v in over], [np.percentile(v, high) for v in over],
-                color=_colour(r, arm), alpha=0.2, lw=0,
+            name = look.label if slope is None else f"{look.label}: slope {slope.text().replace('-', '−')}"
+            name += (": 0" if not middle.any() else "") + (", heavy tail" if arm in heavy else "")
+            shown = np.where(middle > 0, middle, np.nan) if log else middle
+            ends = [np.where(shown > 0, [np.percentile(v, q) for v in over], np.nan) for q in (low, high)]
+            ax.plot(x, shown, look.marker, ls=look.dashes, ms=3, color=look.colour, label=name, gid=arm)
+            ax.fill_between(x, ends[0], ends[1], color=look.colour, alpha=0.2, lw=0)
+            if log and (middle <= 0).any():
+                at_the_edge.append((x[middle <= 0], look))
+            ticks |= set(x)
+        if log:
+            ax.set_xscale("log", base=2 if against == "n" else 10)
+            ax.set_yscale("log")
+            _log_ticks(ax.yaxis, 6)
+            if against != "n":
+                _log_ticks(ax.xaxis, 4)
+        for x, look in at_the_edge:  # 0 has no logarithm
+            ax.plot(
+                x, np.full(len(x), 0.02), look.marker, ls=look.dashes, ms=4, color=look.colour, fillstyle="none",
+                transform=ax.get_xaxis_transform(), clip_on=False, gid="0",
             )  # fmt: skip
-        counts = sorted({k for of in values.values() for k in of})
-        ax.set_xscale("log", base=2)
-        ax.set_yscale("log")
-        ax.set_xticks(counts, [str(k) for k in counts])
-        ax.minorticks_off()
-        ax.set_xlabel("samples a pixel, N")
+        if against == "n":
+            ax.set_xticks(sorted(ticks), [f"{k:g}" for k in sorted(ticks)])
+            ax.minorticks_off()
+        ax.set_xlabel(costs.label)
         ax.set_ylabel(_label(metric, region))
         ax.grid(True)
-        # Below the axes, where no line is; the distance is in font sizes, for the labels of the axis.
-        ax.legend(
-            frameon=False, loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4.5, ncols=2, columnspacing=1.2
-        )
+        if legend:
+            # Below the axes, where no line is; the distance is in font sizes, for the labels of the axis.
+            longest = max((len(str(line.get_label())) for line in ax.get_lines()), default=0)
+            ax.legend(
+                frameon=False, loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4.5,
+                ncols=2 if longest <= 30 else 1, columnspacing=1.2, handlelength=2.6,
+            )  # fmt: skip
     return ax
 
 
-def _geometric(values: NDArray[Any]) -> float:
-    return float(np.exp(np.log(values).mean())) if (values > 0).all() else float(values.mean())
+def _log_ticks(axis: Any, most: int) -> None:
+    """At most so many labels on a logarithmic axis: powers of ten, or 1, 2 and 5 times these within a short range."""
+    low, high = sorted(axis.get_view_interval())
+    powers = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
+    for digits in ((1.0,), (1.0, 2.0, 5.0), tuple(range(1, 10)), tuple(np.arange(10, 100) / 10)):
+        values = [d * 10.0**k for k in powers for d in digits if low <= d * 10.0**k <= high]
+        if len(values) >= 2:
+            break
+    values = values[:: -(-len(values) // most)]
+
+    def text(value: float) -> str:
+        if 1e-3 < value < 1e4:
+            return f"{value:.4g}"
+        power = int(np.floor(np.log10(value) + 1e-9))
+        digits = f"{value / 10.0**power:.3g}"
+        return f"$10^{{{power}}}$" if digits == "1" else rf"${digits}\cdot10^{{{power}}}$"
+
+    from matplotlib.ticker import NullFormatter
+
+    axis.set_ticks(values, [text(v) for v in values])
+    axis.set_minor_formatter(NullFormatter())
+    axis.set_view_interval(low, high, ignore=True)
 
 
 def bars(
@@ -176,36 +236,107 @@ def bars(
     arms: Sequence[str] | None = None,
     s: float | None = None,
     ax: Axes | None = None,
+    *,
+    against: Against = "n",
+    budget: float | None = None,
+    labels: Mapping[str, str] | None = None,
+    colours: Mapping[str, str] | None = None,
+    log: bool = False,
+    names: Literal["beside", "above"] = "beside",
 ) -> Axes:
-    """A metric of each arm at one N (the largest that all arms have), smallest on top.
+    """A metric of each arm at one N, at equal time or at equal rays, smallest on top; arms of 0 too.
 
-    A bar is the geometric mean over seeds, its line the 95 % interval of that mean.
+    `n` is by default the largest that all arms have, or most of them, `budget` (in s, or rays a pixel) the largest that all arms reach.
+    An arm that has no N of exactly that cost is interpolated between two, in logarithms. A bar is the mean over seeds,
+    its line the 95 % interval of that mean; the number is bold if the arm is not significantly worse than the
+    best (paired t over seeds). `names="above"`: over the bars, where there is room for long ones.
     """
-    region = _only_region(r, metric, region)
-    values = {arm: of for arm, of in _values(r, metric, region, s).items() if arm in _arms(r, arms)}
-    shared = set.intersection(*(set(of) for of in values.values()))
-    if n is None and not shared:
-        raise ValueError("the arms have no sample count in common: name one as n")
-    at = max(shared) if n is None else n
-    found = sorted(((arm, np.array(of[at])) for arm, of in values.items() if at in of), key=lambda x: -_geometric(x[1]))
-    if not found:
-        raise KeyError(f"no arm has N = {at}: expected one of {sorted({k for of in values.values() for k in of})}")
+    region = only_region(r, metric, region)
+    compared = compared_at(r, metric, region, s, arms_of(r, arms), against, n, budget)
+    heavy = heavy_arms(r, region, s)
+    found = sorted(compared.values.items(), key=lambda of: float(of[1].mean()), reverse=metric not in LARGEST_IS_BEST)
     with style():
         ax = _axes(ax, 12.0 + 7.0 * len(found))
+        height = 0.7 if names == "beside" else 0.36
+        low = min((float(v.mean()) for _, v in found if v.mean() > 0), default=1.0)
+        absent = [(arm, np.array([])) for arm in compared.missing]
+        found = [*absent, *found]
         for y, (arm, v) in enumerate(found):
-            ax.barh(y, _geometric(v), color=_colour(r, arm), height=0.7)
-            end = _geometric(v)
-            if (interval := log_interval(v)) is not None:
-                ax.plot(interval, [y, y], color="black", lw=1)
-                end = max(end, interval[1])
-            ax.annotate(f"{_geometric(v):.3g}", (end, y), (3, 0), textcoords="offset points", va="center", size=7)
+            look = _look(r, arm, labels, colours)
+            if names == "above":
+                _name_above(ax, y + height / 2, look)
+            if not v.size:
+                text = f"no {compared.costs.text(compared.cost)}"
+                ax.annotate(
+                    text,
+                    (0, y),
+                    (3, 0),
+                    xycoords=("axes fraction", "data"),
+                    textcoords="offset points",
+                    va="center",
+                    size=7,
+                )
+                continue
+            mean, half = float(v.mean()), half_width(v) if v.size > 1 else 0.0
+            left = low / 4 if log else 0.0
+            ax.barh(
+                y, max(mean - left, 0), left=left, color=look.colour, height=height, hatch=look.hatch, ec="white", lw=0
+            )
+            if half > 0:
+                ax.plot([max(mean - half, left), mean + half], [y, y], color="black", lw=1)
+            end = max(mean + half, left)
+            text = with_interval(v) + (", heavy tail" if arm in heavy else "")
+            ax.annotate(
+                text, (end, y), (3, 0), textcoords="offset points", va="center", size=7,
+                weight="bold" if arm in compared.best else "normal",
+            )  # fmt: skip
+        if log:
+            ax.set_xscale("log")
         ax.margins(x=0.15)  # room for the numbers
         ax.set_axisbelow(True)
-        ax.set_yticks(range(len(found)), [arm for arm, _ in found])
-        ax.set_xlabel(f"{_label(metric, region)} at N = {at}")
-        ax.set_xlim(left=0)
+        shown = [_look(r, arm, labels, colours).label for arm, _ in found] if names == "beside" else []
+        ax.set_yticks(range(len(found)) if shown else [], shown)
+        ax.set_xlabel(f"{_label(metric, region)} {compared.where()}")
+        if not log:
+            ax.set_xlim(left=0)
         ax.grid(True, axis="x")
+        _room_for_texts(ax)
     return ax
+
+
+def _name_above(ax: Axes, y: float, look: _Look) -> None:
+    """The marker and the label of an arm over its bar."""
+    ax.annotate(
+        look.label, (0, y), (8, 1.5), xycoords=("axes fraction", "data"), textcoords="offset points", va="bottom",
+        size=6.5,
+    )  # fmt: skip
+    where = ax.get_yaxis_transform() + _offset(ax, 3, 4.5)
+    ax.plot([0], [y], look.marker, color=look.colour, ms=4, clip_on=False, transform=where)
+
+
+def _offset(ax: Axes, x: float, y: float) -> Any:
+    """A shift in points."""
+    from matplotlib.transforms import ScaledTranslation
+
+    figure: Any = ax.figure
+    return ScaledTranslation(x / 72, y / 72, figure.dpi_scale_trans)
+
+
+def _room_for_texts(ax: Axes) -> None:
+    """Widens the axis until the numbers behind the bars are inside."""
+    figure: Any = ax.figure
+    renderer = figure.canvas.get_renderer() if hasattr(figure.canvas, "get_renderer") else None
+    for _ in range(4):
+        right = max((t.get_window_extent(renderer).x1 for t in ax.texts), default=0.0)
+        box = ax.get_window_extent()
+        if right <= box.x1:
+            return
+        low, high = ax.get_xlim()
+        scale = (right - box.x0) / (box.x1 - box.x0)
+        if ax.get_xscale() == "log":
+            ax.set_xlim(low, low * (high / low) ** scale)
+        else:
+            ax.set_xlim(low, low + (high - low) * scale)
 
 
 def _film(r: Measured, arm: str, n: int, s: float | None) -> Film:
@@ -286,9 +417,7 @@ def where_noise_moved(
     height, width = (size - size % tile for size in planes[0].shape)
     if height == 0 or width == 0:
         raise ValueError(f"tile is {tile}: expected at most the size of the picture, {min(planes[0].shape)}")
-    of_a, of_b = (
-        p[:height, :width].reshape(height // tile, tile, width // tile, tile).mean((1, 3)) for p in planes
-    )
+    of_a, of_b = (p[:height, :width].reshape(height // tile, tile, width // tile, tile).mean((1, 3)) for p in planes)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.where((of_a > 0) & (of_b > 0), np.log2(of_b / of_a), np.nan)
     with style():
@@ -300,47 +429,42 @@ def where_noise_moved(
     return ax
 
 
-def _tone(rgb: NDArray[Any], exposure: float) -> NDArray[Any]:
-    """Linear Rec. 709 to sRGB (IEC 61966-2-1), clipped to [0, 1]."""
-    x = np.clip(rgb * exposure, 0, 1)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
-
-
-def _with_interval(over: NDArray[Any]) -> str:
-    """The mean over seeds, with the half width of its 95 % interval."""
-    mean = float(np.mean(over))
-    if over.size < 2:
-        return f"{mean:.3g}"
-    return f"{mean:.3g} ± {half_width(over):.2g}"
-
-
 def crops(
     r: Measured,
-    n: int,
+    n: int | None,
     box: Sequence[int],
     arms: Sequence[str] | None = None,
     metric: str = "rmse",
     region: str | None = None,
     s: float | None = None,
     exposure: float = 1.0,
+    *,
+    against: Against = "n",
+    budget: float | None = None,
+    labels: Mapping[str, str] | None = None,
 ) -> list[Axes]:
     """The same crop of the reference and of several arms in a row; below each the mean of its metric over seeds, with
     the half width of its 95 % interval.
 
-    `box`: [x0, y0, x1, y1) in pixels, y upwards.
+    `box`: [x0, y0, x1, y1) in pixels, y upwards. With `against="time"` or "rays" `n` is None, and each arm's film is that
+    of the N nearest to `budget`, by default what every arm reaches; the title has its N, and the metric is that of
+    :func:`bars`.
     """
     import matplotlib.pyplot as plt
 
     at = r.s if s is None else s
-    region = _only_region(r, metric, region)
-    values = _values(r, metric, region, s)
-    films: Mapping[Any, Film] = r.films
-    shown = [arm for arm in _arms(r, arms) if (arm, n, at) in films]
-    if not shown:
-        raise KeyError(f"no arm has a film at N = {n} and s = {at:g}")
+    region = only_region(r, metric, region)
+    compared = compared_at(r, metric, region, s, arms_of(r, arms), against, n, budget)
+    films: dict[str, Film] = {}
+    for arm, count in compared.n.items():
+        film = film_at(r, arm, count, at)
+        if film is not None and (against != "n" or film.n == count):
+            films[arm] = film
+    if not films:
+        raise KeyError(f"no arm has a film {compared.where()} and s = {at:g}")
     reference = r.references.get(at)
     name = NAMES.get(metric, metric) + (f", region {region}" if region else "")
-    count = len(shown) + (reference is not None)
+    count = len(films) + (reference is not None)
     with style():
         aspect = (box[3] - box[1]) / (box[2] - box[0])
         width = min(2 * COLUMN_MM + 5, 42.0 * count) / 25.4
@@ -348,15 +472,54 @@ def crops(
         axes = list(np.atleast_1d(row))
         if reference is not None:
             rgb = np.stack([reference[c] for c in "rgb"], -1)
-            _picture(axes[0], _tone(_cut(rgb, box), exposure), "reference")
+            _picture(axes[0], tone(_cut(rgb, box), exposure), "reference")
             unit = UNITS.get(metric, "")
-            axes[0].set_xlabel(f"{name}" + (f"\n[{unit}]" if unit else ""))
-        for ax, arm in zip(axes[count - len(shown) :], shown):
-            _picture(ax, _tone(_cut(films[arm, n, at].rgb, box), exposure), f"{arm}, N = {n}")
-            over = np.array(values.get(arm, {}).get(n, []))
-            if over.size:
-                ax.set_xlabel(_with_interval(over) if reference is not None else f"{name}\n{_with_interval(over)}")
+            axes[0].set_xlabel(
+                f"{name}" + (f"\n[{unit}]" if unit else "") + ("" if against == "n" else f"\n{compared.where()}")
+            )
+        for ax, (arm, film) in zip(axes[count - len(films) :], films.items()):
+            label = _look(r, arm, labels).label
+            cost = "" if against == "n" else f"\n{compared.costs.text(compared.costs.of(arm, film.n))}"
+            _picture(ax, tone(_cut(film.rgb, box), exposure), f"{label}, N = {film.n}{cost}")
+            text = with_interval(compared.values[arm])
+            ax.set_xlabel(text if reference is not None else f"{name}\n{text}")
     return axes
+
+
+def page(
+    r: Measured,
+    insets: Sequence[Any] | None = None,
+    *,
+    arms: Sequence[str] | None = None,
+    metric: str = "rmse",
+    region: str | None = None,
+    against: Against = "n",
+    n: int | None = None,
+    budget: float | None = None,
+    labels: Mapping[str, str] | None = None,
+    colours: Mapping[str, str] | None = None,
+    columns: Literal[1, 2] = 2,
+    log: bool = True,
+    s: float | None = None,
+    exposure: float = 1.0,
+    show: Sequence[Literal["picture", "grid", "ladder", "bars"]] = ("picture", "grid", "ladder", "bars"),
+    picture: str | None = None,
+) -> Figure:
+    """The figure page of a paper: the whole picture with marked insets, a ladder and bars, and a grid of insets with a
+    column for each method, its metric below, and the reference last.
+
+    `insets`: names of regions or boxes [x0, y0, x1, y1) in pixels, y upwards; by default every region. `arms` is the
+    order. `labels` and `colours` are by arm: ``labels={"mine": "Ours"}``. `columns`: 85 or 178 mm wide. `against`, `n`
+    and `budget` as for :func:`bars`; at equal time the film of an arm is that of the nearest N, which is printed with
+    its time. Bold is what is not significantly worse than the best. `log=False`: a linear ladder. `show`: the parts.
+    `picture`: the arm in the whole picture, by default the reference. :func:`save` keeps the width.
+    """
+    from . import _page
+
+    return _page.page(
+        r, insets, arms=arms, metric=metric, region=region, against=against, n=n, budget=budget, labels=labels,
+        colours=colours, columns=columns, log=log, s=s, exposure=exposure, show=show, picture=picture,
+    )  # fmt: skip
 
 
 def hemisphere(
@@ -402,5 +565,3 @@ def hemisphere(
         ax.plot([np.sin(theta)], [0], "x", color="#d55e00", ms=5, mew=1.2)
         ax.annotate("$\\omega_o$", (np.sin(theta), 0), (4, 4), textcoords="offset points", color="#d55e00")
     return ax
-
-

@@ -1,0 +1,192 @@
+"""The figure page: every part is there, every text is readable, and nothing overlaps."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+matplotlib = pytest.importorskip("matplotlib")
+matplotlib.use("Agg")
+
+import crescent  # noqa: E402
+from crescent import plot  # noqa: E402
+from crescent._intervals import rounded  # noqa: E402
+from crescent._tables import latex  # noqa: E402
+from crescent._values import best_in, compared_at  # noqa: E402
+from tiny import TINY  # noqa: E402
+
+METRIC = "meter"
+NINE = [f"{k}-an-arm-of-24-letters-{k}" for k in "abcdefghi"]
+
+
+@pytest.fixture(scope="module")
+def nine():
+    e = crescent.parse(TINY.replace("seeds = 2", "seeds = 3"))
+    for k, name in enumerate(NINE):
+        e.samplers[name] = crescent.mixture("cosine", "uniform", weights=[(k + 1) / 10, "rest"])
+    e.samplers["candidates"] = crescent.ris("phong", "cosine", candidates=9, n=[4, 16])
+    return crescent.run(e)
+
+
+def texts(figure):
+    """Every visible text of a figure with its box in pixels; of ticks, those that are drawn."""
+    figure.draw_without_rendering()
+    hidden = set()
+    for axis in (axis for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)):
+        drawn = {id(tick) for tick in axis._update_ticks()}
+        ticks = (tick for tick in [*axis.majorTicks, *axis.minorTicks] if id(tick) not in drawn)
+        hidden |= {id(label) for tick in ticks for label in (tick.label1, tick.label2)}
+    found = [t for t in figure.findobj(matplotlib.text.Text) if t.get_visible() and id(t) not in hidden]
+    return [(t.get_text(), t.get_window_extent()) for t in found if t.get_text().strip()]
+
+
+@pytest.mark.parametrize("columns", [1, 2])
+@pytest.mark.parametrize("against", ["n", "time"])
+def test_names_of_nine_arms_never_overlap(nine, columns, against, tmp_path):
+    assert all(len(name) == 24 for name in NINE)
+    figure = plot.page(nine, ["ball", (0, 0, 20, 16)], arms=NINE, columns=columns, against=against)
+    found = texts(figure)
+    width, height = figure.get_size_inches() * figure.dpi
+    for text, box in found:
+        assert box.x0 >= -0.5 and box.x1 <= width + 0.5 and box.y0 >= -0.5 and box.y1 <= height + 0.5, text
+    for (a, first), (b, second) in itertools.combinations(found, 2):
+        apart = (
+            first.x1 <= second.x0 + 1
+            or second.x1 <= first.x0 + 1
+            or first.y1 <= second.y0 + 1
+            or second.y1 <= first.y0 + 1
+        )
+        assert apart, (a, first, b, second)
+    words = "".join(text for text, _ in found)
+    for name in NINE:
+        assert words.count(name) >= 1, "in one line at the bars"
+    plot.save(figure, tmp_path / "page.pdf")
+    data = (tmp_path / "page.pdf").read_bytes()
+    box = data[data.index(b"/MediaBox") :].split(b"]")[0].split()
+    assert float(box[-2]) == pytest.approx({1: 85, 2: 178}[columns] * 72 / 25.4, abs=0.5)
+    assert b"/FontFile2" in data
+
+
+def test_a_page_has_the_insets_of_every_method_and_the_reference_last(nine):
+    arms = ["cosine", "phong"]
+    figure = plot.page(nine, ["ball", (0, 0, 20, 16)], arms=arms, labels={"phong": "Ours"}, n=4)
+    pictures = [ax for ax in figure.axes if ax.images]
+    assert len(pictures) == 1 + 2 * 3
+    x0, y0, x1, y1 = nine.boxes["ball"]
+    grid = [np.asarray(ax.images[0].get_array()) for ax in pictures[1:]]
+    assert grid[0].shape[:2] == (y1 - y0 + 1, x1 - x0 + 1) and grid[3].shape[:2] == (16, 20)
+    reference = nine.references[nine.s]["g"]
+    shown = plot.tone(reference[y0 : y1 + 1, x0 : x1 + 1][::-1].astype(float))
+    np.testing.assert_allclose(grid[2][..., 1], shown, atol=1e-6)
+    words = [text for text, _ in texts(figure)]
+    left = {text: box.x0 for text, box in texts(figure) if box.y1 < figure.dpi * 1.2 * figure.get_size_inches()[1]}
+    assert left["Reference"] > left["Ours"] and "cosine" in words and "phong" not in words
+
+
+def test_arms_are_told_apart_in_grey(nine):
+    looks = [plot._look(nine, arm) for arm in NINE]
+    assert len({(look.marker, look.dashes) for look in looks}) == len({look.hatch for look in looks}) == 9
+
+
+def test_at_equal_time_an_expensive_arm_has_fewer_samples(nine):
+    compared = compared_at(nine, "rmse", "ball", None, ["cosine", "candidates"], "time", None, None)
+    seconds = {arm: t / n for arm, n, _, _, t in nine._core.times}
+    for arm, n in compared.n.items():
+        assert n * seconds[arm] == pytest.approx(compared.cost, rel=0.9)
+    at = {arm: compared.costs.of(arm, n) for arm, n in compared.n.items()}
+    assert at["cosine"] == pytest.approx(at["candidates"]) == pytest.approx(compared.cost)
+    half = compared_at(nine, "rmse", "ball", None, ["cosine"], "time", None, compared.costs.of("cosine", 8))
+    low, high = (nine.metric("rmse", "cosine", n, "ball").values for n in (4, 16))
+    np.testing.assert_allclose(half.values["cosine"], np.sqrt(np.multiply(low, high)))
+    for against in ("time", "rays"):
+        ax = plot.ladder(nine, arms=["cosine", "candidates"], against=against)
+        line = ax.get_lines()[0]
+        np.testing.assert_allclose(
+            line.get_xdata(), [compared.costs.of("cosine", n) for n in (4, 16)]
+        ) if against == "time" else None
+        assert ("time [s], " in ax.get_xlabel()) == (against == "time")
+    with pytest.raises(TypeError, match="expected budget="):
+        plot.bars(nine, n=4, against="time")
+    with pytest.raises(ValueError, match="expected one of 'n', 'time', 'rays'"):
+        plot.bars(nine, against="seconds")
+
+
+def test_an_arm_without_such_samples_stays_in_the_bars(nine):
+    ax = plot.bars(nine, arms=["cosine", "phong"], n=16)
+    assert [t.get_text() for t in ax.get_yticklabels()] == ["phong", "cosine"]
+    assert "no N = 16" in [t.get_text() for t in ax.texts]
+
+
+def test_wrong_arguments_are_errors(nine):
+    for wrong, said in (
+        ({"insets": ["bal"]}, "insets has 'bal'"),
+        ({"insets": [(0, 0, 500, 4)]}, "expected x0 < x1 <= 48"),
+        ({"labels": {"nobody": "x"}}, "labels has 'nobody'"),
+        ({"columns": 3}, "expected 1 or 2"),
+        ({"show": ["bar"]}, "show has 'bar'"),
+        ({"picture": "nobody"}, "picture is 'nobody'"),
+    ):
+        with pytest.raises((KeyError, ValueError), match=said):
+            plot.page(nine, **wrong)
+
+
+def test_a_table_at_equal_time_has_every_arm_and_says_how_it_was_measured(nine):
+    text = nine.to_latex("rmse", against="time", arms=["cosine", "candidates"], labels={"candidates": "RIS & Co"})
+    assert "RIS \\& Co" in text and f"{nine.threads} threads" in text and text.count("--") == 0
+    assert len([line for line in text.splitlines() if line.endswith(r"\\")]) == 4
+    assert nine.to_latex("efficiency_time", against="n").count("efficiency at equal time") == 1
+
+
+def test_numbers_are_rounded_by_their_intervals():
+    for mean, half, shown in (
+        (6.69, 15.62, ("7", "16")),
+        (0.4567, 0.0123, ("0.457", "0.012")),
+        (0.4567, 0.0999, ("0.46", "0.10")),
+        (1234.5, 45.6, ("1234", "46")),
+        (12345.0, 456.0, ("12340", "460")),
+        (3e-9, 2e-10, ("3.00e-9", "0.20e-9")),
+        (0.0, 0.1, ("0.00", "0.10")),
+        (0.123, None, ("0.123", None)),
+    ):
+        assert rounded(mean, half) == shown
+
+
+def test_what_is_not_significantly_worse_than_the_best_is_bold():
+    one = np.array([1.0, 1.2, 0.9, 1.1])
+    assert best_in({"a": one, "b": one[::-1], "c": one * 3}, "rmse") == {"a", "b"}
+    assert best_in({"a": one, "b": one[::-1], "c": one * 3}, "efficiency_time") == {"c"}
+    assert best_in({"zero": 0 * one, "a": one}, "rmse") == {"zero"} and best_in({"a": one, "b": one}, "y_mean") == set()
+
+
+class Named:
+    """A result whose numbers are given: two arms, one of value 0, one with a heavy tail."""
+
+    s, threads, provenance = 32.0, 2, "made for a test"
+    films, references, boxes = {}, {}, {}
+
+    def records(self):
+        values = {"none": 0.0, "heavy": 3.0, "plain": 2.0}
+        key = METRIC
+        out = [
+            {"arm": arm, "n": n, "s": 32.0, "seed": seed, key: "rmse", "region": "", "value": v * n**-0.5 * (1 + seed / 50)}
+            for arm, v in values.items()
+            for n in (4, 16)
+            for seed in (1, 2, 3)
+        ]
+        return [*out, {"arm": "heavy", "n": 4, "s": 32.0, "seed": 1, key: "tail_k", "region": "", "value": 0.8}]
+
+
+def test_an_arm_of_value_0_stays_and_a_heavy_tail_is_named():
+    r = Named()
+    ax = plot.ladder(r)
+    labels = [line.get_label() for line in ax.get_lines()]
+    assert "none: 0" in labels and any("heavy tail" in label for label in labels)
+    edge = next(line for line in ax.get_lines() if line.get_gid() == "0")
+    assert list(edge.get_xdata()) == [4, 16]
+    shown = plot.bars(r)
+    assert [t.get_text() for t in shown.get_yticklabels()] == ["heavy", "plain", "none"]
+    assert any("heavy tail" in t.get_text() for t in shown.texts)
+    text = latex(r, "rmse", None, 32.0, True, 3)
+    rows = {line.split(" & ")[0]: line for line in text.splitlines() if " & " in line}
+    assert r"\mathbf{0}" in rows["none"] and r"\mathbf" not in rows["plain"] and r"\dagger" in rows["heavy"]
+    assert "heavy tail" in text.splitlines()[-2]
