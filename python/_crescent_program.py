@@ -7,9 +7,17 @@ import os
 import sys
 
 
+_FOLDERS = {"--include-dir": "include", "--cmake-dir": os.path.join("share", "cmake", "crescent")}
+
+
 def main() -> None:
-    """Becomes the program, which starts this interpreter for samplers in Python."""
-    program = os.path.join(os.path.dirname(os.path.abspath(__file__)), "crescent", "bin", "crescent")
+    """Prints the folder of the headers or of the CMake package, or becomes the program, which starts this interpreter for
+    samplers in Python."""
+    package = os.path.join(os.path.dirname(os.path.abspath(__file__)), "crescent")
+    if len(sys.argv) == 2 and sys.argv[1] in _FOLDERS:
+        print(os.path.join(package, _FOLDERS[sys.argv[1]]))
+        return
+    program = os.path.join(package, "bin", "crescent")
     os.environ.setdefault("CRESCENT_PYTHON", sys.executable)
     # `crescent sweep` finds crescent-sweep of this environment even where the environment is not activated.
     os.environ["PATH"] = os.pathsep.join([os.environ.get("PATH", os.defpath), os.path.dirname(sys.executable)])

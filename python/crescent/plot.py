@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from .experiments import Film, Measured
 
-__all__ = ["bars", "crops", "heat", "hemisphere", "ladder", "page", "save", "style", "where_noise_moved"]
+__all__ = ["bars", "crops", "heat", "hemisphere", "ladder", "page", "save", "style", "sweep", "where_noise_moved"]
 
 COLUMN_MM = 85.0  #: width of one column
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#f0e442")
@@ -125,8 +125,9 @@ def _look(
 
 
 def _label(metric: str, region: str) -> str:
-    unit = UNITS.get(metric, "")
-    return NAMES.get(metric, metric) + (f", region {region}" if region else "") + (f" [{unit}]" if unit else "")
+    """The name of a metric with its unit, in a second line if it is long."""
+    name, unit = NAMES.get(metric, metric) + (f", region {region}" if region else ""), UNITS.get(metric, "")
+    return name + (f"{chr(10) if len(name) > 22 else ' '}[{unit}]" if unit else "")
 
 
 def ladder(
@@ -484,6 +485,23 @@ def crops(
             text = with_interval(compared.values[arm])
             ax.set_xlabel(text if reference is not None else f"{name}\n{text}")
     return axes
+
+
+def sweep(
+    folder: str | PathLike[str],
+    metric: str = "",
+    over: Sequence[str] | None = None,
+    arms: Sequence[str] | None = None,
+) -> Figure:
+    """A metric of a sweep, such as "rmse.H" or "efficiency_time.H": of each arm at its largest N, over one axis as curves
+    with bands over seeds, over two as heat maps on one scale.
+
+    `over`: one or two of the swept keys, the mean is over the others; by default all that have several values.
+    """
+    from ._sweep.figures import figure_of
+    from ._sweep.summary import Numbers
+
+    return figure_of(Numbers(folder), metric, over, arms)
 
 
 def page(

@@ -141,3 +141,35 @@ def test_an_interpreter_without_the_package_is_named(run, monkeypatch):
     monkeypatch.setenv("CRESCENT_PYTHON", "no-such-python")
     done = run("check", "mine.py")
     assert done.returncode == 3 and "pip install crescent-bench" in done.stderr
+
+
+def test_headers_and_a_cmake_package_are_in_the_package(tmp_path):
+    import shutil
+
+    def folder(flag):
+        run = subprocess.run([sys.executable, "-m", "crescent", flag], capture_output=True, text=True, check=True)
+        return run.stdout.strip()
+
+    include, cmake = folder("--include-dir"), folder("--cmake-dir")
+    assert os.path.isfile(f"{include}/crescent/plugin.h") and os.path.isfile(f"{include}/crescent/check.h")
+    assert os.path.isfile(f"{cmake}/crescentConfigVersion.cmake")
+    (tmp_path / "plugin.c").write_text(
+        '#include "crescent/plugin.h"\nunsigned crescent_sampler_abi(void) { return CRESCENT_SAMPLER_ABI; }\n'
+    )
+    if cc := shutil.which("cc"):
+        subprocess.run([cc, "-shared", "-fPIC", f"-I{include}", "plugin.c", "-o", "p.so"], cwd=tmp_path, check=True)
+    if not (shutil.which("cmake") and cc):
+        return
+    for component, code in (("headers", 0), ("check", 1)):
+        (tmp_path / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(p LANGUAGES C)\n"
+            f"find_package(crescent REQUIRED COMPONENTS {component})\nadd_library(p MODULE plugin.c)\n"
+            "target_link_libraries(p PRIVATE crescent::headers)\n"
+        )
+        made = ["cmake", "-S", ".", "-B", component, f"-Dcrescent_DIR={cmake}"]
+        run = subprocess.run(made, cwd=tmp_path, capture_output=True, text=True)
+        assert run.returncode == code, run.stderr
+        if code:
+            assert "installed by cmake" in run.stderr
+        else:
+            subprocess.run(["cmake", "--build", component], cwd=tmp_path, check=True, capture_output=True)

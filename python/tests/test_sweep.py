@@ -628,3 +628,31 @@ def test_the_program_runs_crescent_sweep_from_the_path(tmp_path):
         [program, "sweep", "a b", "--c"], text=True, capture_output=True, env={"PATH": str(tmp_path)}
     )
     assert (ended.returncode, ended.stdout) == (7, "a b --c\n")
+
+
+def test_a_sweep_has_figures_and_the_efficiency_at_equal_time(tiny, tmp_path):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    from crescent import plot
+
+    out = tmp_path / "out"
+    made = crescent.sweep(tiny, over={"ball.s": [8, 32], "key.radius": [0.2, 0.3]}, out=out, workers=1, verify=0)
+    rows = made.to_arrow().to_pylist()
+    seconds = {(r["point"], r["arm"], r["n"], r["s"], r["seed"]): r["value"] for r in rows if r["metric"] == "seconds"}
+    var = {(r["point"], r["arm"], r["n"], r["s"], r["seed"]): r["value"] for r in rows if r["metric"] == "var"}
+    found = [r for r in rows if r["metric"] == "efficiency_time"]
+    assert found and all(
+        r["value"] == pytest.approx(1 / (var[key] * seconds[key]))
+        for r in found
+        for key in [(r["point"], r["arm"], r["n"], r["s"], r["seed"])]
+    )
+    assert "cosine efficiency" in made.summary()
+    maps = plot.sweep(out)
+    pictures = [ax for ax in maps.axes if ax.images]
+    assert [ax.get_title() for ax in pictures] == ["cosine, N = 16", "phong, N = 4"]
+    curve = plot.sweep(out, "efficiency_time", over=["key.radius"], arms=["cosine"]).axes[0]
+    assert list(curve.get_lines()[0].get_xdata()) == [0.2, 0.3]
+    plot.save(maps, tmp_path / "maps.pdf")
+    for wrong, said in (({"over": ["ball.t"]}, "did you mean 'ball.s'"), ({"arms": ["phon"]}, "no arm 'phon'")):
+        with pytest.raises((ValueError, KeyError), match=said):
+            plot.sweep(out, **wrong)

@@ -330,7 +330,7 @@ def _figure(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) -> Any:
     from matplotlib.patches import Patch
 
     from .. import plot
-    from .report import _heat_map
+    from .figures import heat_map
 
     paths, across, up, kinds = _map(points, axes)
     with plot.style():
@@ -338,7 +338,7 @@ def _figure(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) -> Any:
         ax = figure.subplots()
         shown = np.ma.masked_less(kinds, 0)
         colours = ListedColormap([_COLOURS[kind] for kind in KINDS])
-        _heat_map(
+        heat_map(
             ax, shown, (paths[0], across), (paths[1] if len(paths) > 1 else "", up), cmap=colours, vmin=-0.5, vmax=4.5
         )
         there = sorted({int(k) for k in kinds.ravel() if k >= 0})

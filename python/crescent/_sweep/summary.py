@@ -117,6 +117,8 @@ def summary(out: str | PathLike[str], metric: str = "") -> str:
     name, region = numbers.chosen(metric)
     arms = numbers.arms()
     head = [*numbers.axes, *(f"{arm} N={max(numbers.counts(arm, name, region), default=0)}" for arm in arms), "seeds"]
+    timed = region in numbers.metrics.get("efficiency_time", []) and name != "efficiency_time"
+    head += [f"{arm} efficiency" for arm in arms] if timed else []
     rows = [head]
     for point in numbers.points():
         cells = [short(point["values"].get(path, "")) for path in numbers.axes]
@@ -126,10 +128,15 @@ def summary(out: str | PathLike[str], metric: str = "") -> str:
             values = numbers.values.get((point["scene"], arm, n, name, region), [])
             seeds = max(seeds, len(values))
             cells.append(_with_interval(values))
-        rows.append([*cells, str(seeds)])
+        cells.append(str(seeds))
+        for arm in arms if timed else ():
+            n = max(numbers.counts(arm, "efficiency_time", region), default=0)
+            cells.append(_with_interval(numbers.values.get((point["scene"], arm, n, "efficiency_time", region), [])))
+        rows.append(cells)
     widths = [max(len(row[k]) for row in rows) for k in range(len(head))]
     text = "\n".join("  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows)
     title = f"{name}{' of region ' + region if region else ''}: geometric mean over seeds [95 % interval]"
+    title += "; efficiency at equal time, 1/(variance times seconds on one thread)" if timed else ""
     notes = [f"{numbers.suspect} suspect rows are left out"] if numbers.suspect else []
     failed = state.get("failed", {})
     notes += [f"failed: {place}: {error}" for place, error in failed.items()]

@@ -219,7 +219,7 @@ class Run:
             for name in arms:
                 part = result["parts"][name]
                 kept = {
-                    "json": part["json"], "csv": part["csv"], "seconds": part["seconds"],
+                    "json": part["json"], "csv": part["csv"], "seconds": part["seconds"], "times": part["times"],
                     "experiment": point.experiment.hash, "version": NUMERICS, "worker": result["worker"],
                     "host": result["host"], "isa": result["isa"],
                 }  # fmt: skip

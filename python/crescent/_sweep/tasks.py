@@ -93,7 +93,8 @@ def _part(task: Task, references: Any) -> Result:
         start = time.perf_counter()
         given = [callables[it] for it in (name, *arm["of"]) if it in callables]
         run = _crescent.run_part(e, task["first"], task["last"], [name], references, 1, isa, None, given)
-        parts[name] = {"json": run.json, "csv": run.csv, "seconds": time.perf_counter() - start}
+        seconds = time.perf_counter() - start
+        parts[name] = {"json": run.json, "csv": run.csv, "seconds": seconds, "times": [list(row) for row in run.times]}
         if task.get("films") and task["first"] == 1:
             films |= _films(run)
     return {"parts": parts, "films": films, "isa": isa}

@@ -1,0 +1,175 @@
+"""Figures of a sweep: curves over one axis and heat maps over two, in the style of crescent.plot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .grid import UsageError, hint, short
+from .summary import Numbers, geometric
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Axis = tuple[str, list[Any]]  #: a swept key and its values
+
+
+def axes_over(numbers: Numbers, over: Sequence[str] | None = None) -> list[Axis]:
+    """The swept keys with several values; or these, one or two."""
+    several = [axis for axis in numbers.axes.items() if len(axis[1]) > 1]
+    if over is None:
+        return several
+    for path in over:
+        if path not in numbers.axes:
+            from .. import _crescent
+
+            near = _crescent.nearest(path, list(numbers.axes))
+            raise UsageError(f"over has {path!r}: expected one of {', '.join(numbers.axes)}" + hint(near))
+    return [(path, numbers.axes[path]) for path in over]
+
+
+def figure_of(numbers: Numbers, metric: str, over: Sequence[str] | None, arms: Sequence[str] | None) -> Figure:
+    """Curves over one axis, or heat maps over two."""
+    name, region = numbers.chosen(metric)
+    known = [arm for arm in numbers.arms() if numbers.counts(arm, name, region)]
+    for arm in arms or ():
+        if arm not in known:
+            raise KeyError(f"no arm {arm!r}: there are {', '.join(known)}")
+    axes = axes_over(numbers, over)
+    if not axes:
+        raise UsageError("the sweep has one point: expected several values of a key")
+    if len(axes) > 2:
+        raise UsageError(
+            f"the sweep has {len(axes)} axes: expected over= one or two of {', '.join(p for p, _ in axes)}"
+        )
+    if len(axes) == 1:
+        return curves(numbers, name, region, arms or known, axes[0])
+    across, up = axes if over is not None else sorted(axes, key=lambda axis: -len(axis[1]))
+    figure = heat_maps(numbers, name, region, arms or known, across, up)
+    if figure is None:
+        raise UsageError(f"the sweep has no {metric} yet")
+    return figure
+
+
+def grid_of(points: list[dict[str, Any]], across: Axis, up: Axis, of: Any) -> Any:
+    """The mean of `of` over the points of each pair of values."""
+    out = np.full((len(up[1]), len(across[1])), np.nan)
+    sums: dict[tuple[int, int], list[float]] = {}
+    for point in points:
+        value = of(point)
+        if value is not None:
+            at = (up[1].index(point["values"][up[0]]), across[1].index(point["values"][across[0]]))
+            sums.setdefault(at, []).append(value)
+    for at, values in sums.items():
+        out[at] = geometric(values)
+    return out
+
+
+def heat_map(ax: Any, values: Any, across: Axis, up: Axis, **how: Any) -> Any:
+    drawn = ax.imshow(values, origin="lower", aspect="auto", **how)
+    ax.set_xticks(range(len(across[1])), [short(v) for v in across[1]], rotation=45 if len(across[1]) > 5 else 0)
+    ax.set_yticks(range(len(up[1])), [short(v) for v in up[1]])
+    ax.set_xlabel(across[0])
+    ax.set_ylabel(up[0])
+    return drawn
+
+
+def heat_maps(numbers: Numbers, metric: str, region: str, arms: Sequence[str], across: Axis, up: Axis) -> Figure | None:
+    """The metric of each arm over two axes, on one logarithmic scale; the mean over further axes."""
+    from matplotlib.figure import Figure
+    from matplotlib.colors import LogNorm, Normalize
+
+    from .. import plot
+
+    maps = []
+    for arm in arms:
+        n = max(numbers.counts(arm, metric, region))
+
+        def mean(point: dict[str, Any], arm: str = arm, n: int = n) -> float | None:
+            values = numbers.values.get((point["scene"], arm, n, metric, region))
+            return geometric(values) if values else None
+
+        maps.append((arm, n, grid_of(numbers.points(), across, up, mean)))
+    every = np.concatenate([m.ravel() for *_, m in maps])
+    every = every[np.isfinite(every)]
+    if every.size == 0:
+        return None
+    norm: Any = Normalize(every.min(), every.max())
+    if every.min() > 0:
+        norm = LogNorm(every.min(), every.max() if every.max() > every.min() else every.min() * 1.01)
+    with plot.style():
+        columns = min(len(maps), 3)
+        rows = -(-len(maps) // columns)
+        size = (3.2 * columns + 0.8, (0.9 + 0.28 * max(len(up[1]), 3)) * rows + 0.4)
+        figure = Figure(figsize=size, layout="constrained")
+        grid_axes = figure.subplots(rows, columns, squeeze=False)
+        for ax in grid_axes.ravel()[len(maps) :]:
+            ax.set_visible(False)
+        for ax, (arm, n, values) in zip(grid_axes.ravel(), maps, strict=False):
+            drawn = heat_map(ax, values, across, up, cmap="cividis", norm=norm)
+            ax.set_title(f"{arm}, N = {n}")
+            if values.size <= 100:
+                for (y, x), value in np.ndenumerate(values):
+                    if np.isfinite(value):
+                        dark = norm(value) < 0.55
+                        ax.text(
+                            x,
+                            y,
+                            f"{value:.3g}",
+                            ha="center",
+                            va="center",
+                            fontsize=6,
+                            color="white" if dark else "black",
+                        )
+        figure.colorbar(drawn, ax=list(grid_axes.ravel()), label=plot._label(metric, region), shrink=0.9)
+    return figure
+
+
+def curves(numbers: Numbers, metric: str, region: str, arms: Sequence[str], axis: Axis) -> Figure:
+    """The metric of each arm over the values of an axis, with the band over seeds (and over the other axes)."""
+    from matplotlib.figure import Figure
+
+    from .. import plot
+
+    path, values = axis
+    numeric = all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in values)
+    with plot.style():
+        figure = Figure(figsize=(plot.COLUMN_MM / 25.4, 2.4 + 0.12 * len(arms)), layout="constrained")
+        ax = figure.subplots()
+        for k, arm in enumerate(arms):
+            n = max(numbers.counts(arm, metric, region), default=0)
+            found: dict[Any, list[float]] = {}
+            for p in numbers.points():
+                at = p["values"][path] if numeric else values.index(p["values"][path])
+                found.setdefault(at, []).extend(numbers.values.get((p["scene"], arm, n, metric, region), []))
+            found = {at: over for at, over in found.items() if over}
+            band(ax, list(found), list(found.values()), k, f"{arm}, N = {n}")
+        if not numeric:
+            ax.set_xticks(range(len(values)), [short(v) for v in values])
+        elif min(values) > 0 and max(values) / min(values) > 5:
+            ax.set_xscale("log")
+            ax.set_xticks(values, [short(v) for v in values])
+            ax.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
+        ax.set_yscale("log")
+        ax.set_xlabel(path)
+        ax.set_ylabel(plot._label(metric, region))
+        ax.grid(True)
+        ax.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4.5, ncols=2)
+    return figure
+
+
+def band(ax: Any, x: list[Any], over: list[list[float]], k: int, name: str) -> None:
+    """Medians over seeds with the band of crescent.plot."""
+    from .. import plot
+
+    if not x:
+        return
+    low, high = (5.0, 95.0) if min(map(len, over)) >= 20 else (0.0, 100.0)
+    colour = plot._COLOURS[k % len(plot._COLOURS)]
+    marker, dashes = plot._MARKERS[k % len(plot._MARKERS)], plot._DASHES[k % len(plot._DASHES)]
+    ax.plot(x, [np.median(v) for v in over], marker, ls=dashes, ms=3, color=colour, label=name)
+    ax.fill_between(
+        x, [np.percentile(v, low) for v in over], [np.percentile(v, high) for v in over], color=colour, alpha=0.2, lw=0
+    )
