@@ -11,16 +11,19 @@ FOLDER = Path(os.environ.get("CRESCENT_FIELD", Path(__file__).resolve().parents[
 FAULTS = faults_in(FOLDER) if FOLDER.is_dir() else []
 
 
-def test_there_are_thirteen_at_least_each_with_its_source():
+def test_there_are_forty_at_least_each_with_its_source():
     if not FAULTS:
         pytest.skip("the repository's tests/field is not here")
-    assert len(FAULTS) >= 13 and len({f.name for f in FAULTS}) == len(FAULTS)
+    assert len(FAULTS) >= 40 and len({f.name for f in FAULTS}) == len(FAULTS)
     assert all(f.source.startswith("https://") and f.caught_by for f in FAULTS)
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda f: f.name)
 def test_a_fault_is_caught_and_mended_it_is_right(fault):
-    broken = fault.checked().broken()
+    try:
+        broken = fault.checked().broken()
+    except RuntimeError as missing:  # a driver or a compiler of shaders
+        pytest.skip(str(missing))
     assert set(fault.caught_by) <= set(broken), broken
     assert fault.checked(fixed=True).state == "right", str(fault.checked(fixed=True))
 

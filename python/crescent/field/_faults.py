@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,15 +22,23 @@ class Fault:
     source: str  #: the report by the project or its users
     says: str  #: what was wrong, in a sentence
     caught_by: tuple[str, ...]  #: verdicts that detect it
-    sampler: Sampler
-    fixed: Sampler
+    sampler: Sampler | Callable[[], Sampler]  #: a callable: what is made only when it is checked, as a shader
+    fixed: Sampler | Callable[[], Sampler]
+    estimates: float | None = None  #: the number that both estimate, for samplers of domain="number"
 
     def checked(self, fixed: bool = False) -> CheckResult:
         """Returns the result for the fault, or for its fixed version."""
-        return check(self.fixed if fixed else self.sampler, wo_deg=None if self.sampler.wo == "none" else W_O)
+        given = self.fixed if fixed else self.sampler
+        sampler = given if isinstance(given, Sampler) else given()
+        wo_deg = (W_O if given is sampler else W_O[2:]) if sampler.of_directions() and sampler.wo != "none" else None
+        return check(sampler, wo_deg=wo_deg, estimates=self.estimates)
 
 
-W_O = [(30.0, 0.0), (60.0, 250.0), (80.0, 75.0)]  #: w_o of each check, in degrees
+W_O = [
+    (30.0, 0.0),
+    (60.0, 250.0),
+    (80.0, 75.0),
+]  #: w_o of each check, in degrees; of a shader the last
 
 
 def faults_in(folder: str | Path) -> list[Fault]:
