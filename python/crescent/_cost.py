@@ -98,8 +98,8 @@ class At:
 
 
 def budget_of(by_arm: Mapping[str, Mapping[int, Sequence[float]]], costs: Costs) -> float:
-    """The largest cost that every arm reaches."""
-    return min(costs.of(arm, max(of)) for arm, of in by_arm.items())
+    """The largest cost that every arm reaches, or that of one sample of the most expensive arm if that is more."""
+    return max(min(costs.of(arm, max(of)) for arm, of in by_arm.items()), max(costs.of(arm, 1) for arm in by_arm))
 
 
 def at_cost(
@@ -107,9 +107,11 @@ def at_cost(
 ) -> At | None:
     """The metric at a cost: measured there; interpolated between two sample counts, linearly in logarithms; or for
     metrics of the variance, from the nearest count by their law, N^-1 and N^-1/2 for its root. None where none of these
-    is possible. `keep`: measured values only."""
+    is possible, and of less than one sample. `keep`: measured values only."""
     counts = sorted(of)
     wanted = budget / costs.of(arm, 1)
+    if wanted < 1 - 1e-9:
+        return None
     for n in counts:
         if math.isclose(n, wanted, rel_tol=1e-9):
             return At(np.asarray(of[n], float), n)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .experiments import Measured
 
 _SPECIAL = str.maketrans({c: "\\" + c for c in "&%$#_{}"})
-_BUDGETS = 3  # columns at equal time, each with a quarter of the next
+_BUDGETS = 3  # columns at equal time
 
 
 def _cell(values: Values, digits: int, bold: bool, heavy: bool) -> str:
@@ -28,6 +28,17 @@ def _cell(values: Values, digits: int, bold: bool, heavy: bool) -> str:
     if power:
         text = rf"({text}) \times 10^{{{int(power)}}}"
     return f"${text}" + (r"^{\dagger}$" if heavy else "$")
+
+
+def _budgets(by_arm: Mapping[str, Mapping[int, Sequence[float]]], costs: Costs) -> list[float]:
+    """Up to three budgets in steps of four, of at least a sample of every arm, about the one that every arm reaches."""
+    middle = budget_of(by_arm, costs)
+    least = max(costs.of(arm, 1) for arm in by_arm) * (1 - 1e-9)
+    most = max(costs.of(arm, max(of)) for arm, of in by_arm.items()) * (1 + 1e-9)
+    steps = [middle * 4.0**k for k in range(-_BUDGETS + 1, _BUDGETS)]
+    possible = [b for b in steps if least <= b <= most]
+    below = [b for b in possible if b <= middle]
+    return [*below, *(b for b in possible if b > middle)][:_BUDGETS]
 
 
 def latex(
@@ -43,8 +54,7 @@ def latex(
     if against == "n":
         columns = [float(n) for n in (budgets or sorted({n for of in by_arm.values() for n in of}))]
     else:
-        most = budget_of(by_arm, costs)
-        columns = sorted(float(b) for b in budgets) if budgets else [most / 4**k for k in reversed(range(_BUDGETS))]
+        columns = sorted(float(b) for b in budgets) if budgets else _budgets(by_arm, costs)
     heavy = heavy_arms(result, region, s)
     cells: dict[tuple[str, float], str] = {}
     for column in columns:

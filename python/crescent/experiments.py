@@ -294,6 +294,10 @@ def load(path: str | PathLike[str], changes: Mapping[str, Any] | None = None) ->
     """An experiment file, or an installed experiment by its name, such as "gallery"; ValueError names every mistake with
     line and column."""
     name = experiment_file(path)
+    if name != fspath(path):  # an installed one: messages and provenance have its name, not where it is
+        source = Source(Path(name).read_text("utf-8"), f"{path}.toml", dirname(abspath(name)))
+        installed = Experiment(source.core(), None, source)
+        return installed.with_(changes) if changes else installed
     text = Path(name).read_bytes().decode("utf-8-sig") if Path(name).is_file() else ""
     if not changes:
         return Experiment(_crescent.load(name, []), None, Source(text, name, dirname(abspath(name))))

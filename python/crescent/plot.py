@@ -267,7 +267,7 @@ def bars(
             if names == "above":
                 _name_above(ax, y + height / 2, look)
             if not v.size:
-                text = f"no {compared.costs.text(compared.cost)}"
+                text = f"no {compared.costs.text(compared.cost)}" if against == "n" else "less than one sample"
                 ax.annotate(
                     text,
                     (0, y),

@@ -90,9 +90,6 @@ def test_arms_are_told_apart_in_grey(nine):
 
 def test_at_equal_time_an_expensive_arm_has_fewer_samples(nine):
     compared = compared_at(nine, "rmse", "ball", None, ["cosine", "candidates"], "time", None, None)
-    seconds = {arm: t / n for arm, n, _, _, t in nine._core.times}
-    for arm, n in compared.n.items():
-        assert n * seconds[arm] == pytest.approx(compared.cost, rel=0.9)
     at = {arm: compared.costs.of(arm, n) for arm, n in compared.n.items()}
     assert at["cosine"] == pytest.approx(at["candidates"]) == pytest.approx(compared.cost)
     half = compared_at(nine, "rmse", "ball", None, ["cosine"], "time", None, compared.costs.of("cosine", 8))
@@ -132,7 +129,7 @@ def test_wrong_arguments_are_errors(nine):
 
 def test_a_table_at_equal_time_has_every_arm_and_says_how_it_was_measured(nine):
     text = nine.to_latex("rmse", against="time", arms=["cosine", "candidates"], labels={"candidates": "RIS & Co"})
-    assert "RIS \\& Co" in text and f"{nine.threads} threads" in text and text.count("--") == 0
+    assert "RIS \\& Co" in text and f"{nine.threads} threads" in text and " -- " not in text
     assert len([line for line in text.splitlines() if line.endswith(r"\\")]) == 4
     assert nine.to_latex("efficiency_time", against="n").count("efficiency at equal time") == 1
 
@@ -168,7 +165,15 @@ class Named:
         values = {"none": 0.0, "heavy": 3.0, "plain": 2.0}
         key = METRIC
         out = [
-            {"arm": arm, "n": n, "s": 32.0, "seed": seed, key: "rmse", "region": "", "value": v * n**-0.5 * (1 + seed / 50)}
+            {
+                "arm": arm,
+                "n": n,
+                "s": 32.0,
+                "seed": seed,
+                key: "rmse",
+                "region": "",
+                "value": v * n**-0.5 * (1 + seed / 50),
+            }
             for arm, v in values.items()
             for n in (4, 16)
             for seed in (1, 2, 3)
