@@ -95,17 +95,32 @@ void add_schema(CLI::App& app, Work& work) {
 void add_import(CLI::App& app, Work& work) {
     std::shared_ptr<ImportFlags> f;
     CLI::App* c = command(app, work, "import",
-        "Make a .mesh file of a model of another program, or an .image file of an image.", import, f);
+        "Make an experiment or a .mesh file of a model of another program, or an .image file of an image.", import, f);
     c->add_option("FILE", f->file, "a model: .obj, .ply, .glb, .gltf or .stl; or an image: .exr")
         ->type_name("")
         ->required()
         ->check(not_empty);
-    c->add_option("--out", f->out, "NAME.mesh, for the key `file` of [meshes.NAME]; of an image: NAME.image")
-        ->type_name("FILE")
+    c->add_option("--out", f->out,
+         "a folder for an experiment of the whole scene, or NAME.mesh: one mesh; of an image: NAME.image")
+        ->type_name("OUT")
         ->required()
         ->check(not_empty);
     c->add_option("--material", f->material, "the triangles of one material of the model")
         ->type_name("NAME")
+        ->check(not_empty);
+    c->add_option("--select", f->select, "what has this name: a mesh, a node with all below it, or a material")
+        ->type_name("NAME")
+        ->check(not_empty);
+    c->add_option("--up", f->up, "the axis of the model that is up: y or z")
+        ->type_name("AXIS")
+        ->check(one_of({"y", "z"}));
+    c->add_option("--scale", f->scale, "factor of all lengths")->type_name("X")->check(number(1e-12, 1e12));
+    c->add_option(
+         "--smooth", f->smooth, "smooth normals over edges of up to so many degrees, for parts without normals")
+        ->type_name("DEG")
+        ->check(number(0, 180));
+    c->add_option("--sky", f->sky, "the sky of the experiment in a folder; without it, a disk light")
+        ->type_name("FILE")
         ->check(not_empty);
     c->add_option("--memory", f->memory_mib, "limit of the importer")
         ->type_name("MIB")

@@ -132,7 +132,11 @@ void report_failure(const std::string& path, const std::string& file, const std:
 
 struct ImportFlags {
     std::string file, out, material;  // "": all materials
-    double timeout = 300;             // s
+    std::string select, up = "y";     // select: a mesh, node or material; "": all
+    std::string sky;                  // of the experiment in a folder; "": a disk light
+    std::optional<double> smooth;     // degrees; none: normals as they are
+    double scale = 1;
+    double timeout = 300;  // s
     int memory_mib = 4096;
 };
 int import(const ImportFlags& flags);

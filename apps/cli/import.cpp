@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "commands.h"
+#include "import.h"
 
 namespace crescent::cli {
 
@@ -44,16 +45,6 @@ std::string importer() {
     throw not_built("crescent import");
 }
 
-[[noreturn]] void refuse(const std::string& file, const std::string& message) {
-    throw InputError({file, 0, 0}, message);
-}
-
-/// What the importer found.
-struct Imported {
-    std::string mesh;  // bytes of the file
-    Json description;
-};
-
 std::string contents_of_descriptor(int file) {
     std::string out;
     const off_t size = ::lseek(file, 0, SEEK_END);
@@ -68,12 +59,28 @@ std::string contents_of_descriptor(int file) {
     return out;
 }
 
-Imported import_model(const ImportFlags& flags) {
+Json options_of(const ImportFlags& flags, bool folder) {
+    Json out = {{"folder", folder}, {"up", flags.up}, {"scale", flags.scale}};
+    if (!flags.material.empty()) out["material"] = flags.material;
+    if (!flags.select.empty()) out["select"] = flags.select;
+    if (flags.smooth) out["smooth"] = *flags.smooth;
+    return out;
+}
+
+std::string lower(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+}  // namespace
+
+void refuse(const std::string& file, const std::string& message) { throw InputError({file, 0, 0}, message); }
+
+Imported import_model(const ImportFlags& flags, bool folder) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> mesh(std::tmpfile(), &std::fclose);
     if (!mesh) throw OutputError("cannot create a temporary file for the mesh");
     ProcessPlan plan{.argv = {importer_name, flags.file, std::to_string(flags.memory_mib),
-                         fmt::format("{}", std::ceil(flags.timeout))}};
-    if (!flags.material.empty()) plan.argv.push_back(flags.material);
+                         fmt::format("{}", std::ceil(flags.timeout)), options_of(flags, folder).dump()}};
     plan.file = importer(), plan.stdin_file = plan.stderr_file = "/dev/null", plan.shared = ::fileno(mesh.get());
     Process process(plan);
     const auto begin = std::chrono::steady_clock::now();
@@ -105,12 +112,18 @@ Imported import_model(const ImportFlags& flags) {
     return {contents_of_descriptor(plan.shared), std::move(description)};
 }
 
-std::string lower(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
+std::string point_text(Vec3d v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+
+std::string moved_line(const Json& description) {
+    if (!description.contains("moved")) return "";
+    const Json& moved = description["moved"];
+    const double scaled = description["scaled"].get<double>();
+    return fmt::format("# moved by [{:.9g}, {:.9g}, {:.9g}]{}: an experiment holds sizes of 1e-3 to 1e5 m\n",
+        moved[0].get<double>(), moved[1].get<double>(), moved[2].get<double>(),
+        scaled == 1 ? "" : fmt::format(", then scaled by {:.9g}", scaled));
 }
 
-std::string point(Vec3d v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+namespace {
 
 std::string rho_d_of(const Json& description, const std::string& material) {
     Rgb rho = {0.5, 0.5, 0.5};
@@ -128,6 +141,15 @@ std::string list_of(const Json& entries, const std::function<std::string(const J
     if (entries.size() > most_lines) out += fmt::format("# and {} more\n", entries.size() - most_lines);
     return out;
 }
+
+}  // namespace
+
+std::string left_out_lines(const Json& description) {
+    return list_of(description.value("left_out", Json::array()),
+        [](const Json& what) { return "left out: " + printable(what.get<std::string>(), longest_name); });
+}
+
+namespace {
 
 /// Packs an OpenEXR image, for a sky or a texture.
 int import_image(const ImportFlags& flags) {
@@ -147,32 +169,26 @@ int import(const ImportFlags& flags) {
     if (extension == ".exr") return import_image(flags);
     if (std::ranges::find(known, extension) == known.end())
         refuse(flags.file, "expected a model with the extension .obj, .ply, .glb, .gltf or .stl, or an image .exr");
-    if (!flags.out.ends_with(".mesh")) refuse(flags.out, "expected a name that ends with .mesh (--out)");
     if (std::error_code unknown; !std::filesystem::is_regular_file(flags.file, unknown))
         refuse(flags.file, "expected a file that can be read");
+    if (!flags.out.ends_with(".mesh")) return import_folder(flags);
+    if (!flags.sky.empty()) refuse(flags.out, "expected a folder (--out) for an experiment with a sky (--sky)");
     can_write(flags.out);
-    const Imported imported = import_model(flags);
-    const auto pack = read_mesh(imported.mesh, flags.file);
-    write_whole(flags.out, imported.mesh);
+    const Imported imported = import_model(flags, false);
+    const auto pack = read_mesh(imported.files, flags.file);
+    write_whole(flags.out, imported.files);
 
     const Mesh& mesh = pack->mesh;
     const Bounds box = mesh.bounds();
     std::string out = fmt::format("# {}: {} triangles, {} vertices, hash {:016x}\n", flags.out, mesh.triangles.size(),
         mesh.positions.size(), pack->hash);
-    out += fmt::format("# box {} to {}\n", point(widen(box.low)), point(widen(box.high)));
+    out += fmt::format("# box {} to {}\n", point_text(widen(box.low)), point_text(widen(box.high)));
     out += fmt::format("# normals: {}; texture coordinates: {}\n", mesh.normals.empty() ? "of the triangles" : "smooth",
         mesh.uv.empty() ? "none" : "one set");
-    if (imported.description.contains("moved")) {
-        const Json& moved = imported.description["moved"];
-        const double scaled = imported.description["scaled"].get<double>();
-        out += fmt::format("# moved by [{:.9g}, {:.9g}, {:.9g}]{}: an experiment holds sizes of 1e-3 to 1e5 m\n",
-            moved[0].get<double>(), moved[1].get<double>(), moved[2].get<double>(),
-            scaled == 1 ? "" : fmt::format(", then scaled by {:.9g}", scaled));
-    }
+    out += moved_line(imported.description);
     if (pack->degenerate > 0) out += fmt::format("# {} triangles without area are left out\n", pack->degenerate);
     if (pack->duplicate > 0) out += fmt::format("# {} triangles that occur twice are left out\n", pack->duplicate);
-    out += list_of(imported.description.value("left_out", Json::array()),
-        [](const Json& what) { return "left out: " + printable(what.get<std::string>(), longest_name); });
+    out += left_out_lines(imported.description);
     const Json materials = imported.description.value("materials", Json::array());
     out += list_of(materials, [&](const Json& material) {
         return fmt::format("material '{}': {} triangles{}{}", printable(material.value("name", ""), longest_name),

@@ -1,5 +1,9 @@
 // OBJ and STL by assimp. The files that a model names are opened in its folder and below it only.
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <map>
+#include <span>
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
@@ -41,6 +45,12 @@ public:
         return can_open(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
     }
 
+    /// Returns the bytes of an image that a material names; "" if it cannot be read.
+    std::string picture(const std::string& name) const {
+        const std::filesystem::path file = folder_ / name;
+        return can_open(file) ? bytes_of(file) : "";
+    }
+
 private:
     bool can_open(const std::filesystem::path& file) const {
         std::error_code unknown;
@@ -52,19 +62,57 @@ private:
 
 Vec3f vector_of(const aiVector3D& v) { return {v.x + 0.0f, v.y + 0.0f, v.z + 0.0f}; }  // -0 becomes 0
 
+/// The colours of an MTL file; its exponent as a roughness (Blinn-Phong of the same width: Walter et al. 2007).
 Material material_of(const aiMaterial& from) {
     Material out{from.GetName().C_Str()};
     aiColor3D colour;
     if (from.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS) out.rho_d = {colour.r, colour.g, colour.b};
     if (from.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS) out.emission = {colour.r, colour.g, colour.b};
+    if (from.Get(AI_MATKEY_COLOR_SPECULAR, colour) == aiReturn_SUCCESS) out.rho_s = {colour.r, colour.g, colour.b};
+    float number = 0;
+    if (from.Get(AI_MATKEY_SHININESS, number) == aiReturn_SUCCESS && number >= 0)
+        out.alpha = std::sqrt(2 / (number + 2));
+    if (from.Get(AI_MATKEY_ROUGHNESS_FACTOR, number) == aiReturn_SUCCESS) out.alpha = number * number;
+    if (from.Get(AI_MATKEY_METALLIC_FACTOR, number) == aiReturn_SUCCESS) out.metal = number;
     aiString texture;
-    if (from.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS) out.texture = texture.C_Str();
+    if (from.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS) {
+        out.texture = texture.C_Str();
+        std::ranges::replace(out.texture, '\\', '/');
+    }
     return out;
+}
+
+/// What a material has besides, by its kind.
+constexpr std::pair<aiTextureType, const char*> other_images[] = {{aiTextureType_NORMALS, "normal maps"},
+    {aiTextureType_HEIGHT, "bump maps"}, {aiTextureType_SPECULAR, "images of the lobe's colour"},
+    {aiTextureType_SHININESS, "images of the exponent"}, {aiTextureType_OPACITY, "images of transparency"},
+    {aiTextureType_EMISSIVE, "images of emission"}, {aiTextureType_DISPLACEMENT, "images of displacement"},
+    {aiTextureType_REFLECTION, "images of reflection"}, {aiTextureType_AMBIENT, "images of ambient light"}};
+
+void list_what_is_left_out(const aiScene& scene, std::vector<std::string>& out) {
+    const auto add = [&](std::size_t count, const char* what) {
+        if (count > 0) out.push_back(fmt::format("{} {}", count, what));
+    };
+    const std::span<aiMaterial* const> materials(scene.mMaterials, scene.mNumMaterials);
+    for (const auto& [kind, what] : other_images)
+        add(static_cast<std::size_t>(
+                std::ranges::count_if(materials, [&](const aiMaterial* m) { return m->GetTextureCount(kind) > 0; })),
+            what);
+    add(static_cast<std::size_t>(std::ranges::count_if(materials,
+            [](const aiMaterial* m) {
+                float opacity = 1;
+                return m->Get(AI_MATKEY_OPACITY, opacity) == aiReturn_SUCCESS && opacity < 1;
+            })),
+        "materials' transparency");
+    const std::span<aiMesh* const> meshes(scene.mMeshes, scene.mNumMeshes);
+    add(static_cast<std::size_t>(std::ranges::count_if(meshes, [](const aiMesh* m) { return m->HasVertexColors(0); })),
+        "meshes' colours of vertices");
 }
 
 Part part_of(const aiMesh& from) {
     Part out;
     out.material = from.mMaterialIndex;
+    out.names = {from.mName.C_Str()};
     for (unsigned k = 0; k < from.mNumVertices; ++k) {
         out.positions.push_back(widen(vector_of(from.mVertices[k])));
         if (from.HasNormals()) out.normals.push_back(vector_of(from.mNormals[k]));
@@ -82,17 +130,26 @@ Part part_of(const aiMesh& from) {
 
 }  // namespace
 
-Model read_by_assimp(const std::filesystem::path& file) {
+Model read_by_assimp(const std::filesystem::path& file, const ReadingScope& scope) {
     Assimp::Importer importer;
     auto* const files = new ModelFiles(file);
     importer.SetIOHandler(files);  // which deletes it
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene* scene = importer.ReadFile(
-        file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
+    // No node of OBJ and STL has a transform: this step joins the meshes of a material, and loses their names.
+    const unsigned joining = scope.whole_scene ? 0 : aiProcess_PreTransformVertices;
+    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType | joining);
     if (!scene) throw ModelError(importer.GetErrorString());
     Model out;
     out.left_out = files->left_out;
     for (unsigned m = 0; m < scene->mNumMaterials; ++m) out.materials.push_back(material_of(*scene->mMaterials[m]));
+    list_what_is_left_out(*scene, out.left_out);
+    std::map<std::string, std::size_t> known;
+    for (Material& material : out.materials) {
+        if (!scope.whole_scene || material.texture.empty()) continue;
+        const auto [at, is_new] = known.try_emplace(material.texture, out.pictures.size());
+        material.colours = at->second;
+        if (is_new) out.pictures.push_back({material.texture, files->picture(material.texture)});
+    }
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
         out.parts.push_back(part_of(*scene->mMeshes[m]));
         if (out.parts.back().material >= out.materials.size())

@@ -171,27 +171,21 @@ double value_at(const char* bytes, std::size_t type, bool normalized) {
     }
 }
 
-/// x' = columns x + origin.
-struct Transform {
-    Vec3d columns[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, origin{};
-
-    Vec3d turned(Vec3d v) const { return v.x * columns[0] + v.y * columns[1] + v.z * columns[2]; }
-    Vec3d placed(Vec3d p) const { return turned(p) + origin; }
-    Transform then(const Transform& inner) const {
-        Transform out;
-        for (int k = 0; k < 3; ++k) out.columns[k] = turned(inner.columns[k]);
-        out.origin = placed(inner.origin);
-        return out;
-    }
-    double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
+/// Which texture coordinates a texture takes, and their transform (KHR_texture_transform): uv' = offset + R S uv.
+struct UvUse {
+    std::size_t set = 0;
+    std::array<double, 2> offset{0, 0}, scale{1, 1};
+    double rotation = 0;
+    bool operator==(const UvUse&) const = default;
 };
 
 class Reader {
 public:
     Model model;
 
-    Reader(std::string_view file, std::filesystem::path folder)
+    Reader(std::string_view file, std::filesystem::path folder, const ReadingScope& scope)
         : folder_(std::move(folder)),
+          scope_(scope),
           container_(container_of(file)),
           root_(Json::parse(container_.json, nullptr, false)) {
         if (!root_.is_object()) throw ModelError("expected JSON, or GLB");
@@ -207,7 +201,9 @@ public:
         left_out(size_of("skins"), "skins");
         left_out(size_of("animations"), "animations");
         left_out(targets_, "primitives' morph targets");
-        for (const std::string& name : attributes_) model.left_out.push_back(fmt::format("the attribute {}", name));
+        for (const auto& [what, count] : dropped_) left_out(count, what.c_str());
+        for (const auto& [name, count] : attributes_)
+            model.left_out.push_back(fmt::format("the attribute {} of {} primitives", name, count));
     }
 
 private:
@@ -236,7 +232,10 @@ private:
             }
             return out;
         };
-        const auto is_read = [](const std::string& name) { return name == "KHR_mesh_quantization"; };
+        const auto is_read = [](const std::string& name) {
+            return name == "KHR_mesh_quantization" || name == "KHR_texture_transform" ||
+                name == "KHR_materials_emissive_strength" || name == "KHR_materials_pbrSpecularGlossiness";
+        };
         const auto shapes_nothing = [](const std::string& name) {
             return name.starts_with("KHR_materials_") || name == "KHR_lights_punctual" ||
                 name == "KHR_texture_basisu" || name == "EXT_texture_webp" || name.starts_with("KHR_xmp");
@@ -257,24 +256,128 @@ private:
         Material to{text(from, "name")};
         if (const auto emission = numbers<3>(from, "emissiveFactor", place))
             to.emission = narrow({(*emission)[0], (*emission)[1], (*emission)[2]});
-        to.rho_d = {1, 1, 1};
-        if (const auto found = from.find("pbrMetallicRoughness"); found != from.end() && found->is_object()) {
-            const std::string inner = member_place(place, "pbrMetallicRoughness");
-            if (const auto colour = numbers<4>(*found, "baseColorFactor", inner))
-                to.rho_d = narrow({(*colour)[0], (*colour)[1], (*colour)[2]});
-            if (found->contains("baseColorTexture") && (*found)["baseColorTexture"].is_object())
-                to.texture = texture((*found)["baseColorTexture"], member_place(inner, "baseColorTexture"));
+        if (const Json* strength = extension(from, "KHR_materials_emissive_strength"))
+            to.emission = static_cast<float>(number(*strength, "emissiveStrength", 1)) * to.emission;
+        if (from.contains("emissiveTexture")) {
+            to.emission = {};
+            ++dropped_["images of emission, with the emission"];
         }
+        to.two_sided = from.value("doubleSided", Json(false)) == Json(true);
+        to.rho_d = {1, 1, 1};
+        uv_uses_.emplace_back();
+        if (const Json* gloss = extension(from, "KHR_materials_pbrSpecularGlossiness"))
+            add_gloss(*gloss, member_place(place, "extensions.KHR_materials_pbrSpecularGlossiness"), to);
+        else add_metal(from, place, to);
+        dropped_["normal maps"] += from.contains("normalTexture");
+        dropped_["images of occlusion"] += from.contains("occlusionTexture");
+        dropped_["materials' transparency"] += text(from, "alphaMode") == "MASK" || text(from, "alphaMode") == "BLEND";
         model.materials.push_back(std::move(to));
     }
+
+    /// Metal and roughness: 0.04 is the reflectance of other surfaces than metals towards the normal.
+    void add_metal(const Json& from, const std::string& place, Material& to) {
+        to.rho_s = {0.04f, 0.04f, 0.04f};
+        to.metal = to.alpha = 1;
+        const auto found = from.find("pbrMetallicRoughness");
+        if (found == from.end() || !found->is_object()) return;
+        const std::string inner = member_place(place, "pbrMetallicRoughness");
+        if (const auto colour = numbers<4>(*found, "baseColorFactor", inner))
+            to.rho_d = narrow({(*colour)[0], (*colour)[1], (*colour)[2]});
+        to.metal = static_cast<float>(number(*found, "metallicFactor", 1));
+        to.alpha = static_cast<float>(sqr(number(*found, "roughnessFactor", 1)));
+        if (const Json* texture = object(*found, "baseColorTexture"))
+            add_colours(*texture, member_place(inner, "baseColorTexture"), to);
+        if (const Json* texture = object(*found, "metallicRoughnessTexture")) {
+            const std::string at = member_place(inner, "metallicRoughnessTexture");
+            const UvUse use = uv_use(*texture, at);
+            if (!to.colours) uv_uses_.back() = use;
+            if (use == uv_uses_.back()) to.surface = picture(*texture, at);
+            else ++dropped_["images of roughness, placed otherwise than the colours"];
+        }
+    }
+    /// The older extension: two colours and a glossiness, of which the image is left out.
+    void add_gloss(const Json& from, const std::string& place, Material& to) {
+        if (const auto colour = numbers<4>(from, "diffuseFactor", place))
+            to.rho_d = narrow({(*colour)[0], (*colour)[1], (*colour)[2]});
+        to.rho_s = {1, 1, 1};
+        if (const auto colour = numbers<3>(from, "specularFactor", place))
+            to.rho_s = narrow({(*colour)[0], (*colour)[1], (*colour)[2]});
+        to.alpha = static_cast<float>(sqr(1 - number(from, "glossinessFactor", 1)));
+        if (const Json* texture = object(from, "diffuseTexture"))
+            add_colours(*texture, member_place(place, "diffuseTexture"), to);
+        dropped_["images of gloss"] += from.contains("specularGlossinessTexture");
+    }
+    void add_colours(const Json& texture, const std::string& place, Material& to) {
+        uv_uses_.back() = uv_use(texture, place);
+        to.texture = this->texture(texture, place);
+        to.colours = picture(texture, place);
+    }
+
+    static const Json* object(const Json& of, const char* key) {
+        const auto found = of.find(key);
+        return found != of.end() && found->is_object() ? &*found : nullptr;
+    }
+    static const Json* extension(const Json& of, const char* name) {
+        const Json* all = object(of, "extensions");
+        return all ? object(*all, name) : nullptr;
+    }
+    static double number(const Json& of, const char* key, double otherwise) {
+        const auto found = of.find(key);
+        return found != of.end() && found->is_number() ? found->get<double>() : otherwise;
+    }
+
+    UvUse uv_use(const Json& texture, const std::string& place) {
+        UvUse out{.set = whole(texture, "texCoord", place).value_or(0)};
+        const Json* transform = extension(texture, "KHR_texture_transform");
+        if (!transform) return out;
+        const std::string inner = member_place(place, "extensions.KHR_texture_transform");
+        out.set = whole(*transform, "texCoord", inner).value_or(out.set);
+        out.offset = numbers<2>(*transform, "offset", inner).value_or(out.offset);
+        out.scale = numbers<2>(*transform, "scale", inner).value_or(out.scale);
+        out.rotation = number(*transform, "rotation", 0);
+        return out;
+    }
+
+    /// The image of a texture; nothing if it has none, or if images are not read.
+    const Json* image_of(const Json& from, const std::string& place, std::size_t& index) const {
+        const std::size_t of = needed(from, "index", place);
+        const Json& texture = element("textures", of, member_place(place, "index"));
+        const std::optional<std::size_t> source = whole(texture, "source", element_place("textures", of));
+        if (!source) return nullptr;
+        index = *source;
+        return &element("images", *source, member_place(element_place("textures", of), "source"));
+    }
     std::string texture(const Json& from, const std::string& place) const {
-        const std::size_t index = needed(from, "index", place);
-        const Json& texture = element("textures", index, member_place(place, "index"));
-        const std::optional<std::size_t> source = whole(texture, "source", element_place("textures", index));
-        if (!source) return "";
-        const std::string uri =
-            text(element("images", *source, member_place(element_place("textures", index), "source")), "uri");
+        std::size_t index = 0;
+        const Json* image = image_of(from, place, index);
+        if (!image) return "";
+        const std::string uri = text(*image, "uri");
         return uri.empty() || uri.starts_with("data:") ? "within the model" : percent_decoded(uri);
+    }
+    std::optional<std::size_t> picture(const Json& from, const std::string& place) {
+        std::size_t index = 0;
+        const Json* image = image_of(from, place, index);
+        if (!image) ++dropped_["images in a format of an extension"];
+        if (!image || !scope_.whole_scene) return std::nullopt;
+        const auto [known, is_new] = picture_of_image_.try_emplace(index, model.pictures.size());
+        if (!is_new) return known->second;
+        const std::string at = element_place("images", index), uri = text(*image, "uri");
+        Picture out{text(*image, "name"), {}};
+        if (const std::optional<std::size_t> view = whole(*image, "bufferView", at))
+            out.bytes = this->view(*view, 0, member_place(at, "bufferView")).first;
+        else if (uri.starts_with("data:")) {
+            const std::size_t comma = uri.find(";base64,");
+            auto bytes = comma == uri.npos ? std::nullopt : base64_decoded(std::string_view(uri).substr(comma + 8));
+            if (!bytes) fail(member_place(at, "uri"), "expected base64");
+            out.bytes = std::move(*bytes);
+        } else if (const std::filesystem::path path = folder_ / percent_decoded(uri); is_inside(folder_, path)) {
+            out.name = path.filename().string();
+            try {
+                out.bytes = bytes_of(path);
+            } catch (const ModelError&) {}  // counted by who writes the images
+        }
+        model.pictures.push_back(std::move(out));
+        return known->second;
     }
 
     // ---- Buffers.
@@ -430,13 +533,14 @@ private:
             std::size_t node;
             Transform parent;
             std::string from;
+            std::vector<std::string> names;
         };
-        std::vector<Open> open;
+        std::vector<Open> open, placed;  // placed: meshes with their transforms, in place of a node's
         if (size_of("scenes") > 0) {
             const std::size_t index = whole(root_, "scene", "").value_or(0);
             const std::string place = element_place("scenes", index);
             for (const std::size_t node : children(element("scenes", index, "scene"), "nodes", place))
-                open.push_back({node, {}, member_place(place, "nodes")});
+                open.push_back({node, {}, member_place(place, "nodes"), {}});
         } else {
             std::vector<bool> has_parent(size_of("nodes"));
             for (std::size_t k = 0; k < has_parent.size(); ++k)
@@ -444,7 +548,7 @@ private:
                     children(element("nodes", k, "nodes"), "children", element_place("nodes", k)))
                     if (child < has_parent.size()) has_parent[child] = true;
             for (std::size_t k = 0; k < has_parent.size(); ++k)
-                if (!has_parent[k]) open.push_back({k, {}, "nodes"});
+                if (!has_parent[k]) open.push_back({k, {}, "nodes", {}});
         }
         std::ranges::reverse(open);
         std::vector<bool> visited(size_of("nodes"));
@@ -456,19 +560,60 @@ private:
             if (visited[next.node]) fail(next.from, fmt::format("the node {} is placed twice", next.node));
             visited[next.node] = true;
             const Transform transform = next.parent.then(transform_of(node, place));
-            if (const auto mesh = whole(node, "mesh", place)) add_mesh(*mesh, transform, member_place(place, "mesh"));
+            std::vector<std::string> names = next.names;
+            if (const std::string name = text(node, "name"); !name.empty() && scope_.whole_scene) names.push_back(name);
+            if (const auto mesh = whole(node, "mesh", place))
+                placed.push_back({*mesh, transform, member_place(place, "mesh"), names});
+            if (const auto camera = whole(node, "camera", place)) add_camera(*camera, transform, place);
+            if (extension(node, "KHR_lights_punctual")) ++dropped_["lights"];
             std::vector<std::size_t> inner = children(node, "children", place);
             std::ranges::reverse(inner);
-            for (const std::size_t child : inner) open.push_back({child, transform, member_place(place, "children")});
+            for (const std::size_t child : inner)
+                open.push_back({child, transform, member_place(place, "children"), names});
+        }
+        std::map<std::size_t, std::size_t> uses;
+        for (const Open& one : placed) ++uses[one.node];
+        std::map<std::size_t, std::pair<std::size_t, std::size_t>> shared;  // the parts of a mesh
+        for (const Open& one : placed) {
+            const bool is_copied = scope_.whole_scene && uses[one.node] > 1;
+            const auto [known, is_new] = shared.try_emplace(one.node, model.parts.size(), model.parts.size());
+            if (!is_copied || is_new) add_mesh(one.node, is_copied ? Transform{} : one.parent, one.from, one.names);
+            if (is_new) known->second.second = model.parts.size();
+            if (is_copied)
+                for (std::size_t k = known->second.first; k < known->second.second; ++k) {
+                    Part& part = model.parts[k];
+                    part.placements.push_back(one.parent);
+                    part.names.insert(part.names.end(), one.names.begin(), one.names.end());
+                }
         }
     }
 
-    void add_mesh(std::size_t index, const Transform& transform, const std::string& from) {
+    void add_camera(std::size_t index, const Transform& transform, const std::string& from) {
+        const Json& camera = element("cameras", index, member_place(from, "camera"));
+        const Json* lens = object(camera, "perspective");
+        if (!lens || model.camera) return void(++dropped_["cameras"]);
+        const double vfov = number(*lens, "yfov", 0);
+        if (!(vfov > 0 && vfov < pi)) fail(element_place("cameras", index), "expected a 'yfov' between 0 and pi");
+        model.camera = {.eye = transform.origin,
+            .view = transform.turned({0, 0, -1}),
+            .up = transform.turned({0, 1, 0}),
+            .vfov_deg = vfov * 180 / pi,
+            .aspect = number(*lens, "aspectRatio", 4.0 / 3)};
+    }
+
+    void add_mesh(
+        std::size_t index, const Transform& transform, const std::string& from, const std::vector<std::string>& names) {
         const Json& mesh = element("meshes", index, from);
         const std::string place = element_place("meshes", index);
         if (!mesh.contains("primitives") || !mesh["primitives"].is_array()) fail(place, "expected 'primitives'");
+        const std::size_t first = model.parts.size();
         for (std::size_t k = 0; k < mesh["primitives"].size(); ++k)
             add_primitive(mesh["primitives"][k], transform, element_place(member_place(place, "primitives"), k));
+        for (std::size_t k = first; k < model.parts.size(); ++k) {
+            model.parts[k].names = names;
+            std::vector<std::string>& all = model.parts[k].names;
+            if (const std::string name = text(mesh, "name"); !name.empty()) all.insert(all.begin(), name);
+        }
     }
 
     void add_primitive(const Json& from, const Transform& transform, const std::string& place) {
@@ -483,10 +628,11 @@ private:
             return;
         }
         if (from.contains("targets")) ++targets_;
-        for (const auto& [name, index] : attributes.items())
-            if (name != "POSITION" && name != "NORMAL" && name != "TEXCOORD_0") attributes_.insert(name);
         Part part;
         part.material = material(from, place);
+        const std::string uv = uv_name(part.material);
+        for (const auto& [name, index] : attributes.items())
+            if (name != "POSITION" && name != "NORMAL" && name != uv) ++attributes_[name];
         const std::size_t count = add_vertices(attributes, transform, member_place(place, "attributes"), part);
         const std::vector<std::uint32_t> corners = corners_of(from, place, count);
         if (mode == list && corners.size() % 3 != 0)
@@ -509,6 +655,11 @@ private:
         return size_of("materials");
     }
 
+    /// The texture coordinates that a material takes.
+    std::string uv_name(std::size_t material) const {
+        return fmt::format("TEXCOORD_{}", material < uv_uses_.size() ? uv_uses_[material].set : 0);
+    }
+
     /// Returns the number of vertices.
     std::size_t add_vertices(const Json& attributes, const Transform& transform, const std::string& place, Part& to) {
         const auto read = [&](const char* name, std::string_view type) -> std::optional<std::vector<double>> {
@@ -525,21 +676,22 @@ private:
             to.positions.push_back(transform.placed({positions[k], positions[k + 1], positions[k + 2]}));
         if (to.positions.empty()) return 0;
         if (const auto normals = read("NORMAL", "VEC3")) {
-            // By the cofactors, which are the inverse transpose times the determinant.
-            Transform cofactors;
-            for (int k = 0; k < 3; ++k)
-                cofactors.columns[k] = cross(transform.columns[(k + 1) % 3], transform.columns[(k + 2) % 3]);
-            const double sign = transform.determinant() < 0 ? -1 : 1;
             for (std::size_t k = 0; k < normals->size(); k += 3) {
-                const Vec3d n = sign * cofactors.turned({(*normals)[k], (*normals)[k + 1], (*normals)[k + 2]});
+                const Vec3d n = transform.turned_normal({(*normals)[k], (*normals)[k + 1], (*normals)[k + 2]});
                 const double length = std::sqrt(dot(n, n));
                 to.normals.push_back(length > 0 ? narrow((1 / length) * n) : Vec3f{});
             }
         }
-        if (const auto uv = read("TEXCOORD_0", "VEC2"))
-            for (std::size_t k = 0; k < uv->size(); k += 2)
+        if (const auto uv = read(uv_name(to.material).c_str(), "VEC2")) {
+            const UvUse use = to.material < uv_uses_.size() ? uv_uses_[to.material] : UvUse{};
+            const double c = std::cos(use.rotation), s = std::sin(use.rotation);
+            for (std::size_t k = 0; k < uv->size(); k += 2) {
+                const double u = use.scale[0] * (*uv)[k], v = use.scale[1] * (*uv)[k + 1];
                 // v of glTF goes down the image.
-                to.uv.push_back({static_cast<float>((*uv)[k]), static_cast<float>(1 - (*uv)[k + 1])});
+                to.uv.push_back({static_cast<float>(use.offset[0] + c * u + s * v),
+                    static_cast<float>(1 - (use.offset[1] - s * u + c * v))});
+            }
+        }
         return to.positions.size();
     }
 
@@ -562,17 +714,20 @@ private:
     }
 
     std::filesystem::path folder_;
+    ReadingScope scope_;
     Container container_;
     Json root_;
     std::map<std::size_t, std::string> buffers_;
     std::size_t points_and_lines_ = 0, targets_ = 0;
-    std::set<std::string> attributes_;  // that are left out
+    std::vector<UvUse> uv_uses_;                               // of each material of the file
+    std::map<std::size_t, std::size_t> picture_of_image_;      // indices of the model's pictures
+    std::map<std::string, std::size_t> attributes_, dropped_;  // what is left out, and how often
 };
 
 }  // namespace
 
-Model read_gltf(const std::filesystem::path& file) {
-    return Reader(bytes_of(file), std::filesystem::absolute(file).parent_path()).model;
+Model read_gltf(const std::filesystem::path& file, const ReadingScope& scope) {
+    return Reader(bytes_of(file), std::filesystem::absolute(file).parent_path(), scope).model;
 }
 
 }  // namespace crescent::importer

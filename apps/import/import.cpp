@@ -2,9 +2,11 @@
 // process of its own with limits on memory and time, because the parsers of many formats are not made for hostile
 // files: it may die, and that is reported.
 //
-//   crescent-import FILE MEMORY_MIB SECONDS [MATERIAL]
+//   crescent-import FILE MEMORY_MIB SECONDS OPTIONS
 //
-// The mesh goes to descriptor 3, a description in JSON to standard output. Exit code 2: {"error": "..."}.
+// OPTIONS is an object of JSON with the keys material, select, up, scale, smooth and folder. A description in JSON goes
+// to standard output, the mesh to descriptor 3; with "folder", one mesh for each material and one for each mesh with
+// copies, and the images, one after another, at the places that the description states. Exit code 2: {"error": "..."}.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +20,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "edits.h"
 #include "model.h"
 #include "placement.h"
 
@@ -42,27 +45,40 @@ struct CornerHash {
 
 float length_of(Vec3f v) { return std::sqrt(dot(v, v)); }
 
-/// Gathers the triangles of one material, or of all, with common vertices.
+Transform transform_of(const ModelPlacement& placement) {
+    Transform out{.origin = -placement.by * placement.from};
+    for (Vec3d& column : out.columns) column = placement.by * column;
+    return out;
+}
+
+/// Gathers the triangles of some parts, with common vertices.
 class Gatherer {
 public:
-    Gatherer(const Model& model, const ModelPlacement& placement, const std::string& material)
-        : model_(model), placement_(placement), wanted_(material) {
-        for (const Part& part : model.parts) {
-            if (!is_wanted(part)) continue;
-            has_normals_ = has_normals_ || is_smooth(part);
-            has_uv_ = has_uv_ || !part.uv.empty();
+    /// Adds the copies of a part where they are, or, if they are `shared`, the part once, as it is.
+    Gatherer(const std::vector<const Part*>& parts, const ModelPlacement& placement, bool shared = false) {
+        for (const Part* part : parts) {
+            has_normals_ = has_normals_ || is_smooth(*part);
+            has_uv_ = has_uv_ || !part->uv.empty();
         }
-        for (const Part& part : model.parts)
-            if (is_wanted(part))
-                for (const Triangle& triangle : part.triangles) add(part, triangle);
+        const Transform to_scene = transform_of(placement);
+        for (const Part* part : parts) {
+            if (shared) add(*part, nullptr);
+            else if (part->placements.empty()) {
+                placement_ = placement;
+                add(*part, nullptr);
+                placement_ = {};
+            }
+            if (!shared)
+                for (const Transform& copy : part->placements) {
+                    const Transform to = to_scene.then(copy);
+                    add(*part, &to);
+                }
+        }
     }
 
     Mesh result;
 
 private:
-    bool is_wanted(const Part& part) const {
-        return wanted_.empty() || model_.materials[part.material].name == wanted_;
-    }
     static Vec3f face_normal(const Part& part, const Triangle& triangle) {
         const Vec3d a = part.positions[triangle[0]];
         const Vec3d n = cross(part.positions[triangle[1]] - a, part.positions[triangle[2]] - a);
@@ -84,14 +100,23 @@ private:
         return false;
     }
 
-    void add(const Part& part, const Triangle& triangle) {
-        Triangle corners;
-        for (unsigned k = 0; k < 3; ++k) corners[k] = vertex(part, triangle, k);
-        result.triangles.push_back(corners);
+    void add(const Part& part, const Transform* to) {
+        for (const Triangle& triangle : part.triangles) {
+            Triangle corners;
+            for (unsigned k = 0; k < 3; ++k) corners[k] = vertex(part, triangle, k, to);
+            if (to && to->determinant() < 0) std::swap(corners[1], corners[2]);
+            result.triangles.push_back(corners);
+        }
     }
-    std::uint32_t vertex(const Part& part, const Triangle& triangle, unsigned k) {
-        const Vec3f p = narrow(placement_.placed(part.positions[triangle[k]]));
-        const Vec3f n = has_normals_ ? normal_of(part, triangle, k) : Vec3f{};
+    std::uint32_t vertex(const Part& part, const Triangle& triangle, unsigned k, const Transform* to) {
+        const Vec3d at = part.positions[triangle[k]];
+        const Vec3f p = narrow(to ? to->placed(at) : placement_.placed(at));
+        Vec3f n = has_normals_ ? normal_of(part, triangle, k) : Vec3f{};
+        if (to && has_normals_) {
+            const Vec3d turned = to->turned_normal(widen(n));
+            const double length = std::sqrt(dot(turned, turned));
+            if (length > 0) n = narrow((1 / length) * turned);
+        }
         const Vec2<float> uv = has_uv_ && !part.uv.empty() ? part.uv[triangle[k]] : Vec2<float>{};
         // 0 is added, so that -0 becomes 0.
         const Corner corner{p.x + 0, p.y + 0, p.z + 0, n.x + 0, n.y + 0, n.z + 0, uv.x + 0, uv.y + 0};
@@ -103,19 +128,15 @@ private:
         return known->second;
     }
 
-    const Model& model_;
     ModelPlacement placement_;
-    std::string wanted_;
     bool has_normals_ = false, has_uv_ = false;
     std::unordered_map<Corner, std::uint32_t, CornerHash> known_;
 };
 
 /// JSON has no numbers that are not finite: from 0 to 1e6, and 0 for NaN.
-Json numbers_of(Vec3f v) {
-    Json out = Json::array();
-    for (const float x : {v.x, v.y, v.z}) out.push_back(x > 0 ? std::min(x, 1e6f) : 0);
-    return out;
-}
+float number_of(float x) { return x > 0 ? std::min(x, 1e6f) : 0; }
+Json numbers_of(Vec3f v) { return {number_of(v.x), number_of(v.y), number_of(v.z)}; }
+Json numbers_of(Vec3d v) { return {v.x, v.y, v.z}; }
 
 Json materials_of(const Model& model) {
     std::vector<std::size_t> triangles(model.materials.size());
@@ -123,10 +144,13 @@ Json materials_of(const Model& model) {
     Json all = Json::array();
     for (std::size_t m = 0; m < model.materials.size(); ++m) {
         if (triangles[m] == 0) continue;
-        const auto& [name, rho_d, emission, texture] = model.materials[m];
-        Json one = {{"name", name}, {"triangles", triangles[m]}, {"rho_d", numbers_of(rho_d)},
-            {"emission", numbers_of(emission)}};
-        if (!texture.empty()) one["texture"] = texture;
+        const importer::Material& from = model.materials[m];
+        Json one = {{"name", from.name}, {"index", m}, {"triangles", triangles[m]}, {"rho_d", numbers_of(from.rho_d)},
+            {"emission", numbers_of(from.emission)}, {"rho_s", numbers_of(from.rho_s)},
+            {"metal", number_of(from.metal)}, {"alpha", number_of(from.alpha)}, {"two_sided", from.two_sided}};
+        if (!from.texture.empty()) one["texture"] = from.texture;
+        if (from.colours) one["colours"] = *from.colours;
+        if (from.surface) one["surface"] = *from.surface;
         all.push_back(std::move(one));
     }
     return all;
@@ -141,26 +165,125 @@ void write_all(int to, std::string_view bytes) {
     }
 }
 
-Model read_model(const std::filesystem::path& file) {
+Model read_model(const std::filesystem::path& file, const ReadingScope& scope) {
     const std::string extension = lower_extension(file);
     if (extension == ".ply") return read_ply(file);
-    return extension == ".gltf" || extension == ".glb" ? read_gltf(file) : read_by_assimp(file);
+    return extension == ".gltf" || extension == ".glb" ? read_gltf(file, scope) : read_by_assimp(file, scope);
 }
 
-Json import(const std::string& file, const std::string& material) {
-    const Model model = read_model(file);
+std::vector<const Part*> parts_of(const Model& model, const std::string& material) {
+    std::vector<const Part*> out;
+    for (const Part& part : model.parts)
+        if (material.empty() || model.materials[part.material].name == material) out.push_back(&part);
+    return out;
+}
+
+// ---- The parts of a folder.
+
+/// What descriptor 3 has of one thing.
+Json written(std::size_t& end, std::string_view bytes) {
+    write_all(3, bytes);
+    end += bytes.size();
+    return {{"begin", end - bytes.size()}, {"size", bytes.size()}};
+}
+
+/// Whether an experiment takes all of these as the matrices of instances: their entries, and their determinant.
+bool are_instances(const std::vector<Transform>& placements, const Transform& to_scene) {
+    return std::ranges::all_of(placements, [&](const Transform& placement) {
+        const Transform to = to_scene.then(placement);
+        double largest = 0;
+        for (const Vec3d& v : {to.columns[0], to.columns[1], to.columns[2], to.origin})
+            largest = std::max({largest, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+        return largest <= 1e6 && std::fabs(to.determinant()) > 1e-17;
+    });
+}
+
+/// Rows of a matrix, the translation last in each.
+Json matrix_of(const Transform& to) {
+    Json out = Json::array();
+    for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z})
+        out.push_back({to.columns[0].*axis, to.columns[1].*axis, to.columns[2].*axis, to.origin.*axis});
+    return out;
+}
+
+/// Writes a mesh for each material, of all parts without copies, and one for each part with copies.
+Json write_meshes(const Model& model, const ModelPlacement& placement, const std::string& material, std::size_t& end) {
+    Json out = Json::array();
+    const Transform to_scene = transform_of(placement);
+    std::vector<std::vector<const Part*>> of_material(model.materials.size());
+    std::vector<const Part*> copied;
+    for (const Part* part : parts_of(model, material)) {
+        const bool shared = !part->placements.empty() && are_instances(part->placements, to_scene);
+        if (shared) copied.push_back(part);
+        else of_material[part->material].push_back(part);
+    }
+    const auto add = [&](const std::vector<const Part*>& parts, bool shared) {
+        const Gatherer gathered(parts, placement, shared);
+        if (gathered.result.triangles.empty()) return;
+        Json one = written(end, mesh_file(gathered.result));
+        one["material"] = parts[0]->material;
+        if (shared) {
+            one["name"] = parts[0]->names.empty() ? "" : parts[0]->names.front();
+            one["instances"] = Json::array();
+            for (const Transform& copy : parts[0]->placements)
+                one["instances"].push_back(matrix_of(to_scene.then(copy)));
+        }
+        out.push_back(std::move(one));
+    };
+    for (const auto& parts : of_material)
+        if (!parts.empty()) add(parts, false);
+    for (const Part* part : copied) add({part}, true);
+    return out;
+}
+
+Json write_pictures(const Model& model, const Json& materials, std::size_t& end) {
+    std::vector<bool> is_used(model.pictures.size());
+    for (const Json& material : materials)
+        for (const char* key : {"colours", "surface"})
+            if (material.contains(key)) is_used[material[key].get<std::size_t>()] = true;
+    Json out = Json::array();
+    for (std::size_t k = 0; k < model.pictures.size(); ++k) {
+        Json one = written(end, is_used[k] ? std::string_view(model.pictures[k].bytes) : "");
+        one["name"] = model.pictures[k].name;
+        out.push_back(std::move(one));
+    }
+    return out;
+}
+
+Json camera_of(const ModelCamera& camera, const ModelPlacement& placement) {
+    return {{"eye", numbers_of(placement.placed(camera.eye))}, {"view", numbers_of(camera.view)},
+        {"up", numbers_of(camera.up)}, {"vfov_deg", camera.vfov_deg}, {"aspect", camera.aspect}};
+}
+
+Json import(const std::string& file, const Json& options) {
+    const bool folder = options.value("folder", false);
+    const std::string material = options.value("material", "");
+    Model model = read_model(file, {.whole_scene = folder || options.contains("select")});
+    if (options.contains("select")) select(model, options["select"].get<std::string>());
+    turn_and_scale(model, options.value("up", "y") == "z", options.value("scale", 1.0));
+    if (options.contains("smooth")) smooth(model, options["smooth"].get<double>());
     const ModelPlacement placement = placement_of(model);
-    const Gatherer gathered(model, placement, material);
     Json out = {{"materials", materials_of(model)}, {"left_out", model.left_out}};
-    if (gathered.result.triangles.empty())
-        throw ModelError(
-            material.empty() ? "found no triangle" : "found no triangle of the material '" + material + "'");
-    out["normals"] = !gathered.result.normals.empty();
-    out["uv"] = !gathered.result.uv.empty();
     if (placement.is_needed()) {
         out["moved"] = {-placement.from.x, -placement.from.y, -placement.from.z};
         out["scaled"] = placement.by;
     }
+    const auto none = [&] {
+        return ModelError(
+            material.empty() ? "found no triangle" : "found no triangle of the material '" + material + "'");
+    };
+    if (folder) {
+        std::size_t end = 0;
+        out["meshes"] = write_meshes(model, placement, material, end);
+        if (out["meshes"].empty()) throw none();
+        out["pictures"] = write_pictures(model, out["materials"], end);
+        if (model.camera) out["camera"] = camera_of(*model.camera, placement);
+        return out;
+    }
+    const Gatherer gathered(parts_of(model, material), placement);
+    if (gathered.result.triangles.empty()) throw none();
+    out["normals"] = !gathered.result.normals.empty();
+    out["uv"] = !gathered.result.uv.empty();
     write_all(3, mesh_file(gathered.result));
     return out;
 }
@@ -173,7 +296,8 @@ int ended_with(int code, const Json& what) {
 }  // namespace
 
 int main(int count, char** words) {
-    if (count < 4 || count > 5) {
+    const Json options = count == 5 ? Json::parse(words[4], nullptr, false) : Json();
+    if (!options.is_object()) {
         std::fputs("crescent-import: `crescent import` starts this program; see docs/scenes.md\n", stderr);
         return 2;
     }
@@ -183,7 +307,7 @@ int main(int count, char** words) {
     limit(RLIMIT_AS, mebibytes << 20);
     limit(RLIMIT_FSIZE, mebibytes << 20);
     try {
-        return ended_with(0, import(words[1], count == 5 ? words[4] : ""));
+        return ended_with(0, import(words[1], options));
     } catch (const std::bad_alloc&) {
         return ended_with(2, {{"error", "needs more than " + std::to_string(mebibytes) + " MiB of memory (--memory)"}});
     } catch (const std::exception& error) { return ended_with(2, {{"error", error.what()}}); }

@@ -1,8 +1,9 @@
-// A model of another program: triangles in world space, by material. Lengths in the model's own unit.
+// A model of another program: triangles by material, with the placements of copies. Lengths in the model's own unit.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -19,15 +20,58 @@ struct ModelError : std::runtime_error {
 /// The largest polygon: its triangulation takes seconds.
 inline constexpr std::size_t most_corners = 4096;
 
+/// An image that a material names, as the bytes of its file.
+struct Picture {
+    std::string name;   // of the file, or that the model gives it; "": none
+    std::string bytes;  // "": it cannot be read
+};
+
+/// Of metal and other surfaces: rho_d is the share 1 - metal of the colour; the lobe has the share `metal` of it and,
+/// of the rest, rho_s.
 struct Material {
     std::string name;
-    Vec3f rho_d{0.5f, 0.5f, 0.5f}, emission{};
-    std::string texture = {};  // the file of rho_d; "": none
+    Vec3f rho_d{0.5f, 0.5f, 0.5f}, emission{};  // rho_d: the colour
+    std::string texture = {};                   // the name of the image that multiplies the colour; "": none
+    Vec3f rho_s{};
+    float metal = 0, alpha = 0.5f;
+    std::optional<std::size_t> colours{};  // the picture of `texture`
+    std::optional<std::size_t> surface{};  // the picture whose green is the square root of a factor of alpha, and
+                                           // whose blue is a factor of `metal`
+    bool two_sided = false;
+};
+
+/// x' = columns x + origin.
+struct Transform {
+    Vec3d columns[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, origin{};
+
+    Vec3d turned(Vec3d v) const { return v.x * columns[0] + v.y * columns[1] + v.z * columns[2]; }
+    Vec3d placed(Vec3d p) const { return turned(p) + origin; }
+    Transform then(const Transform& inner) const {
+        Transform out;
+        for (int k = 0; k < 3; ++k) out.columns[k] = turned(inner.columns[k]);
+        out.origin = placed(inner.origin);
+        return out;
+    }
+    double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
+    /// The direction of a normal: by the cofactors, which are the inverse transpose times the determinant.
+    Vec3d turned_normal(Vec3d n) const {
+        Transform cofactors;
+        for (int k = 0; k < 3; ++k) cofactors.columns[k] = cross(columns[(k + 1) % 3], columns[(k + 2) % 3]);
+        return (determinant() < 0 ? -1.0 : 1.0) * cofactors.turned(n);
+    }
+};
+
+/// A perspective camera.
+struct ModelCamera {
+    Vec3d eye{}, view{0, 0, -1}, up{0, 1, 0};
+    double vfov_deg = 40, aspect = 4.0 / 3;
 };
 
 /// Triangles of one material.
 struct Part {
     std::size_t material = 0;
+    std::vector<std::string> names;     // of its mesh, the nodes above it and its node
+    std::vector<Transform> placements;  // where its copies are; empty: it is there once, as it is
     std::vector<Vec3d> positions;
     std::vector<Vec3f> normals;   // one for each position, of any length; empty: none
     std::vector<Vec2<float>> uv;  // one for each position; empty: none
@@ -37,6 +81,8 @@ struct Part {
 struct Model {
     std::vector<Material> materials;
     std::vector<Part> parts;
+    std::vector<Picture> pictures;
+    std::optional<ModelCamera> camera;
     std::vector<std::string> left_out;  // what the file has besides, "12 edges"
 };
 
@@ -51,10 +97,15 @@ std::string lower_extension(const std::filesystem::path& file);
 /// Whether the file is in this folder or below it, links resolved.
 bool is_inside(const std::filesystem::path& folder, const std::filesystem::path& file);
 
+/// What is read besides the triangles.
+struct ReadingScope {
+    bool whole_scene = false;  // parts keep their names, meshes that are placed twice their placements; images are read
+};
+
 // Each reads a file of its format; throws ModelError with the place of a mistake, std::bad_alloc.
-Model read_gltf(const std::filesystem::path& file);
+Model read_gltf(const std::filesystem::path& file, const ReadingScope& scope);
 Model read_ply(const std::filesystem::path& file);
 /// OBJ and STL.
-Model read_by_assimp(const std::filesystem::path& file);
+Model read_by_assimp(const std::filesystem::path& file, const ReadingScope& scope);
 
 }  // namespace crescent::importer

@@ -10,13 +10,20 @@ namespace crescent::importer {
 ModelPlacement placement_of(const Model& model) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Vec3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-    for (const Part& part : model.parts)
+    const auto add = [&](const Part& part, const Transform& to) {
         for (const Triangle& triangle : part.triangles)
-            for (const std::uint32_t corner : triangle)
+            for (const std::uint32_t corner : triangle) {
+                const Vec3d p = to.placed(part.positions[corner]);
                 for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
-                    low.*axis = std::min(low.*axis, part.positions[corner].*axis);
-                    high.*axis = std::max(high.*axis, part.positions[corner].*axis);
+                    low.*axis = std::min(low.*axis, p.*axis);
+                    high.*axis = std::max(high.*axis, p.*axis);
                 }
+            }
+    };
+    for (const Part& part : model.parts) {
+        if (part.placements.empty()) add(part, {});
+        for (const Transform& to : part.placements) add(part, to);
+    }
     double largest = 0, size = 0;
     for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
         largest = std::max({largest, std::fabs(low.*axis), std::fabs(high.*axis)});

@@ -86,4 +86,57 @@ std::string experiment_for(const std::vector<NamedMesh>& meshes, const std::opti
     return out + fmt::format("[regions.all]\nbox = [0, 0, {}, {}]\n", width - 1, height - 1);
 }
 
+namespace {
+
+std::string colour(const Rgb& c) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", c[0], c[1], c[2]); }
+
+std::string mesh_table(const ModelMesh& mesh) {
+    std::string out =
+        fmt::format("[meshes.{}]\nfile = \"{}\"\nrho_d = {}\nrho_s = {}\nbrdf = \"ggx\"\nalpha = {:.4g}\n", mesh.name,
+            mesh.file, colour(mesh.rho_d), colour(mesh.rho_s), mesh.alpha);
+    if (!mesh.rho_d_texture.empty()) out += fmt::format("rho_d_texture = \"{}\"\n", mesh.rho_d_texture);
+    if (!mesh.alpha_texture.empty()) out += fmt::format("alpha_texture = \"{}\"\n", mesh.alpha_texture);
+    if (std::ranges::max(mesh.emission) > 0)
+        out += fmt::format("emission = {}\n{}", colour(mesh.emission), mesh.two_sided ? "two_sided = true\n" : "");
+    for (const std::array<double, 12>& m : mesh.instances) {
+        out += fmt::format("\n[[meshes.{}.instances]]\nmatrix = [", mesh.name);
+        for (std::size_t k = 0; k < m.size(); ++k)
+            out += fmt::format("{}{:.9g}", k > 0 ? ", " : "", m[k] + 0);  // -0 becomes 0
+        out += "]\n";
+    }
+    return out + "\n";
+}
+
+}  // namespace
+
+std::string experiment_for(const ModelScene& scene) {
+    constexpr int width = 320;
+    const int height = std::clamp(static_cast<int>(std::lround(width / scene.aspect)), 80, 640);
+    const Ball ball(scene.box);
+    std::string out = fmt::format(
+        "title = \"{}\"\nn = 64\n\n[image]\nwidth = {}\nheight = {}\n\n", table_name_of(scene.title), width, height);
+    if (scene.camera)
+        out += fmt::format("[camera]\neye = {}\ntarget = {}\nup = {}\nvfov_deg = {:.6g}\n\n",
+            point(scene.camera->eye, ball.radius), point(scene.camera->target, ball.radius), point(scene.camera->up, 1),
+            scene.camera->vfov_deg);
+    else out += camera_table(scene.box) + "\n";
+    bool has_lobe = false, emits = false;
+    for (const ModelMesh& mesh : scene.meshes) {
+        out += mesh_table(mesh);
+        has_lobe = has_lobe || std::ranges::max(mesh.rho_s) > 0;
+        emits = emits || std::ranges::max(mesh.emission) > 0;
+    }
+    out += scene.sky ? fmt::format("[sky]\nfile = \"{}\"\n", *scene.sky) : light_over(ball);
+    out += "\n[reference]\nn = 64\n\n";
+    const std::string light = scene.sky ? "sky" : "light-solid-angle", surface = has_lobe ? "ggx-vndf" : "cosine";
+    out += arm("cosine");
+    if (has_lobe) out += arm("ggx-vndf");
+    out += arm(light);
+    out += arm("both",
+        fmt::format("kind = \"mis\"\nof = [\"{}\", \"{}\"{}]\n", light, surface, emits ? ", \"light-triangle\"" : ""));
+    out += fmt::format("[regions.all]\nbox = [0, 0, {}, {}]\n\n", width - 1, height - 1);
+    return out +
+        fmt::format("[plates.ladder]\nkind = \"ladder\"\nruns = [{{ arm = \"{}\" }}, {{ arm = \"both\" }}]\n", surface);
+}
+
 }  // namespace crescent::inline experiment

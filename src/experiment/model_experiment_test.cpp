@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "experiment/experiment.h"
 
 namespace crescent {
@@ -44,6 +46,33 @@ TEST(ModelExperiment, SeesAModelFarFromTheOrigin) {
         EXPECT_LT(std::sqrt(dot(offset, offset)), 1e-4 * radius) << distance;
         EXPECT_NEAR(std::sqrt(dot(view, view)) / radius, 1.05 / std::sin(20 * pi / 180), 1e-3) << distance;
     }
+}
+
+TEST(ModelExperiment, OfAWholeSceneHasItsMaterialsCopiesAndCamera) {
+    ModelScene scene;
+    scene.title = "a car";
+    scene.box = tetrahedron()->mesh.bounds();
+    scene.meshes.push_back({.name = "paint", .file = "meshes/paint.mesh", .rho_d = {0.5, 0.25, 0.125}});
+    scene.meshes.push_back({.name = "lamp",
+        .file = "meshes/lamp.mesh",
+        .rho_s = {1, 0.5, 0.25},
+        .emission = {3, 2, 1},
+        .alpha = 0.25,
+        .two_sided = true,
+        .rho_d_texture = "textures/lamp.exr",
+        .instances = {{1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 1, 4}}});
+    scene.aspect = 2;
+    scene.camera = Camera{.eye = {0, 1, 5}, .target = {0, 1, 0}, .up = {0, 1, 0}, .vfov_deg = 30};
+    const Experiment e = parse(experiment_for(scene), "e");
+    EXPECT_EQ(e.image.width, 2 * e.image.height);
+    EXPECT_EQ(e.camera.eye.z, 5);
+    ASSERT_EQ(e.meshes.size(), 2u);
+    EXPECT_EQ(e.meshes[0].material.rho_d, (Rgb{0.5, 0.25, 0.125}));
+    EXPECT_EQ(e.meshes[1].instances.at(0).transform().point({0, 0, 0}).y, 3);
+    EXPECT_EQ(e.meshes[1].rho_d_texture.file, "textures/lamp.exr");
+    EXPECT_EQ(e.meshes[1].emission, (Rgb{3, 2, 1}));
+    const auto& of = e.find_arm("both")->combination.of;
+    EXPECT_NE(std::ranges::find(of, "light-triangle"), of.end());
 }
 
 TEST(ModelExperiment, NamesTablesAfterFiles) {

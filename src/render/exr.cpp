@@ -9,6 +9,7 @@
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -115,6 +116,32 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
 void write_exr(const std::string& path, const std::vector<std::pair<std::string, const ReferenceFilm*>>& parts,
     const Attributes& attributes) {
     write_parts(path, parts, attributes);
+}
+
+void write_texture(const std::string& path, const RgbImage& image) {
+    std::vector<half> texels(image.rgb.size());
+    bool is_grey = true;
+    for (std::size_t k = 0; k < texels.size(); ++k) {
+        texels[k] = half(image.rgb[k]);
+        is_grey = is_grey && image.rgb[k] == image.rgb[k - k % 3];
+    }
+    const ExrThreads threads;
+    Imf::Header header(image.width, image.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    constexpr std::size_t pixel = 3 * sizeof(half);
+    Imf::FrameBuffer buffer;
+    const std::vector<const char*> names = is_grey ? std::vector{"Y"} : std::vector{"R", "G", "B"};
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        header.channels().insert(names[c], Imf::Channel(Imf::HALF));
+        buffer.insert(names[c],
+            Imf::Slice(Imf::HALF, reinterpret_cast<char*>(texels.data() + c), pixel,
+                pixel * static_cast<std::size_t>(image.width)));
+    }
+    try {
+        Imf::OutputFile file(path.c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(image.height);
+    } catch (const std::exception& error) { throw OutputError("cannot write " + path + ": " + error.what()); }
 }
 
 // ---- Blocks of rows are read into one interleaved array that grows with them, converted to float by OpenEXR, on this

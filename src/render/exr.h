@@ -25,6 +25,9 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
 void write_exr(const std::string& path, const std::vector<std::pair<std::string, const ReferenceFilm*>>& parts,
     const Attributes& attributes);
 
+/// Writes the texels of a texture as half floats, Y alone if all are grey. Throws OutputError.
+void write_texture(const std::string& path, const RgbImage& image);
+
 // ---- Reads the image of a sky or of a texture: from an OpenEXR file, R, G and B, or Y alone, of its first part, in
 // half, float or integers; or from a pack (scene/texture.h).
 

@@ -1,0 +1,120 @@
+"""whole_scene.py CRESCENT: imports whole scenes into folders whose experiments run as they are."""
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import zlib
+
+crescent = sys.argv[1]
+
+
+def png(width, height, texel):
+    rows = b"".join(b"\0" + b"".join(bytes(texel(x, y)) for x in range(width)) for y in range(height))
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+class Glb:
+    """Views and accessors of one buffer."""
+
+    def __init__(self):
+        self.bytes, self.views, self.accessors = b"", [], []
+
+    def view(self, data):
+        self.views.append({"buffer": 0, "byteOffset": len(self.bytes), "byteLength": len(data)})
+        self.bytes += data + bytes(-len(data) % 4)
+        return len(self.views) - 1
+
+    def array(self, rows, kind, code, component):
+        flat = [x for row in rows for x in (row if isinstance(row, (list, tuple)) else [row])]
+        self.accessors.append({"bufferView": self.view(struct.pack(f"<{len(flat)}{code}", *flat)), "componentType": component, "count": len(rows), "type": kind})
+        return len(self.accessors) - 1
+
+    def write(self, name, root):
+        root = {"asset": {"version": "2.0"}, "buffers": [{"byteLength": len(self.bytes)}], "bufferViews": self.views, "accessors": self.accessors, **root}
+        text = json.dumps(root).encode()
+        text += b" " * (-len(text) % 4)
+        body = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(self.bytes), 0x004E4942) + self.bytes
+        pathlib.Path(name).write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body)
+
+
+def command(*words, code=0):
+    done = subprocess.run([crescent, *words], capture_output=True, text=True, timeout=300)
+    assert done.returncode == code, f"{' '.join(words)}: exit {done.returncode}, expected {code}:\n{done.stdout}{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def has(text, *words):
+    for word in words:
+        assert word in text, f"no '{word}' in:\n{text}"
+
+
+square = [(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)]
+cube = [(x, y, z) for x in (-0.2, 0.2) for y in (0, 0.4) for z in (-0.2, 0.2)]
+faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+cube_triangles = [k for a, b, c, d in faces for k in (a, b, c, a, c, d)]
+
+# A textured floor, three copies of a metal cube, an emitter, a camera, and things that have no counterpart.
+g = Glb()
+floor = {"POSITION": g.array(square, "VEC3", "f", 5126), "TEXCOORD_0": g.array([(0, 0), (1, 0), (1, 1), (0, 1)], "VEC2", "f", 5126),
+         "COLOR_0": g.array([(1, 1, 1)] * 4, "VEC3", "f", 5126)}
+box = {"POSITION": g.array(cube, "VEC3", "f", 5126)}
+floor_indices, box_indices = g.array([0, 2, 1, 0, 3, 2], "SCALAR", "H", 5123), g.array(cube_triangles, "SCALAR", "H", 5123)
+colours = g.view(png(2, 2, lambda x, y: (188, 188, 188) if x == y else (0, 0, 0)))
+surface = g.view(png(1, 1, lambda x, y: (0, 128, 0)))
+scene = {
+    "images": [{"bufferView": colours, "mimeType": "image/png", "name": "checks"}, {"bufferView": surface, "mimeType": "image/png"}],
+    "textures": [{"source": 0}, {"source": 1}],
+    "materials": [
+        {"name": "tiles", "normalTexture": {"index": 0}, "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 1}}},
+        {"name": "gold", "alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 0.8, 0.3, 1], "roughnessFactor": 0.5}},
+        {"name": "lamp", "emissiveFactor": [1, 1, 1], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5}}},
+    ],
+    "extensionsUsed": ["KHR_lights_punctual"],
+    "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "aspectRatio": 2}}],
+    "meshes": [
+        {"name": "ground", "primitives": [{"attributes": floor, "indices": floor_indices, "material": 0}]},
+        {"name": "cube", "primitives": [{"attributes": box, "indices": box_indices, "material": 1}]},
+        {"name": "bulb", "primitives": [{"attributes": box, "indices": box_indices, "material": 2}]},
+    ],
+    "nodes": [
+        {"mesh": 0}, {"name": "cubes", "children": [2, 3, 4]}, {"mesh": 1}, {"mesh": 1, "translation": [0.6, 0, 0]},
+        {"mesh": 1, "translation": [-0.6, 0, 0], "scale": [-1, 2, 1]}, {"mesh": 2, "translation": [0, 1.2, 0], "scale": [0.5, 0.5, 0.5]},
+        {"camera": 0, "translation": [0, 0.8, 4]}, {"extensions": {"KHR_lights_punctual": {"light": 0}}},
+    ],
+}
+g.write("scene.glb", scene)
+said = command("import", "scene.glb", "--out", "scene")
+has(said, "3 meshes", "50 triangles", "2 images", "camera: that of the file", "3 copies", "1 meshes that emit", "left out: 1 normal maps",
+    "1 materials' transparency", "1 lights", "COLOR_0")
+text = pathlib.Path("scene/experiment.toml").read_text()
+has(text, "[meshes.cube]", "[[meshes.cube.instances]]", "rho_s = [1, 0.8, 0.3]", "alpha = 0.25", "emission = [5, 5, 5]",
+    "rho_d_texture = \"textures/", "alpha_texture = \"textures/", "eye = [0, 0.8, 4]", "height = 160")
+command("run", "scene/experiment.toml", "--quiet", "--out", "out", "--set", "image.width=64", "--set", "image.height=32", "--set", "regions.all.box=[0,0,63,31]")
+runs = json.loads(pathlib.Path("out/metrics.json").read_text())["runs"]
+assert all(run["bad"] == 0 and run["y_mean"] > 0 for run in runs if "bad" in run), runs
+
+# Copies that are kept, and the same triangles baked into one mesh, are the same scene.
+said = command("import", "scene.glb", "--out", "baked.mesh")
+has(said, "50 triangles", "box [-1, 0, -1] to [1, 1.4, 1]")
+# Parts of it; names that are near.
+has(command("import", "scene.glb", "--out", "cubes", "--select", "cubes"), "1 meshes", "36 triangles")
+has(command("import", "scene.glb", "--out", "gold", "--select", "gold"), "36 triangles")
+has(command("import", "scene.glb", "--out", "none", "--select", "gild", code=2), "'gild'", "'gold'")
+assert not pathlib.Path("none").exists()
+
+# z up and a scale, also for .mesh files; smooth normals of a model that has none.
+has(command("import", "scene.glb", "--out", "turned.mesh", "--up", "z", "--scale", "10"), "box [-10, -10, -14] to [10, 10, 0]")
+cube_obj = "".join(f"v {x} {y} {z}\n" for x, y, z in cube) + "".join("f " + " ".join(str(k + 1) for k in f) + "\n" for f in faces)
+pathlib.Path("cube.obj").write_text("\ufeffmtllib cube.mtl\nusemtl red\n" + cube_obj, encoding="utf-8", newline="\r")
+pathlib.Path("cube.mtl").write_text("newmtl red\nKd 0.8 0.1 0.1\nKs 0.5 0.5 0.5\nNs 98\nmap_Kd nowhere.png\n")
+has(command("import", "cube.obj", "--out", "flat.mesh"), "normals: of the triangles")
+has(command("import", "cube.obj", "--out", "edges.mesh", "--smooth", "80"), "normals: of the triangles")
+has(command("import", "cube.obj", "--out", "round.mesh", "--smooth", "100"), "normals: smooth", "8 vertices")
+has(command("import", "cube.obj", "--out", "cube"), "1 meshes", "12 triangles", "the whole model")
+has(pathlib.Path("cube/experiment.toml").read_text(), "[meshes.red]", "rho_d = [0.8, 0.1, 0.1]", "rho_s = [0.2, 0.5, 0.5]", "alpha = 0.1414")
+command("import", "cube.obj", "--out", "cube.text", code=2)
