@@ -31,6 +31,9 @@ def checked(against: str) -> Against:
     return against  # type: ignore[return-value]
 
 
+_SECONDS = (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6))
+
+
 class Costs:
     """The cost of one sample of each arm."""
 
@@ -65,14 +68,20 @@ class Costs:
         """Whether the cost of this arm is known."""
         return self.against == "n" or arm in self._of
 
-    @property
-    def label(self) -> str:
-        """The name of the axis, with its unit."""
+    def unit(self, most: float) -> tuple[float, str]:
+        """The unit of an axis up to this cost: its size and its name."""
+        if self.against != "time":
+            return 1.0, ""
+        return next(((size, name) for name, size in _SECONDS if most >= 2 * size), (1e-6, "µs"))
+
+    def label(self, most: float) -> str:
+        """The name of an axis up to this cost, with its unit."""
         if self.against == "n":
             return "samples a pixel, N"
         if self.against == "rays":
             return "rays a pixel"
-        return "time [s]" + (f", {self.threads} thread{'s' * (self.threads != 1)}" if self.threads else "")
+        threads = f", {self.threads} thread{'s' * (self.threads != 1)}" if self.threads else ""
+        return f"time [{self.unit(most)[1]}]{threads}"
 
     def text(self, cost: float) -> str:
         """An amount with its name."""
@@ -83,7 +92,7 @@ class Costs:
 
 def seconds_text(seconds: float) -> str:
     """A time with three digits in s, ms or µs."""
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
+    for unit, size in _SECONDS:
         if seconds >= size or unit == "µs":
             return f"{seconds / size:.3g} {unit}"
     return ""

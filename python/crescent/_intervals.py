@@ -111,3 +111,31 @@ def best_of(values: Mapping[str, Values], alpha: float = 0.05) -> set[str]:
         if mean <= error * t_quantile(1 - alpha / (len(arms) - 1), apart.size - 1):
             out.add(arm)
     return out
+
+
+def t_of(values: Values) -> Values:
+    """Student's t of the means over the last axis; NaN where nothing varies."""
+    error = values.std(-1, ddof=1) / math.sqrt(values.shape[-1])
+    out: Values = np.divide(values.mean(-1), error, out=np.full(error.shape, np.nan), where=error > 0)
+    return out
+
+
+def _p_values(t: Values, freedom: int) -> Values:
+    """Two-sided p-values of |t|, by the midpoint rule of :func:`t_quantile`, summed from the tail."""
+    steps = 20_000
+    a = (np.arange(steps) + 0.5) / steps * (math.pi / 2)
+    weight = np.cos(a) ** (freedom - 1)
+    above = np.cumsum(weight[::-1])[::-1] / weight.sum()  # of |t| from the lower end of each step
+    out: Values = np.interp(np.arctan(np.abs(t) / math.sqrt(freedom)), a - a[0], above)
+    return out
+
+
+def differ(values: Values, rate: float = 0.05) -> NDArray[np.bool_]:
+    """Where the means over the last axis differ from 0, with this rate of false discoveries (Benjamini and Hochberg
+    1995)."""
+    t = t_of(values)
+    p = np.where(np.isfinite(t), _p_values(np.nan_to_num(t), values.shape[-1] - 1), np.inf)
+    known = np.sort(p[np.isfinite(p)])
+    below = np.flatnonzero(known <= rate * np.arange(1, known.size + 1) / max(known.size, 1))
+    out: NDArray[np.bool_] = p <= (known[below[-1]] if below.size else -1.0)
+    return out

@@ -256,12 +256,12 @@ def _charts(
     for k, name in enumerate(charts):
         x = left + k * share
         if name == "ladder":
-            ax = sheet.axes(x + room, top + 1.5, share - room - 2.0, height - below)
+            ax = sheet.axes(x + room, top + 1.5, share - room - 3.5, height - below)
             plot.ladder(
                 r, metric, region, order, s, ax, against=against, labels=labels, colours=colours, log=log, legend=False
             )
             ax.set_ylabel(ax.get_ylabel().replace(" [", "\n[", 1), size=7)
-            ax.yaxis.set_label_coords(-8.5 / (share - room - 2.0), 0.5)
+            ax.yaxis.set_label_coords(-8.5 / (share - room - 3.5), 0.5)
             sheet.height = max(sheet.height, top + height + 1.0)
         else:
             ax = sheet.axes(x + 3.0, top + 1.5, share - 5.0, height - below)

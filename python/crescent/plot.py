@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from ._arrays import channels
 from ._cost import Against, Costs
 from ._html import tone
-from ._intervals import fitted_slope, half_width
+from ._intervals import differ, fitted_slope, half_width, t_of
 from ._metric_names import LARGEST_IS_BEST, NAMES, RADIANCE, UNITS
 from ._values import arms_of, compared_at, film_at, heavy_arms, only_region, values_of, with_interval
 
@@ -34,7 +34,19 @@ if TYPE_CHECKING:
 
     from .experiments import Film, Measured
 
-__all__ = ["bars", "crops", "heat", "hemisphere", "ladder", "page", "save", "style", "sweep", "where_noise_moved"]
+__all__ = [
+    "bars",
+    "crops",
+    "heat",
+    "hemisphere",
+    "ladder",
+    "page",
+    "save",
+    "significance",
+    "style",
+    "sweep",
+    "where_noise_moved",
+]
 
 COLUMN_MM = 85.0  #: width of one column
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#f0e442")
@@ -183,7 +195,7 @@ def ladder(
             ax.set_yscale("log")
             _log_ticks(ax.yaxis, 6)
             if against != "n":
-                _log_ticks(ax.xaxis, 4)
+                _log_ticks(ax.xaxis, 4, costs.unit(max(ticks))[0])
         for x, look in at_the_edge:  # 0 has no logarithm
             ax.plot(
                 x, np.full(len(x), 0.02), look.marker, ls=look.dashes, ms=4, color=look.colour, fillstyle="none",
@@ -192,7 +204,7 @@ def ladder(
         if against == "n":
             ax.set_xticks(sorted(ticks), [f"{k:g}" for k in sorted(ticks)])
             ax.minorticks_off()
-        ax.set_xlabel(costs.label)
+        ax.set_xlabel(costs.label(max(ticks, default=1.0) if log else float("inf")))
         ax.set_ylabel(_label(metric, region))
         ax.grid(True)
         if legend:
@@ -205,17 +217,19 @@ def ladder(
     return ax
 
 
-def _log_ticks(axis: Any, most: int) -> None:
-    """At most so many labels on a logarithmic axis: powers of ten, or 1, 2 and 5 times these within a short range."""
-    low, high = sorted(axis.get_view_interval())
+def _log_ticks(axis: Any, most: int, unit: float = 1.0) -> None:
+    """At most so many labels, in a unit, on a logarithmic axis: powers of ten, or 1, 2 and 5 times these within a short range."""
+    low, high = (end / unit for end in sorted(axis.get_view_interval()))
     powers = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
     for digits in ((1.0,), (1.0, 2.0, 5.0), tuple(range(1, 10)), tuple(np.arange(10, 100) / 10)):
         values = [d * 10.0**k for k in powers for d in digits if low <= d * 10.0**k <= high]
         if len(values) >= 2:
             break
-    values = values[:: -(-len(values) // most)]
+    values = [value * unit for value in values[:: -(-len(values) // most)]]
+    low, high = low * unit, high * unit
 
     def text(value: float) -> str:
+        value /= unit
         if 1e-3 < value < 1e4:
             return f"{value:.4g}"
         power = int(np.floor(np.log10(value) + 1e-9))
@@ -369,34 +383,80 @@ def _scale(ax: Axes, drawn: Any, label: str, extend: str) -> None:
 
 def heat(
     r: Measured,
-    arm: str,
+    arm: str | Sequence[str],
     n: int,
-    what: str = "error",
+    what: Literal["error", "relative", "var"] = "error",
     s: float | None = None,
     box: Sequence[int] | None = None,
     top: float | None = None,
     ax: Axes | None = None,
-) -> Axes:
-    """The error |Y - reference|, or `what` = "var", the variance of Y, of each pixel, with a colour scale in its unit.
+    *,
+    labels: Mapping[str, str] | None = None,
+    background: Literal["light", "dark"] = "light",
+) -> Axes | list[Axes]:
+    """The error |Y - reference|, or `what` = "relative", the error over the reference, or "var", the variance of Y, of
+    each pixel, with a colour scale in its unit.
 
-    `top`: the end of the scale; the 99th percentile where none is given.
+    Several arms are drawn in a row on one scale. `top`: the end of the scale; the 99th percentile where none is given.
+    `background`: light for paper, where 0 is the lightest, or dark.
     """
-    film = _film(r, arm, n, s)
-    if what == "error":
-        if film.s not in r.references:
-            raise KeyError(f"the result has no reference at s = {film.s:g}")
-        plane, unit = np.abs(film.y - r.references[film.s]["y"]), f"|error of Y| [{RADIANCE}]"
-    elif what == "var":
-        plane, unit = film.var, f"variance of Y [({RADIANCE})$^2$]"
-    else:
-        raise ValueError(f"what is {what!r}: expected 'error' or 'var'")
-    image = _cut(plane, box)
+    arms = [arm] if isinstance(arm, str) else list(arm)
+    if ax is not None and len(arms) > 1:
+        raise TypeError("ax is given for several arms: expected one arm, or no ax")
+    units = {
+        "error": f"|error of Y| [{RADIANCE}]",
+        "relative": "|error of Y| / reference",
+        "var": f"variance of Y [({RADIANCE})$^2$]",
+    }
+    if what not in units:
+        raise ValueError(f"what is {what!r}: expected 'error', 'relative' or 'var'")
+    if background not in ("light", "dark"):
+        raise ValueError(f"background is {background!r}: expected 'light' or 'dark'")
+    images = [_cut(_plane(_film(r, name, n, s), r, what), box) for name in arms]
+    limit = float(np.nanpercentile(np.stack(images), 99)) if top is None else top
     with style():
-        ax = _axes(ax)
-        limit = float(np.nanpercentile(image, 99)) if top is None else top
-        drawn = _picture(ax, image, f"{arm}, N = {n}", cmap="inferno", vmin=0, vmax=limit or 1.0)
-        _scale(ax, drawn, unit, "max")
-    return ax
+        if ax is None and len(arms) > 1:
+            import matplotlib.pyplot as plt
+
+            width, height = (
+                2 * COLUMN_MM / 25.4,
+                2 * COLUMN_MM / 25.4 / len(arms) * images[0].shape[0] / images[0].shape[1],
+            )
+            axes = list(plt.subplots(1, len(arms), figsize=(width, height + 0.35), layout="constrained")[1])
+        else:
+            axes = [_axes(ax)]
+        for at, name, image in zip(axes, arms, images, strict=True):
+            title = f"{_look(r, name, labels).label}, N = {n}"
+            drawn = _picture(
+                at, image, title, cmap="inferno" if background == "dark" else "magma_r", vmin=0, vmax=limit or 1.0
+            )
+        if len(axes) > 1:
+            axes[0].figure.colorbar(drawn, ax=axes, label=units[what], extend="max", fraction=0.03, pad=0.01)
+        else:
+            _scale(axes[0], drawn, units[what], "max")
+    return axes if len(axes) > 1 else axes[0]
+
+
+def _plane(film: Film, r: Measured, what: str) -> NDArray[Any]:
+    """The values of a map; NaN where the reference is 0 and the error is relative to it."""
+    if what == "var":
+        return film.var
+    if film.s not in r.references:
+        raise KeyError(f"the result has no reference at s = {film.s:g}")
+    reference = r.references[film.s]["y"]
+    error = np.abs(film.y - reference)
+    if what == "error":
+        return error
+    return np.divide(error, reference, out=np.full(error.shape, np.nan, error.dtype), where=reference > 0)
+
+
+def _tiles(plane: NDArray[Any], tile: int) -> NDArray[Any]:
+    """The pixels of each tile, [rows, columns, pixels]."""
+    height, width = (size - size % tile for size in plane.shape)
+    if height == 0 or width == 0:
+        raise ValueError(f"tile is {tile}: expected at most the size of the picture, {min(plane.shape)}")
+    cut = plane[:height, :width].reshape(height // tile, tile, width // tile, tile)
+    return cut.transpose(0, 2, 1, 3).reshape(height // tile, width // tile, tile * tile)
 
 
 def where_noise_moved(
@@ -408,25 +468,57 @@ def where_noise_moved(
     box: Sequence[int] | None = None,
     tile: int = 8,
     ax: Axes | None = None,
+    *,
+    labels: Mapping[str, str] | None = None,
+    significant: bool = False,
+    top: float | None = None,
 ) -> Axes:
     """log2 of the variance of `b` over that of `a`, over tiles of `tile` pixels: blue where `b` has less, grey where one
     has none.
 
-    The scale ends at a factor of 64 at most.
+    `significant`: only tiles in which the two differ significantly are coloured, the others are white: paired t of the
+    variances of the pixels of a tile, with 5 % of false discoveries among the coloured tiles (Benjamini and Hochberg 1995).
+    The scale ends at `top` doublings, at 6 at most where none is given.
     """
-    planes = [_cut(_film(r, arm, n, s).var.astype(float), box) for arm in (a, b)]
-    height, width = (size - size % tile for size in planes[0].shape)
-    if height == 0 or width == 0:
-        raise ValueError(f"tile is {tile}: expected at most the size of the picture, {min(planes[0].shape)}")
-    of_a, of_b = (p[:height, :width].reshape(height // tile, tile, width // tile, tile).mean((1, 3)) for p in planes)
+    of_a, of_b = (_tiles(_cut(_film(r, arm, n, s).var.astype(float), box), tile) for arm in (a, b))
+    mean_a, mean_b = of_a.mean(-1), of_b.mean(-1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where((of_a > 0) & (of_b > 0), np.log2(of_b / of_a), np.nan)
+        ratio = np.where((mean_a > 0) & (mean_b > 0), np.log2(mean_b / mean_a), np.nan)
+    limit = min(float(np.nanpercentile(np.abs(ratio), 98)) if np.isfinite(ratio).any() else 1.0, 6.0)
+    limit = (limit or 1.0) if top is None else top
+    if significant:
+        ratio = np.where(differ(of_b - of_a) | ~np.isfinite(ratio), ratio, 0.0)
+    first, second = (_look(r, arm, labels).label for arm in (a, b))
     with style():
         ax = _axes(ax)
-        limit = min(float(np.nanpercentile(np.abs(ratio), 98)) if np.isfinite(ratio).any() else 1.0, 6.0)
-        drawn = _picture(ax, ratio, f"{b} against {a}, N = {n}", cmap="RdBu_r", vmin=-limit, vmax=limit)
+        drawn = _picture(ax, ratio, f"{second} against {first}, N = {n}", cmap="RdBu_r", vmin=-limit, vmax=limit)
         ax.set_facecolor("#bfbfbf")  # of tiles without variance
-        _scale(ax, drawn, f"log$_2$ variance of {b} / {a}", "both")
+        _scale(ax, drawn, f"log$_2$ variance of {second} / {first}", "both")
+    return ax
+
+
+def significance(
+    r: Measured,
+    a: str,
+    b: str,
+    n: int,
+    s: float | None = None,
+    box: Sequence[int] | None = None,
+    tile: int = 8,
+    ax: Axes | None = None,
+    *,
+    labels: Mapping[str, str] | None = None,
+    top: float = 6.0,
+) -> Axes:
+    """How significant the difference of two variances is: Student's t of the paired variances of the pixels of each tile,
+    blue where `b` has less. Beyond 2 in size a single tile differs at about 5 %."""
+    apart = _tiles(_cut((_film(r, b, n, s).var.astype(float) - _film(r, a, n, s).var), box), tile)
+    first, second = (_look(r, arm, labels).label for arm in (a, b))
+    with style():
+        ax = _axes(ax)
+        drawn = _picture(ax, t_of(apart), f"{second} against {first}, N = {n}", cmap="RdBu_r", vmin=-top, vmax=top)
+        ax.set_facecolor("#bfbfbf")  # of tiles without variance
+        _scale(ax, drawn, f"t of the variance of {second} - {first}", "both")
     return ax
 
 
