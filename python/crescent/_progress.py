@@ -19,7 +19,15 @@ def _is_shown() -> bool:
 def bar(progress: Progress | bool | None) -> Iterator[Progress | None]:
     """What _crescent.run calls: the user's callable, a bar, or None."""
     if callable(progress):
-        yield progress
+        last_call: list[Any] = []
+
+        def told(what: str, done: float, total: float) -> None:
+            last_call[:] = [what, done, total]
+            progress(what, done, total)
+
+        yield told
+        if last_call and last_call[1] < last_call[2]:  # a run ends at 100 %
+            progress(last_call[0], last_call[2], last_call[2])
         return
     if not isinstance(progress, bool) and progress is not None:
         raise TypeError(f"progress is {type(progress).__name__}: expected a callable progress(what, done, total), or a bool")
@@ -46,3 +54,5 @@ def bar(progress: Progress | bool | None) -> Iterator[Progress | None]:
             shown.refresh()
 
         yield show
+        shown.n = shown.total
+        shown.refresh()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ def core_of(state: Sequence[Any]) -> _crescent.RunResult:
     return core
 
 
-def arrays_of(core: _crescent.RunResult) -> bytes:
+def arrays_of(core: _crescent.RunResult, samplers: Mapping[str, str]) -> bytes:
     """The contents of arrays.npz: planes, and an index in JSON."""
     state: Any = core.__getstate__()
     s, holds, _, _, _, attributes, boxes, films, references, times, threads = state
@@ -35,6 +35,7 @@ def arrays_of(core: _crescent.RunResult) -> bytes:
         "references": [s for s, _ in references],
         "times": times,
         "threads": threads,
+        "samplers": dict(samplers),
     }
     planes = {f"film/{k}/{name}": plane for k, film in enumerate(films) for name, plane in film[4].items()}
     planes |= {f"reference/{k}/{name}": plane for k, (_, of) in enumerate(references) for name, plane in of.items()}
@@ -67,8 +68,8 @@ def _text(path: Path) -> str:
     return path.read_bytes().decode()
 
 
-def opened(folder: Path) -> _crescent.RunResult:
-    """The result in a folder; of a run of the program, which has no arrays.npz, without films and references."""
+def opened(folder: Path) -> tuple[_crescent.RunResult, dict[str, str]]:
+    """The result in a folder, and the identities of its samplers; of a run of the program, which has no arrays.npz, without films and references."""
     if not (folder / "metrics.json").is_file():
         raise ValueError(f"{folder}: expected a folder of a result, with metrics.json")
     index = arrays_in(folder)
@@ -80,9 +81,9 @@ def opened(folder: Path) -> _crescent.RunResult:
         joined = list(_crescent.join([str(folder)]).__getstate__())
         joined[2:5] = [text or other for text, other in zip(texts, joined[2:5], strict=True)]
         joined[9:11] = _timing(folder)
-        return core_of(joined)
+        return core_of(joined), {}
     rest = ("attributes", "boxes", "films", "references", "times", "threads")
-    return core_of([index["s"], index["holds"], *texts, *(index[name] for name in rest)])
+    return core_of([index["s"], index["holds"], *texts, *(index[name] for name in rest)]), index["samplers"]
 
 
 def _timing(folder: Path) -> tuple[list[Any], int]:
@@ -93,7 +94,7 @@ def _timing(folder: Path) -> tuple[list[Any], int]:
     return rows, int(timing.get("threads", 0))
 
 
-def joined(parts: Sequence[str]) -> _crescent.RunResult:
+def joined(parts: Sequence[str]) -> tuple[_crescent.RunResult, dict[str, str]]:
     """The result of parts of the seeds: the films of the first seed that has any, all times, and the references."""
     state = list(_crescent.join(list(parts)).__getstate__())
     folders = [path.parent if path.is_file() else path for path in map(Path, parts)]
@@ -110,4 +111,4 @@ def joined(parts: Sequence[str]) -> _crescent.RunResult:
     ]
     state[9] = [row for rows, _ in timed for row in rows]
     state[10] = max((threads for _, threads in timed), default=0)
-    return core_of(state)
+    return core_of(state), {name: identity for index in found for name, identity in index["samplers"].items()}

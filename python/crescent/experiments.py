@@ -9,6 +9,7 @@ measured.films["phong", 64].y               # [height, width], the memory of the
 from __future__ import annotations
 
 import csv
+import hashlib
 import io
 import json
 import re
@@ -238,8 +239,11 @@ class Experiment:
 
     @property
     def hash(self) -> str:
-        """What identifies an experiment: every value but the number of seeds, and the files of its samplers."""
-        return self._with_arms()._core.hash
+        """What identifies an experiment: every value but the number of seeds, and its samplers: their files, code,
+        attributes, closures and the globals that they name."""
+        core = str(self._with_arms()._core.hash)
+        ids = _sampler_ids(self.samplers)
+        return hashlib.sha256(repr([core, sorted(ids.items())]).encode()).hexdigest()[:16] if ids else core
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (self._source, dict(self.samplers))
@@ -257,6 +261,17 @@ class Experiment:
         from ._html import of_experiment
 
         return of_experiment(self)
+
+
+def _sampler_ids(samplers: Mapping[str, Any]) -> dict[str, str]:
+    """The identities of the samplers in Python, and what of them cannot be hashed."""
+    from ._sweep.identity import sampler_id, unhashable_of
+
+    out = {}
+    for name, sampler in samplers.items():
+        kinds = unhashable_of(sampler)
+        out[name] = sampler_id(sampler) + (f" with {', '.join(kinds)}, which cannot be hashed" if kinds else "")
+    return out
 
 
 def _warn_of(removed: Sequence[str], stacklevel: int) -> None:
@@ -375,8 +390,9 @@ class RunInterrupted(KeyboardInterrupt):
 class Measured:
     """A run: films as arrays without a copy, and every number. It can be pickled and copied."""
 
-    def __init__(self, core: _crescent.RunResult) -> None:
+    def __init__(self, core: _crescent.RunResult, samplers: Mapping[str, str] | None = None) -> None:
         self._core = core
+        self.samplers: dict[str, str] = dict(samplers or {})  #: the identities of the samplers in Python, by arm
         self._rows: list[dict[str, Any]] | None = None
         self.films: Films = Films([Film(*film) for film in core.films], core.s)
         self.references: dict[float, Mapping[str, NDArray[np.float32]]] = {s: planes for s, planes in core.references}  #: by s: r, g, b, y, error
@@ -393,7 +409,7 @@ class Measured:
         return bool(self._core.holds)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Measured, (self._core,)
+        return Measured, (self._core, self.samplers)
 
     def records(self) -> list[dict[str, Any]]:
         """One row per number: arm, n, s, seed, `meter`, region, value; suitable for a data frame.
@@ -473,12 +489,13 @@ class Measured:
 
     @property
     def provenance(self) -> str:
-        """One line for an appendix: program, experiment, hash, seeds, compiler."""
+        """One line for an appendix: program, experiment, hash, seeds, compiler, samplers in Python."""
         p = self.metrics["provenance"]
         seeds = sorted({row["seed"] for row in self.records()})
         return (
             f"crescent {p['version']} ({p['commit']}, {p['compiler']}), experiment {p['experiment']['file']} "
             f"{p['experiment']['hash']}, {len(seeds)} seed{'s' * (len(seeds) != 1)} from {seeds[0]}"
+            + "".join(f", sampler {name} {identity}" for name, identity in self.samplers.items())
         )
 
     def to_xarray(self) -> Any:
@@ -502,7 +519,7 @@ class Measured:
     def write(self, folder: str | PathLike[str]) -> None:
         """Writes metrics.json, metrics.csv, junit.xml, films/*.exr and arrays.npz, all at once, for :func:`open`; only the
         program draws plates."""
-        self._core.write(fspath(folder), [(_saved.ARRAYS, _saved.arrays_of(self._core))])
+        self._core.write(fspath(folder), [(_saved.ARRAYS, _saved.arrays_of(self._core, self.samplers))])
 
     save = write
 
@@ -584,11 +601,11 @@ def run(
                 kept=kept,
             )
         except KeyboardInterrupt:
-            part = Measured(kept[0]) if kept else None
+            part = Measured(kept[0], _sampler_ids(e.samplers)) if kept else None
             if part is not None and folder is not None:
                 part.write(folder)
             raise RunInterrupted(part) from None
-    measured = Measured(core)
+    measured = Measured(core, _sampler_ids(e.samplers))
     if folder is not None:
         measured.write(folder)
     return measured
@@ -601,7 +618,7 @@ def join(parts: Sequence[str | PathLike[str]], out: str | PathLike[str] | None =
     films and references of those that :meth:`Measured.write` wrote.
     """
     folder = None if out is None else abspath(out)
-    measured = Measured(_saved.joined([fspath(part) for part in parts]))
+    measured = Measured(*_saved.joined([fspath(part) for part in parts]))
     if folder is not None:
         measured.write(folder)
     return measured
@@ -610,4 +627,4 @@ def join(parts: Sequence[str | PathLike[str]], out: str | PathLike[str] | None =
 def open(folder: str | PathLike[str]) -> Measured:
     """The result in a folder that :meth:`Measured.write`, ``run(out=...)`` or the program wrote: metrics, provenance and
     times, and films and references, which the program does not write for this."""
-    return Measured(_saved.opened(Path(folder)))
+    return Measured(*_saved.opened(Path(folder)))

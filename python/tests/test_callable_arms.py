@@ -4,6 +4,7 @@ import copy
 import os
 import pickle
 import signal
+import threading
 
 import numpy as np
 import pytest
@@ -297,3 +298,36 @@ def test_arms_take_arrays_of_their_own_library(library):
     e = with_samplers(mine=crescent.Sampler(sample, uses=("alpha", "lights"), array_module=library))
     measured = crescent.run(e, seeds=(1, 1))
     assert np.isclose(measured.films["mine", 16].y, measured.films["cosine", 16].y, rtol=1e-3).mean() > 0.99
+
+
+class Lobe:
+    """A sampler whose attribute decides what it draws."""
+
+    def __init__(self, power):
+        self.power = power
+
+    def sample(self, wo, u):
+        z = u[:, 0] ** (1 / (self.power + 1))
+        r, phi = np.sqrt(1 - z * z), 2 * np.pi * u[:, 1]
+        return np.stack([r * np.cos(phi), r * np.sin(phi), z], -1), (self.power + 1) / (2 * np.pi) * z**self.power
+
+
+def test_the_identity_of_a_sampler_covers_what_it_uses(tmp_path):
+    def with_sampler(sampler):
+        e = crescent.parse(TINY)
+        e.samplers["mine"] = sampler
+        return e
+
+    def closed(scale):
+        return crescent.Sampler(lambda wo, u: (wo, scale * u[:, 0]))
+
+    hashes = [with_sampler(s).hash for s in (Lobe(1).sample, Lobe(2).sample, closed(1), closed(2))]
+    assert len(set(hashes)) == 4 and with_sampler(Lobe(1).sample).hash == hashes[0]
+    measured = crescent.run(with_sampler(Lobe(1).sample), seeds=(1, 1))
+    identity = measured.samplers["mine"]
+    assert f"sampler mine {identity}" in measured.provenance
+    measured.write(tmp_path / "out")
+    assert crescent.open(tmp_path / "out").samplers == {"mine": identity}
+    lobe = Lobe(1)
+    lobe.lock = threading.Lock()
+    assert "_thread.lock, which cannot be hashed" in crescent.run(with_sampler(lobe.sample), seeds=(1, 1)).provenance

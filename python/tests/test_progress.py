@@ -58,12 +58,11 @@ def test_no_bar_is_shown_where_nobody_watches(tqdm, monkeypatch):
     assert not Bar.made
 
 
-def test_a_callable_is_called_itself():
-    def progress(what, done, total):
-        pass
-
-    with bar(progress) as show:
-        assert show is progress
+def test_a_callable_is_called_and_ends_at_100_percent():
+    calls = []
+    with bar(lambda *call: calls.append(call)) as show:
+        show("films", 1.0, 4.0)
+    assert calls == [("films", 1.0, 4.0), ("films", 4.0, 4.0)]
     with pytest.raises(TypeError, match="expected a callable"), bar("yes"):
         pass
 

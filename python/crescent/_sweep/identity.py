@@ -26,7 +26,7 @@ from .._sampler import Sampler
 from ..combinations import Combination
 from ..experiments import Experiment
 from .grid import hint
-from .state import state_of
+from .state import state_of, unhashable_in
 
 NUMERICS = f"{_crescent.version} {_crescent.commit}"  #: version of the numerics: equal builds give equal bits
 NOT_OF_THE_SCENE = (
@@ -136,7 +136,7 @@ def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
 
     modules = set()
     texts: list[Any] = []
-    own = (sampler.sample, sampler.pdf, sampler.f) if isinstance(sampler, Sampler) else (sampler.weights,)
+    own = _calls(sampler)
     for call in own:
         if not callable(call):
             continue
@@ -165,6 +165,23 @@ def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
     return [texts, fields, [state_of(call) for call in own]], {"files": {}, "at": "", "pickle": base64.b64encode(data).decode()}
 
 
+def _calls(sampler: Sampler | Combination) -> tuple[Any, ...]:
+    if isinstance(sampler, Sampler):
+        return (sampler.sample, sampler.pdf, sampler.f)
+    return (sampler.weights,)
+
+
+def unhashable_of(sampler: Sampler | Combination) -> list[str]:
+    """The types of what the callables of a sampler use and what cannot be hashed."""
+    return list(dict.fromkeys(kind for call in _calls(sampler) for kind in unhashable_in(call)))
+
+
+def sampler_id(sampler: Sampler | Combination) -> str:
+    """The identity of a sampler in Python: its code, attributes, closures, and the globals that its code names."""
+    fields = {key: value for key, value in vars(sampler).items() if not callable(value)}
+    return digest(fields, [state_of(call) for call in _calls(sampler)])
+
+
 class Arm:
     """One arm of an experiment: its identity, and the data with which a worker runs it."""
 
@@ -187,6 +204,7 @@ class Arm:
         kept = {k: v for k, v in table.items() if k not in ("python", "plugin", "weights_python")}
         self.id = digest(NUMERICS, name, kept, source if version is None else ["declared", version])
         self.kind = "callable" if given is not None else kind
+        self.unhashable = [] if given is None or version is not None else unhashable_of(given)
         self.of: list[str] = []  #: the arms of a combination
 
     def set_parts(self, of: Sequence[Arm]) -> None:

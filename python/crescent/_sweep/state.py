@@ -13,6 +13,7 @@ import importlib.metadata
 import inspect
 import pickle
 import sys
+import uuid
 from collections.abc import Iterable, Iterator, Mapping
 from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any
@@ -23,9 +24,19 @@ _PLAIN = (type(None), bool, int, float, complex, str, bytes)
 _OF_EVERY_CLASS = frozenset({"__dict__", "__weakref__", "__doc__", "__module__", "__annotations__", "__abstractmethods__"})
 
 
+_PROCESS = uuid.uuid4().hex  # in the state of what cannot be hashed: no other process reuses its results
+
+
 def state_of(value: Any) -> Any:
     """The state of a value as lists, numbers and texts."""
     return _Walk().state(value, frozenset())
+
+
+def unhashable_in(value: Any) -> list[str]:
+    """The types of the objects in the state of a value that cannot be hashed."""
+    walk = _Walk()
+    walk.state(value, frozenset())
+    return list(dict.fromkeys(walk.unhashable))
 
 
 def _sha(data: bytes) -> str:
@@ -63,6 +74,7 @@ class _Walk:
     def __init__(self) -> None:
         self._met: dict[int, int] = {}
         self._alive: list[Any] = []  # ids are of living values
+        self.unhashable: list[str] = []
 
     def state(self, value: Any, names: frozenset[str]) -> Any:
         """`names`: what the code that refers to this value names; of a module only these count."""
@@ -163,8 +175,8 @@ class _Walk:
         try:
             return ["object", kind.__qualname__, _sha(pickle.dumps(value, protocol=4))]
         except Exception:  # anything that a library raises
-            inside = getattr(value, "__dict__", None)
-            return ["object", kind.__qualname__, repr(value) if inside is None else self._pairs(inside, names)]
+            self.unhashable.append(f"{kind.__module__}.{kind.__qualname__}")
+            return ["unhashable", kind.__qualname__, _PROCESS, id(value)]
 
     def _pairs(self, attributes: Mapping[str, Any], names: frozenset[str]) -> list[Any]:
         return [[name, self.state(value, names)] for name, value in sorted(attributes.items())]
