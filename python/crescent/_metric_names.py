@@ -23,5 +23,8 @@ NAMES = {
 }
 RANKED = frozenset({"rmse", "rmse_frame", "var", "mse", "rel_mse", "smape", "flip", "fireflies"})
 
+#: Names of `crescent.compare` for metrics of a run that have another name there.
+ALIASES = {"relmse": "rel_mse", "bias2": "bias_sq"}
+
 #: Efficiencies, 1 / (variance of N samples times N) and 1 / (variance times seconds): the largest is the best.
 LARGEST_IS_BEST = frozenset({"efficiency_n", "efficiency_time"})

@@ -45,6 +45,8 @@ def _scaled(ends: Sequence[int], old: int, new: int, scale: float) -> tuple[int,
 def resize_hint(before: Mapping[str, Any], changed: Source, error: str) -> str:
     """How to change the size of the picture together with its boxes, if only these are wrong; else nothing."""
     old, new = before["image"], changed.tree().get("image", {})
+    if not isinstance(new, Mapping):
+        return ""
     sizes = [(image.get("width"), image.get("height")) for image in (old, new)]
     if sizes[0] == sizes[1] or not all("expected a box on the image" in line for line in error.splitlines()):
         return ""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._intervals import Values, half_width, rounded
+from ._metric_names import ALIASES
 
 if TYPE_CHECKING:
     from .experiments import Measured
@@ -74,6 +75,7 @@ def _flip(result: Measured, arm: str, n: int, region: str, s: float) -> Values:
 
 
 def summary(result: Measured, metric: str, arm: str, n: int, region: str, s: float) -> Summary:
+    metric = ALIASES.get(metric, metric)
     tail = _rows(result, "tail_k", arm, n, region, s)
     heavy = bool(tail) and float(tail[0]["value"]) >= 0.5 and metric not in ("tail_k", "flip")
     if metric == "flip" and not _rows(result, "flip", arm, n, region, s):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ._cost import Costs, at_cost, budget_of
 from ._intervals import best_of, half_width, rounded
-from ._metric_names import LARGEST_IS_BEST, RANKED
+from ._metric_names import ALIASES, LARGEST_IS_BEST, RANKED
 
 if TYPE_CHECKING:
     from .experiments import Film, Measured
@@ -31,6 +31,7 @@ def arms_of(r: Measured, arms: Sequence[str] | None) -> list[str]:
 def values_of(r: Measured, metric: str, region: str, s: float | None) -> dict[str, dict[int, list[float]]]:
     """By arm and N, the metric's values over seeds. KeyError where the result has no such metric or region."""
     at = r.s if s is None else s
+    metric = ALIASES.get(metric, metric)
     if metric in LARGEST_IS_BEST:
         costs = Costs(r, "n" if metric == "efficiency_n" else "time", at)
         var = values_of(r, "var", region, s)
@@ -54,7 +55,7 @@ def only_region(r: Measured, metric: str, region: str | None) -> str:
     """`region`, or the first of the experiment's where the metric has regions and none is named."""
     if region is not None:
         return region
-    metric = "var" if metric in LARGEST_IS_BEST else metric
+    metric = "var" if metric in LARGEST_IS_BEST else ALIASES.get(metric, metric)
     return next((row["region"] for row in r.records() if row["meter"] == metric), "")
 
 
@@ -98,6 +99,7 @@ def compared_at(
     budget: float | None,
 ) -> Compared:  # fmt: skip
     """`n` with against="n", and `budget` else: by default the largest that every arm has."""
+    metric = ALIASES.get(metric, metric)
     costs = Costs(r, against, r.s if s is None else s)
     if against == "n" and budget is not None or against != "n" and n is not None:
         raise TypeError(f"against is {against!r}: expected {'n=' if against == 'n' else 'budget='}, the amount of it")

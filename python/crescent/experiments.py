@@ -554,7 +554,7 @@ def _field(column: str, text: str, meter: str) -> Any:
 def run(
     experiment: Experiment | str | PathLike[str],
     *,
-    seeds: tuple[int, int] = (1, 0),
+    seeds: int | tuple[int, int] = (1, 0),
     threads: int = 0,
     isa: str = "",
     studies: bool = False,
@@ -570,7 +570,8 @@ def run(
     :attr:`Measured.times`, which are medians. Ctrl-C raises :class:`RunInterrupted`, a KeyboardInterrupt whose `result`
     has the seeds that are complete; with `out` it is written there.
 
-    `seeds`: the first and last of its series, from 1; 0: to the end. `studies`: tails, furnaces and evidence too.
+    `seeds`: the number of seeds, in place of the experiment's, as in :func:`sweep` and ``--seeds``; or the first and last
+    of its series, from 1, as in ``--seed-range``; 0: to the end. `studies`: tails, furnaces and evidence too.
     `out`: a folder for metrics and films. Films have the same bits for any `threads` and `isa`.
 
     Each sampler of ``e.samplers`` is an arm of its name, at the sample counts of the other arms. What it raises is
@@ -580,8 +581,13 @@ def run(
     e = experiment if isinstance(experiment, Experiment) else load(experiment)
     if not code:
         _crescent.refuse_code(e._core)
+    if isinstance(seeds, (int, np.integer)):
+        e = e.with_(seeds=whole("seeds", seeds, 1, 4096, "expected a number of seeds, 1 to 4096"))
+        seeds = (1, 0)
     if len(np.shape(seeds)) != 1 or len(seeds) != 2:
-        raise ValueError(f"seeds is {seeds!r}: expected the first and the last of the series, (1, 0) for all")
+        raise ValueError(
+            f"seeds is {seeds!r}: expected a number of seeds, or the first and the last of the series, (1, 0) for all"
+        )
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
     with_arms = e._with_arms()
     repeats = whole("repeats", repeats, 1, 1000, "expected how often each arm is run")

@@ -25,7 +25,7 @@ from ._arrays import channels
 from ._cost import Against, Costs
 from ._html import tone
 from ._intervals import differ, fitted_slope, half_width, t_of
-from ._metric_names import LARGEST_IS_BEST, NAMES, RADIANCE, UNITS
+from ._metric_names import ALIASES, LARGEST_IS_BEST, NAMES, RADIANCE, UNITS
 from ._values import arms_of, compared_at, film_at, heavy_arms, only_region, values_of, with_interval
 
 if TYPE_CHECKING:
@@ -138,6 +138,7 @@ def _look(
 
 def _label(metric: str, region: str) -> str:
     """The name of a metric with its unit, in a second line if it is long."""
+    metric = ALIASES.get(metric, metric)
     name, unit = NAMES.get(metric, metric) + (f", region {region}" if region else ""), UNITS.get(metric, "")
     return name + (f"{chr(10) if len(name) > 22 else ' '}[{unit}]" if unit else "")
 

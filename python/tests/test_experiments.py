@@ -133,11 +133,17 @@ def test_tables_are_set_and_taken_out():
 
 
 @pytest.mark.parametrize(
-    "known, said", [({"seeds": 3}, "seeds is 3"), ({"seeds": (1,)}, "first and the last"), ({"threads": -1}, "threads")]
+    "known, said", [({"seeds": 0}, "seeds is 0"), ({"seeds": (1,)}, "first and the last"), ({"threads": -1}, "threads")]
 )
 def test_what_run_cannot_do_is_a_value_error(known, said):
     with pytest.raises(ValueError, match=said):
         crescent.run(crescent.parse(TINY), **known)
+
+
+def test_a_number_of_seeds_is_that_of_the_experiment(measured):
+    three = crescent.run(crescent.parse(TINY), seeds=3)
+    assert len({row["seed"] for row in three.records()}) == 3 == three.metrics["bands"][0]["seeds"]
+    assert crescent.run(crescent.parse(TINY), seeds=2).records() == measured.records()
 
 
 def test_films_are_the_memory_of_the_run(measured):

@@ -237,3 +237,35 @@ def test_set_changes_every_point(tmp_path):
 
     table = read(tmp_path / "o").to_pandas()
     assert set(table[table.arm == "cosine"].n) == {8} and set(table[(table.arm == "phong") & (table.s < 20)].n) == {4}
+
+
+class Power:
+    """A sampler whose attribute decides what it draws."""
+
+    def __init__(self, k):
+        self.k = k
+
+    def sample(self, wo, u):
+        z = u[:, 0] ** (1 / (self.k + 1))
+        r, phi = np.sqrt(1 - z * z), 2 * np.pi * u[:, 1]
+        return np.stack([r * np.cos(phi), r * np.sin(phi), z], -1), (self.k + 1) / (2 * np.pi) * z**self.k
+
+
+def test_attributes_of_samplers_are_swept(tmp_path):
+    e = crescent.parse(TINY)
+    power = Power(1.0)
+    e.samplers["power"] = power.sample
+    made = crescent.sweep(e, over={"samplers.power.k": [1.0, 3.0]}, out=tmp_path / "out", workers=1, verify=0, seeds=1)
+    assert not made.failed and power.k == 1.0
+    rows = [r for r in made.to_arrow().to_pylist() if r["metric"] == "rmse" and r["arm"] == "power" and r["n"] == 16]
+    swept = {r["samplers.power.k"]: r["value"] for r in rows}
+    for k, value in swept.items():
+        e.samplers["power"] = Power(k).sample
+        (row,) = [r for r in crescent.run(e, seeds=1).records() if value == r["value"]]
+        assert (row["arm"], row["n"]) == ("power", 16)
+    assert len(set(swept.values())) == 2
+    again = crescent.sweep(e, over={"samplers.power.k": [1.0, 3.0]}, out=tmp_path / "out", workers=1, verify=0, seeds=1)
+    assert again.computed == 0
+    for path, said in (("samplers.powr.k", "did you mean 'power'"), ("samplers.power.kk", "no attribute 'kk'")):
+        with pytest.raises(ValueError, match=said):
+            crescent.sweep(e, over={path: [1.0]}, out=tmp_path / "other", workers=1)

@@ -30,7 +30,7 @@ from .state import state_of, unhashable_in
 
 NUMERICS = f"{_crescent.version} {_crescent.commit}"  #: version of the numerics: equal builds give equal bits
 NOT_OF_THE_SCENE = (
-    "title", "seeds", "n", "exposure", "published", "note_evidence", "arms", "plates", "assertions", "furnaces",
+    "title", "seeds", "n", "exposure", "published", "note_evidence", "arms", "plates", "assertions", "furnaces", "samplers",
 )  # fmt: skip
 _NOT_OF_THE_REFERENCE = ("regions", "firefly_k", "flip_seeds")
 

@@ -16,6 +16,7 @@ from typing import Any
 from .._paths import found as found_at
 from .._paths import lines, overrides
 from ..experiments import Experiment, parse
+from .attributes import of_samplers, with_attributes
 from .engines import InProcess, Job
 from .grid import label
 from .identity import NOT_OF_THE_SCENE, NUMERICS, Arm, arms_of, digest, reference_id, scene_id
@@ -96,9 +97,11 @@ def points_of(
     bad: dict[str, str] = {}
     for at in values:
         try:
-            e = base.with_({**at, "seeds": seeds})
+            attributes = of_samplers(at)
+            keys = {path: value for path, value in at.items() if path not in attributes} | {"seeds": seeds}
+            e = with_attributes(base.with_(keys), attributes)
             with_arms = e._with_arms()
-            changes = overrides({**at, "seeds": seeds})
+            changes = overrides(keys)
             point = Point(
                 dict(at), with_arms, changes, scene_id(with_arms), reference_id(with_arms), arms_of(e, versions)
             )
