@@ -87,7 +87,15 @@ class Costs:
         """An amount with its name."""
         if self.against == "n":
             return f"N = {cost:g}"
-        return f"{seconds_text(cost)}" if self.against == "time" else f"{cost:.3g} rays"
+        return seconds_text(cost) if self.against == "time" else f"{cost:.3g} ray{'s' * (cost != 1)}"
+
+
+def seconds_a_sample(r: Measured, arm: str, s: float) -> float:
+    """Wall-clock seconds of one sample of one pixel: the median over seeds."""
+    found = [t / m for a, _, at, m, t in r._core.times if a == arm and at == s and m > 0]
+    if not found:
+        raise KeyError(f"no time of {arm} at s = {s:g}: results of crescent.run have times, and folders of them")
+    return float(np.median(found))
 
 
 def seconds_text(seconds: float) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._cost import seconds_a_sample
 from ._intervals import Values, half_width, rounded
 from ._metric_names import ALIASES
 
@@ -54,14 +55,6 @@ def _values(result: Measured, meter: str, arm: str, n: int, region: str, s: floa
     return np.array([r["value"] for r in rows], float)
 
 
-def _seconds_a_sample(result: Measured, arm: str, s: float) -> float:
-    """Wall-clock seconds per sample of all pixels: the median over seeds."""
-    found = [t / m for a, _, at_s, m, t in result._core.times if a == arm and at_s == s and m > 0]
-    if not found:
-        raise KeyError(f"no time of {arm} at s = {s:g}: a result that was joined, copied or pickled has none")
-    return float(np.median(found))
-
-
 def _flip(result: Measured, arm: str, n: int, region: str, s: float) -> Values:
     """The mean of FLIP over the frame, or a region that the run did not measure, of the films of the first seed."""
     from . import _crescent
@@ -83,7 +76,7 @@ def summary(result: Measured, metric: str, arm: str, n: int, region: str, s: flo
     elif metric == "efficiency_n":
         values = 1 / (_values(result, "var", arm, n, region, s) * n)
     elif metric == "efficiency_time":
-        values = 1 / (_values(result, "var", arm, n, region, s) * n * _seconds_a_sample(result, arm, s))
+        values = 1 / (_values(result, "var", arm, n, region, s) * n * seconds_a_sample(result, arm, s))
     else:
         values = _values(result, metric, arm, n, region, s)
     return Summary(metric, arm, n, region, tuple(float(v) for v in values), heavy)

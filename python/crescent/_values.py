@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._cost import Costs, at_cost, budget_of
+from ._cost import Costs, at_cost, budget_of, seconds_a_sample
 from ._intervals import best_of, half_width, rounded
 from ._metric_names import ALIASES, LARGEST_IS_BEST, RANKED
 
@@ -33,13 +33,13 @@ def values_of(r: Measured, metric: str, region: str, s: float | None) -> dict[st
     at = r.s if s is None else s
     metric = ALIASES.get(metric, metric)
     if metric in LARGEST_IS_BEST:
-        costs = Costs(r, "n" if metric == "efficiency_n" else "time", at)
-        var = values_of(r, "var", region, s)
-        return {
-            arm: {n: [1 / (v * costs.of(arm, n)) for v in over] for n, over in of.items() if min(over) > 0}
-            for arm, of in var.items()
-            if costs.knows(arm) and any(min(over) > 0 for over in of.values())
+        of_arms = values_of(r, "var", region, s)
+        cost = {arm: 1.0 if metric == "efficiency_n" else seconds_a_sample(r, arm, at) for arm in of_arms}
+        found = {
+            arm: {n: [1 / (v * n * cost[arm]) for v in over] for n, over in of.items() if min(over) > 0}
+            for arm, of in of_arms.items()
         }
+        return {arm: of for arm, of in found.items() if of}
     rows = r.records()
     out: dict[str, dict[int, list[float]]] = {}
     for row in rows:

@@ -317,6 +317,8 @@ def bars(
             ax.set_xlim(left=0)
         ax.grid(True, axis="x")
         _room_for_texts(ax)
+        if log:
+            _log_ticks(ax.xaxis, 5)
     return ax
 
 

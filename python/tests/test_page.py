@@ -12,7 +12,7 @@ import crescent  # noqa: E402
 from crescent import plot  # noqa: E402
 from crescent._intervals import _p_values, differ, rounded, t_of, t_quantile  # noqa: E402
 from crescent._tables import latex  # noqa: E402
-from crescent._values import best_in, compared_at  # noqa: E402
+from crescent._values import best_in, compared_at, values_of  # noqa: E402
 from tiny import TINY  # noqa: E402
 
 METRIC = "meter"
@@ -131,6 +131,8 @@ def test_a_table_at_equal_time_has_every_arm_and_says_how_it_was_measured(nine):
     text = nine.to_latex("rmse", against="time", arms=["cosine", "candidates"], labels={"candidates": "RIS & Co"})
     assert "RIS \\& Co" in text and f"{nine.threads} threads" in text and " -- " not in text
     assert len([line for line in text.splitlines() if line.endswith(r"\\")]) == 4
+    values = values_of(nine, "efficiency_time", "ball", None)["cosine"][16]
+    np.testing.assert_allclose(values, nine.metric("efficiency_time", "cosine", 16, "ball").values)
     assert nine.to_latex("relmse") == nine.to_latex("rel_mse")
     assert plot.bars(nine, "relmse").get_xlabel().startswith("relMSE, region ball at N")
     assert nine.to_latex("efficiency_time", against="n").count("efficiency at equal time") == 1

@@ -37,18 +37,19 @@ def _column(values: Sequence[Any]) -> Any:
 
 
 def _at_equal_time(rows: Sequence[Mapping[str, str]], times: Sequence[Sequence[Any]]) -> list[dict[str, str]]:
-    """Rows with the seconds of N samples on one thread, the median over the seeds of the result, and the efficiency at
-    equal time, 1 / (variance times seconds)."""
+    """Rows with the seconds of N samples of all pixels on one thread, the median over the seeds of the result, and the
+    efficiency at equal time, 1 / (variance times seconds of a pixel)."""
     out: list[dict[str, str]] = []
     for s in {float(row[2]) for row in times}:
         seconds = statistics.median(row[4] / row[1] for row in times if float(row[2]) == s)
+        a_sample = statistics.median(row[4] / row[3] for row in times if float(row[2]) == s)
         of_s = [row for row in rows if row["s"] and float(row["s"]) == s]
         for n, seed in dict.fromkeys((row["n"], row["seed"]) for row in of_s):
             first = next(row for row in of_s if (row["n"], row["seed"]) == (n, seed))
             out.append({**first, "meter": "seconds", "region": "", "value": repr(seconds * int(n))})
         for row in of_s:
             if row["meter"] == "var" and row["value"] and float(row["value"]) > 0:
-                value = 1 / (float(row["value"]) * seconds * int(row["n"]))
+                value = 1 / (float(row["value"]) * a_sample * int(row["n"]))
                 out.append({**row, "meter": "efficiency_time", "value": repr(value)})
     return out
 
