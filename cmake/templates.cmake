@@ -10,14 +10,14 @@ if(CMAKE_SCRIPT_MODE_FILE)
   file(WRITE ${OUTPUT} "// Made by cmake/templates.cmake from the templates of src/${NAME}.
 #include \"output/templates.h\"
 
-namespace crescent::inline output {
+namespace crescent {
 
 static constexpr Template all[] = {
 ${entries}};
 
 Templates ${NAME}_templates() { return all; }
 
-}  // namespace crescent::inline output
+}  // namespace crescent
 ")
   return()
 endif()

@@ -1,7 +1,7 @@
 // Ctrl-C and SIGTERM.
 #pragma once
 
-namespace crescent::inline base {
+namespace crescent {
 class ProgressMonitor;
 }
 

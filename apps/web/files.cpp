@@ -88,7 +88,7 @@ CRESCENT_EXPORT(experiment_of_files)()->void {
 
 }  // namespace crescent::web
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 std::shared_ptr<const MeshPack> mesh_in_file(const std::string& path) { return web::given(web::meshes, path, ".mesh"); }
 std::shared_ptr<const RgbImage> sky_in_file(const std::string& path) { return web::image(path, why_no_sky_of); }
@@ -99,4 +99,4 @@ std::string read_input(const std::string& path, std::size_t /*limit*/, std::stri
 bool leads_out(const std::string& /*folder*/, const std::string& /*path*/) { return false; }
 std::shared_ptr<const RgbImage> texture_in_file(const std::string& path) { return web::image(path, why_no_texture_of); }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include <cctype>
 #include <numeric>
 
-namespace crescent::inline base {
+namespace crescent {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::string nearest(std::string_view word, const std::vector<std::string>& valid
     return best;
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent

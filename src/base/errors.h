@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline base {
+namespace crescent {
 
 /// The place of a value: file, line and column, both counted from 1 (0: unknown).
 struct SourceLocation {
@@ -63,4 +63,4 @@ inline void ensure(
 /// Returns the word of `valid` nearest to `word` by edit distance, "" if none is near.
 std::string nearest(std::string_view word, const std::vector<std::string>& valid);
 
-}  // namespace crescent::inline base
+}  // namespace crescent

@@ -19,7 +19,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline base {
+namespace crescent {
 
 namespace fs = std::filesystem;
 
@@ -486,4 +486,4 @@ bool Staging::keep_aside(const Path& from, const Path& name) {
     return true;
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent

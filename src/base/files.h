@@ -27,7 +27,7 @@
 
 #include "base/progress.h"
 
-namespace crescent::inline base {
+namespace crescent {
 
 /// A folder of unfinished outputs. Nothing appears under a final name before commit(). Throws OutputError if something
 /// cannot be written, or if another process is writing into the same folder.
@@ -103,4 +103,4 @@ void can_write(const std::string& path);
 /// Writes `text` to a file next to `path` and renames it. Throws OutputError.
 void write_whole(const std::string& path, const std::string& text);
 
-}  // namespace crescent::inline base
+}  // namespace crescent

@@ -12,7 +12,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline base {
+namespace crescent {
 namespace files_test {
 
 namespace fs = std::filesystem;
@@ -319,4 +319,4 @@ TEST(WholeFiles, BelowDevShmAreFiles) {
 }
 
 }  // namespace files_test
-}  // namespace crescent::inline base
+}  // namespace crescent

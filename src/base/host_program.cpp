@@ -11,7 +11,7 @@
 #include <sys/auxv.h>
 #endif
 
-namespace crescent::inline base {
+namespace crescent {
 
 std::string host_program() {
     if (const char* given = std::getenv("CRESCENT_PLUGIN_HOST")) return given;
@@ -27,4 +27,4 @@ std::string host_program() {
     return std::filesystem::exists(host, unknown) ? host.string() : host_program_name;
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent

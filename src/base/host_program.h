@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace crescent::inline base {
+namespace crescent {
 
 /// Its name where it is a program of its own, next to a library that contains this code (the Python module).
 inline constexpr const char* host_program_name = "crescent-plugin-host";
@@ -12,4 +12,4 @@ inline constexpr const char* host_program_name = "crescent-plugin-host";
 /// it, or one in PATH. CRESCENT_PLUGIN_HOST overrides it. What it does depends on its first argument.
 std::string host_program();
 
-}  // namespace crescent::inline base
+}  // namespace crescent

@@ -9,7 +9,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline base {
+namespace crescent {
 
 bool is_named_pipe(const std::string& path) {
     std::error_code ignored;
@@ -60,4 +60,4 @@ bool read_line(std::istream& file, std::string& text, std::size_t limit) {
     return true;
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent

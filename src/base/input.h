@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace crescent::inline base {
+namespace crescent {
 
 bool is_named_pipe(const std::string& path);
 
@@ -22,4 +22,4 @@ std::string read_input(const std::string& path, std::size_t limit, std::string_v
 /// that is longer.
 bool read_line(std::istream& file, std::string& text, std::size_t limit);
 
-}  // namespace crescent::inline base
+}  // namespace crescent

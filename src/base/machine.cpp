@@ -21,7 +21,7 @@
 
 #include "base/files.h"
 
-namespace crescent::inline base {
+namespace crescent {
 
 namespace {
 
@@ -167,4 +167,4 @@ Usage usage() {
     return out;
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace crescent::inline base {
+namespace crescent {
 
 /// Returns the number of processors that this process may run on, limited by the quota of its control groups; at least
 /// 1.
@@ -36,4 +36,4 @@ std::string shared_file(const std::string& name);
 double granted_processors(const std::string& root, const std::string& own);     // 0: no limit
 std::uint64_t granted_memory(const std::string& root, const std::string& own);  // ~0: no limit
 
-}  // namespace crescent::inline base
+}  // namespace crescent

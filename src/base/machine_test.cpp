@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace crescent::inline base {
+namespace crescent {
 namespace machine_test {
 
 namespace fs = std::filesystem;
@@ -62,4 +62,4 @@ TEST_F(Machines, BoundToOneProcessorUseOneThread) {
 }
 
 }  // namespace machine_test
-}  // namespace crescent::inline base
+}  // namespace crescent

@@ -11,7 +11,7 @@
 
 #include "base/text.h"
 
-namespace crescent::inline base {
+namespace crescent {
 
 namespace {
 
@@ -116,4 +116,4 @@ double npy_number(const NpyHeader& header, const char* at) {
     return header.bytes == 4 ? static_cast<double>(as<float>(header, at)) : as<double>(header, at);
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent

@@ -8,7 +8,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline base {
+namespace crescent {
 
 /// The longest header that is read.
 inline constexpr std::size_t longest_npy_header = 65536 + 12;
@@ -28,4 +28,4 @@ NpyHeader read_npy_header(const std::string& path, std::string_view first_bytes)
 /// Returns the float in the file's bytes.
 double npy_number(const NpyHeader& header, const char* at);
 
-}  // namespace crescent::inline base
+}  // namespace crescent

@@ -15,7 +15,7 @@
 #include <mutex>
 #endif
 
-namespace crescent::inline base {
+namespace crescent {
 
 #ifndef CRESCENT_NO_THREADS
 
@@ -96,4 +96,4 @@ template <class Work> void for_each_index(bool serial, std::size_t count, const 
     for (std::size_t i = 0; i < count; ++i) work(i);
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent

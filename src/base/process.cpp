@@ -27,7 +27,7 @@
 #include "base/errors.h"
 #include "base/text.h"
 
-namespace crescent::inline base {
+namespace crescent {
 
 namespace {
 
@@ -357,4 +357,4 @@ void Process::finish_line() {
     if (!line_.empty()) print_line(std::exchange(line_, ""));
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent

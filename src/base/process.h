@@ -12,7 +12,7 @@
 
 #include "base/progress.h"
 
-namespace crescent::inline base {
+namespace crescent {
 
 /// What to start, and its streams.
 struct ProcessPlan {
@@ -80,4 +80,4 @@ private:
     std::optional<ProcessEnd> ended_;
 };
 
-}  // namespace crescent::inline base
+}  // namespace crescent

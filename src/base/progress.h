@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 
-namespace crescent::inline base {
+namespace crescent {
 
 /// A stop was requested (Ctrl-C, SIGTERM): exit code 130, nothing half-written.
 struct Interrupted : std::exception {
@@ -102,4 +102,4 @@ private:
     Clock::time_point start_ = Clock::now();
 };
 
-}  // namespace crescent::inline base
+}  // namespace crescent

@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline base {
+namespace crescent {
 namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
@@ -117,4 +117,4 @@ std::string expected_one_of(const std::vector<std::string>& valid, std::string_v
     return "expected one of " + all + ", not '" + printable(std::string(word)) + "'" + did_you_mean(word, valid);
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent

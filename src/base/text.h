@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline base {
+namespace crescent {
 
 /// Escapes for XML and XHTML-compatible HTML: & < > " ' as references; control characters that XML 1.0 forbids, and
 /// invalid UTF-8, as U+FFFD.
@@ -30,4 +30,4 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 /// from `word`.
 std::string expected_one_of(const std::vector<std::string>& valid, std::string_view word);
 
-}  // namespace crescent::inline base
+}  // namespace crescent

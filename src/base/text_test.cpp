@@ -9,7 +9,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline base {
+namespace crescent {
 namespace text_test {
 
 TEST(Text, NothingThatMovesACursorIsPrinted) {
@@ -71,4 +71,4 @@ TEST(Hints, ListTheExpectedWordsAndTheNearest) {
 }
 
 }  // namespace text_test
-}  // namespace crescent::inline base
+}  // namespace crescent

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace crescent::inline base {
+namespace crescent {
 
 template <class F> struct Vec2 {
     F x, y;
@@ -54,11 +54,11 @@ template <class F> constexpr Vec3<F> as(Vec3d v) {
     return {static_cast<F>(v.x), static_cast<F>(v.y), static_cast<F>(v.z)};
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent
 
 // ---- A colour: three numbers of linear Rec.709, and its luminance.
 
-namespace crescent::inline output {
+namespace crescent {
 
 using Rgb = std::array<double, 3>;  // linear Rec.709
 
@@ -69,4 +69,4 @@ template <class C> double luminance(const C& rgb) {
     return luminance_weights[0] * rgb[0] + luminance_weights[1] * rgb[1] + luminance_weights[2] * rgb[2];
 }
 
-}  // namespace crescent::inline output
+}  // namespace crescent

@@ -13,7 +13,7 @@
 #include "base/errors.h"
 #include "base/text.h"
 
-namespace crescent::inline base {
+namespace crescent {
 
 namespace {
 
@@ -115,4 +115,4 @@ void write_whole(const std::string& path, const std::string& text) {
     close(file);
 }
 
-}  // namespace crescent::inline base
+}  // namespace crescent

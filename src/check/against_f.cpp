@@ -163,7 +163,7 @@ struct WeightMoments {
     double n = 0, mean = 0, variance = 0, variance_se = 0;
     bool heavy = false;
     explicit WeightMoments(std::span<const double> x) {
-        const statistics::Spread s = statistics::spread(x);
+        const Spread s = crescent::spread(x);
         n = s.n, mean = s.mean, variance = sqr(s.sd);
         double m4 = 0;
         for (double v : x) m4 += sqr(sqr(v - s.mean)) / n;

@@ -12,7 +12,7 @@
 #include "check/sources/sampler_adapter.h"
 #include "check/verdict.h"
 
-namespace crescent::inline results {
+namespace crescent {
 
 // ---- The names of states, and the state of all verdicts of a call: wrong before error, error before inconclusive.
 
@@ -44,10 +44,6 @@ void next_step(CheckResult& j) {
     }
     j.state = wrong ? State::wrong : error ? State::error : doubt ? State::inconclusive : State::right;
 }
-
-}  // namespace crescent::inline results
-
-namespace crescent {
 
 namespace {
 

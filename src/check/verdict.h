@@ -27,7 +27,7 @@
     verdict(efficiency, "how large is variance times cost, against uniform and cosine sampling?")
 // clang-format on
 
-namespace crescent::inline results {
+namespace crescent {
 
 #define CRESCENT_NAME(verdict, question) std::string_view(#verdict),
 inline constexpr std::array verdict_names = {CRESCENT_VERDICTS(CRESCENT_NAME)};
@@ -174,4 +174,4 @@ void check_waivers(std::span<const Waiver> waivers, std::span<const std::string>
 /// Excludes waived verdicts from the state of the result, and lists waivers that no verdict meets.
 void waive(CheckResult& result, std::span<const Waiver> waivers);
 
-}  // namespace crescent::inline results
+}  // namespace crescent

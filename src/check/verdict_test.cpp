@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace crescent::inline results {
+namespace crescent {
 namespace verdict_test {
 
 CheckResult of(const std::vector<State>& states) {
@@ -56,4 +56,4 @@ TEST(VerdictNames, AreDifferentAndHaveAQuestion) {
 }
 
 }  // namespace verdict_test
-}  // namespace crescent::inline results
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "base/input.h"
 #include "base/text.h"
 
-namespace crescent::inline results {
+namespace crescent {
 
 namespace {
 
@@ -112,4 +112,4 @@ void waive(CheckResult& j, std::span<const Waiver> waivers) {
     next_step(j);
 }
 
-}  // namespace crescent::inline results
+}  // namespace crescent

@@ -11,7 +11,7 @@
 
 #include "math/functions.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -42,4 +42,4 @@ double look_factor(unsigned look) {
     return k * k / 6;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -2,7 +2,7 @@
 // cheating.
 #pragma once
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// Returns p of a t statistic with `df` degrees of freedom that is computed again as renders are added: the probability
 /// that it is ever at most x is at most x. `information`: the variance of one render over that of the estimate, which
@@ -16,4 +16,4 @@ double anytime_quantile(double p, double df, double information);
 /// because the sum of 6 / (pi k)^2 over k is 1.
 double look_factor(unsigned look);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -18,7 +18,7 @@
 #include "compare/outputs.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // Tests of each pixel, defined below.
 
@@ -583,4 +583,4 @@ double test_pixels(std::span<const BiasPair> sides, const BiasLevel& levels, Bia
     return simes_p(p, static_cast<double>(out.pixels_tested), s.dependent);
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "compare/plan.h"
 #include "tests/support/memory_renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace bias_test {
 
 using ::testing::ElementsAre;
@@ -279,4 +279,4 @@ TEST(Identical, OneFilePerSideIsDescribedAndInconclusive) {
 }
 
 }  // namespace bias_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "output/format.h"
 #include "report/plates/canvas.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- Metrics, tests and the state that follows from them.
 
@@ -181,4 +181,4 @@ CompareResult compare_renders(const ComparePlan& plan, const CompareOptions& opt
     return result;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

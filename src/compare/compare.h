@@ -7,7 +7,7 @@
 #include "compare/plan.h"
 #include "compare/results.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- From RenderStats to results: the steps of compare_renders(), each usable alone.
 
@@ -84,4 +84,4 @@ CompareResult compare_renders(const ComparePlan& plan, const CompareOptions& opt
 std::string compare_sarif(
     const ComparePlan& plan, const CompareResult& result, const std::string& file, const Provenance& provenance);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

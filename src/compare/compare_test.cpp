@@ -11,7 +11,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/written_exr.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace compare_test {
 
 using ::testing::HasSubstr;
@@ -99,4 +99,4 @@ TEST_F(CompareFiles, AllOutputsAppearAtOnce) {
 }
 
 }  // namespace compare_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

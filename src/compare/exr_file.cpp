@@ -8,7 +8,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -276,4 +276,4 @@ void ExrChunks::each(const std::function<void(const PixelWindow&, std::span<cons
     });
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

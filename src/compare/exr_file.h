@@ -16,7 +16,7 @@
 #include "base/vec.h"
 #include "compare/open_file.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- Colours with primaries other than Rec.709: RGB to CIE XYZ and back from the chromaticities of a file, and from
 // one set of primaries to another. White points are adapted by Bradford's transform (Lam 1985), as in ICC profiles.
@@ -137,4 +137,4 @@ private:
     std::int64_t across_ = 1, count_ = 0;
 };
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

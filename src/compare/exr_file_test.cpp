@@ -20,7 +20,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/written_exr.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace exr_file_test {
 
@@ -320,4 +320,4 @@ TEST(Primaries, DegeneratePrimariesAreNotValid) {
 
 }  // namespace exr_file_test
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "base/errors.h"
 #include "base/text.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- Channels by the names that renderers use: pbrt-v4's RelativeVariance layer, Mitsuba's m2_ moments, layers that
 // end in variance, error or stddev, channels with sample counts. The deviations of R, G and B of a pixel are added, not
@@ -331,4 +331,4 @@ std::string alpha_of(const ExrPart& part, const ExrLayer& layer) {
     return "";
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "compare/exr_file.h"
 #include "compare/renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- Data of OpenEXR files next to radiance: variances, samples, times.
 
@@ -68,4 +68,4 @@ ExrLayer layer_of_channel(const ExrFile& file, const std::string& path, const st
 /// Returns the alpha channel of a layer; "" if it has none.
 std::string alpha_of(const ExrPart& part, const ExrLayer& layer);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

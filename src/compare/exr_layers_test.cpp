@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace exr_layers_test {
 
 using ::testing::ElementsAre;
@@ -90,4 +90,4 @@ TEST(ExrAttributes, AreNumbersOrTimesOfAnyRenderer) {
 }
 
 }  // namespace exr_layers_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

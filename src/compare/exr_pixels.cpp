@@ -15,7 +15,7 @@
 #include "compare/exr_layers.h"
 #include "compare/exr_file.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -336,4 +336,4 @@ Matrix3 conversion(const Chromaticities& from, const Chromaticities& to) {
     return product(inverse(b), product(adaptation(transformed(a, white), transformed(b, white)), a));
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <sys/stat.h>
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -301,4 +301,4 @@ std::string pattern_in(const std::string& folder, const std::string& pattern) {
     return escape_pattern(folder) + (folder.ends_with('/') ? "" : "/") + pattern;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -11,7 +11,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// One piece of a pattern.
 struct PatternPiece {
@@ -61,4 +61,4 @@ std::string escape_pattern(const std::string& text);
 /// Returns the pattern below a folder, whose name is text; the pattern itself if it begins with '/'.
 std::string pattern_in(const std::string& folder, const std::string& pattern);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

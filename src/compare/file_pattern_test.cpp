@@ -11,7 +11,7 @@
 #include "compare/suite/suite.h"
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace file_pattern_test {
 
 using ::testing::ElementsAre;
@@ -106,4 +106,4 @@ TEST_F(FilePatterns, ManyWildcardsTakeLittleTime) {
 }
 
 }  // namespace file_pattern_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -8,7 +8,7 @@
 
 #include "math/statistics.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 void FileWarnings::add(
     const std::string& file, const std::string& text, std::uint64_t pixels, const std::string& kind) {
@@ -215,4 +215,4 @@ std::string places_of(const FailingPixels& failing, int width) {
     return out;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -7,7 +7,7 @@
 
 #include "compare/renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 class FileWarnings {
 public:
@@ -68,4 +68,4 @@ NonFinite compare_non_finite(const RenderStats& all, const ArmStats& a, const Ar
 /// Returns "(3, 4), (5, 4), ... within x 3–9 y 4–7".
 std::string places_of(const FailingPixels& failing, int width);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace file_warnings_test {
 
 using ::testing::ElementsAre;
@@ -99,4 +99,4 @@ TEST(NonFiniteCounts, OfGroupsShowScatteredFailures) {
 }
 
 }  // namespace file_warnings_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -25,7 +25,7 @@
 #include "math/functions.h"
 #include "output/tone_map.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -381,4 +381,4 @@ Render read_image(const OpenFile& file, const ReadingOptions& options) {
     return render_of(file, decoded(file), options);
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

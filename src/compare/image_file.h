@@ -6,7 +6,7 @@
 
 #include "compare/open_file.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 struct Render;
 
@@ -46,4 +46,4 @@ bool is_image(const OpenFile& file, std::string_view first);
 /// Reads it. Throws InputError.
 Render read_image(const OpenFile& file, const ReadingOptions& options);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

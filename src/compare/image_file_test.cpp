@@ -20,7 +20,7 @@
 #include "tests/support/memory_renders.h"
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace image_file_test {
 
@@ -228,4 +228,4 @@ TEST(Clipping, IsStatedWithItsShare) {
 
 }  // namespace image_file_test
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

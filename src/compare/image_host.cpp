@@ -34,7 +34,7 @@ namespace {
 #include <stb/stb_image.h>
 #undef pow
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 const char* const image_host_name = "crescent-image-host";
 
@@ -138,4 +138,4 @@ constexpr stbi_io_callbacks image_callbacks{ImageStream::read, ImageStream::skip
 
 }  // namespace
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// A program with this name as its first word decodes the file that is its descriptor 3 before main(), and exits.
 /// Not inline: a use of this name links the decoders.
@@ -22,4 +22,4 @@ struct ImageHead {
     std::uint32_t width = 0, height = 0, channels = 0, bytes = 0;
 };
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

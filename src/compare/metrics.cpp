@@ -17,7 +17,7 @@
 #include "metrics/flip.h"
 #include "output/tone_map.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -339,4 +339,4 @@ double MeanFilm::variance(std::size_t i, std::size_t quantity) const {
     return known ? static_cast<double>(stated_variance[i]) / static_cast<double>(count) : std::nan("");
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

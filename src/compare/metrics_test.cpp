@@ -6,7 +6,7 @@
 
 #include "tests/support/memory_renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace metrics_test {
 
 Render grey(std::vector<float> values) {
@@ -111,4 +111,4 @@ TEST(RegionMetrics, TailsDecideWhichMeansHaveIntervals) {
 }
 
 }  // namespace metrics_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

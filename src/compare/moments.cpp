@@ -21,7 +21,7 @@
 #include "math/statistics.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -181,4 +181,4 @@ void write_moments(const std::string& path, const RenderStats& all, std::size_t 
     } catch (const std::exception& e) { throw OutputError(fmt::format("cannot write {}: {}", path, e.what())); }
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "compare/open_file.h"
 #include "experiment/experiment.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 inline constexpr const char* moments_format = "crescent moments 1";
 inline constexpr const char* moments_text = "baseline.moments";  // name of the attribute with JSON
@@ -38,4 +38,4 @@ struct MomentsText {
 /// Reads the text: types and ranges are checked for an image of this size. Throws InputError with the file and the key.
 MomentsText parse_moments_text(const std::string& text, const std::string& file, int width, int height);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

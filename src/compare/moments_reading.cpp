@@ -14,11 +14,9 @@
 #include "compare/renders.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
-
-using output::Json;
 
 constexpr std::size_t longest_text = std::size_t{1} << 20, regions_most = 4096;
 constexpr int deepest = 8;  // the text has four levels
@@ -364,4 +362,4 @@ void read_moments_regions(const std::string& path, const ComparePlan& plan, cons
     for (std::size_t q = 0; q < all.quantities; ++q) read_tiles(file, all, q, q < stored ? q : 0, to);
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

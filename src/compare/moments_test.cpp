@@ -8,7 +8,7 @@
 #include "tests/support/memory_renders.h"
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace moments_test {
 
 class MomentFiles : public ScratchFolder {
@@ -124,4 +124,4 @@ TEST_F(MomentFiles, DamagedFilesAreRefusedOrGiveFiniteNumbers) {
 }
 
 }  // namespace moments_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -18,7 +18,7 @@
 #include "math/statistics.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -447,4 +447,4 @@ const char* to_string(NoiseColour colour) {
     return "unknown";
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

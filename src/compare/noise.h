@@ -12,7 +12,7 @@
 #include "compare/renders.h"
 #include "experiment/experiment.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- Renders of two sides with the same random numbers: their residuals, each from the mean of its own side, are
 // correlated. Such renders are best compared in pairs.
@@ -78,4 +78,4 @@ bool sharper_in_pairs(const std::vector<SeedPair>& shared, const ArmStats& a, co
 PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b,
     std::vector<RenderPair> pairs, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

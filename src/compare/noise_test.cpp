@@ -10,7 +10,7 @@
 #include "compare/compare.h"
 #include "tests/support/synthetic_renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace noise_test {
 
 using Pairs = std::vector<RenderPair>;
@@ -191,4 +191,4 @@ TEST(Spectrum, BlueNoiseHasItsPowerAtHighFrequencies) {
 }
 
 }  // namespace noise_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

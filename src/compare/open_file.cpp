@@ -11,7 +11,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- Lines of the first 64 KiB of a file.
 
@@ -126,4 +126,4 @@ void OpenFile::expect_unchanged() const {
     if (::fstat(file_, &s) || state_of(s) != state_) fail("the file was changed while it was read");
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

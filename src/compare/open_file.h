@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- Rectangles of pixels as in files: both ends inclusive, y from the top down (OpenEXR's windows).
 
@@ -101,4 +101,4 @@ template <class T> bool parse_number(std::string_view text, T& to) {
     return error == std::errc{} && end == text.data() + text.size();
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -8,7 +8,7 @@
 
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace open_file_test {
 
 using ::testing::ElementsAre;
@@ -70,4 +70,4 @@ TEST(HeaderText, IsSplitAndParsedAsAWhole) {
 }
 
 }  // namespace open_file_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

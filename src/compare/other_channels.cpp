@@ -10,7 +10,7 @@
 #include "compare/exr_file.h"
 #include "compare/renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::string differing_channels(const std::string& a, const std::string& b, const
     return out;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -13,7 +13,7 @@
 #include "compare/renders.h"
 #include "math/statistics.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -272,4 +272,4 @@ std::optional<OutlierRender> outlier_render(const RenderStats& all) {
     return out;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -12,7 +12,7 @@
 
 #include "base/progress.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 struct RenderStats;
 
@@ -59,4 +59,4 @@ struct OutlierRender {
 /// independent tiles it is smaller.
 std::optional<OutlierRender> outlier_render(const RenderStats& all);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "compare/renders.h"
 #include "tests/support/synthetic_renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace outliers_test {
 
 using ::testing::ElementsAre;
@@ -146,4 +146,4 @@ TEST(Outliers, TwoRendersOfEachSideHaveNoOutlierRender) {
 }
 
 }  // namespace outliers_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "compare/plan.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -286,4 +286,4 @@ std::string compare_summary(
     return out + "\n" + out_dir + "/report.html has all results.\n";
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -14,7 +14,7 @@
 #include "report/plates/sheet.h"
 #include "report/report.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- The two sides of a test of the means of one quantity: an arm, and another arm or the reference; and their noise.
 // If renders are paired, it is the noise of their differences.
@@ -110,7 +110,7 @@ private:
 /// smooth.
 double roughness(const RenderStats& all, const ArmStats& arm, const PixelSet& set);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent
 
 // ---- Pictures of a comparison, by file name without .png.
 
@@ -145,7 +145,7 @@ std::function<Srgb8(double)> signed_colours(Theme theme);
 
 }  // namespace crescent::plates
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// Returns the plates renders, errors, ladders, bias-A-B and noise-A-B that have data. Throws OutputError without the
 /// font.
@@ -161,10 +161,6 @@ Picture noise_plate(const RenderStats& all, const NoiseResult& noise, Theme them
 Picture ladders_plate(const CompareResult& result, Theme theme);
 std::string ladders_svg(const CompareResult& result, Theme theme);
 
-}  // namespace crescent::inline comparison
-
-namespace crescent::inline comparison {
-
 /// docs/compare.schema.json describes it; equal inputs give equal bytes.
 std::string compare_json(
     const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const Provenance& provenance);
@@ -177,4 +173,4 @@ std::string compare_summary(
 std::string compare_html(const ComparePlan& plan, const RenderStats& all, const CompareResult& result,
     const Provenance& provenance, const std::map<std::string, std::vector<unsigned char>>& plates);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -9,7 +9,7 @@
 
 #include "tests/support/memory_renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace outputs_test {
 
 using ::testing::HasSubstr;
@@ -77,8 +77,8 @@ TEST(CompareJunit, HasACaseForEachClaim) {
 
 TEST(CompareSarif, HasAResultForEachClaimThatFails) {
     const Compared c({check("bright", "y_mean.frame(b) > 1"), check("dark", "y_mean.frame(b) < 1")});
-    const output::Json sarif = output::Json::parse(compare_sarif(c.plan, c.result, "compare.toml", {}));
-    const output::Json& run = sarif["runs"][0];
+    const Json sarif = Json::parse(compare_sarif(c.plan, c.result, "compare.toml", {}));
+    const Json& run = sarif["runs"][0];
     EXPECT_EQ(run["tool"]["driver"]["rules"].size(), 2u);
     ASSERT_EQ(run["results"].size(), 1u);
     EXPECT_EQ(run["results"][0]["ruleId"], "dark");
@@ -86,4 +86,4 @@ TEST(CompareSarif, HasAResultForEachClaimThatFails) {
 }
 
 }  // namespace outputs_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

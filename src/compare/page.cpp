@@ -12,7 +12,7 @@
 #include "output/charts.h"
 #include "output/templates.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -313,4 +313,4 @@ std::string compare_html(const ComparePlan& plan, const RenderStats& all, const 
     return render_page(compare_templates(), "compare.html", model);
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

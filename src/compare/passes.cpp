@@ -16,7 +16,7 @@
 #include "math/statistics.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 Tiles::Tiles(int width, int height) {
     const double wanted = std::sqrt(static_cast<double>(width) * height / 512);
@@ -427,4 +427,4 @@ void second_pass(const ComparePlan& plan, const RenderStats& all, const RenderSo
         for (const Largest& values : deviations[q]) arm.quantities[q].largest.push_back(values.falling());
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "compare/plan.h"
 #include "compare/renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- Converts renders so that they can be compared pixel by pixel: all in one window and in the primaries of the
 // first, with the same pixels each time they are read.
@@ -88,4 +88,4 @@ void each_render(const RenderSource& source, const std::vector<std::string>& pat
 void second_pass(const ComparePlan& plan, const RenderStats& all, const RenderSource& source, ArmStats& arm,
     const std::string& layer, const MeanFilm* reference, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

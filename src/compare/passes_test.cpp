@@ -9,7 +9,7 @@
 #include "tests/support/memory_renders.h"
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace passes_test {
 
 using ::testing::ElementsAre;
@@ -100,4 +100,4 @@ TEST_F(Patterns, MatchFilesByDigitsAndWildcards) {
 }
 
 }  // namespace passes_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "experiment/parser.h"
 #include "experiment/schema.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -306,4 +306,4 @@ std::string compare_schema_text() {
 
 std::string compare_schema_json() { return json_schema_of(compare_schema(), "crescent comparison"); }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

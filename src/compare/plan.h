@@ -15,7 +15,7 @@
 #include "experiment/schema.h"
 #include "output/tone_map.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// One arm: files of independent renders of the same view. `files` are paths or patterns (*, ?, [..], %d for digits).
 struct RenderArm {
@@ -103,4 +103,4 @@ const std::vector<QuantityWord>& compare_words();
 /// The region with every pixel; never the main result.
 inline constexpr const char* whole_frame = "frame";
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

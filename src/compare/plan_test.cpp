@@ -6,7 +6,7 @@
 
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace plan_test {
 
 using ::testing::AllOf;
@@ -88,4 +88,4 @@ TEST_F(ComparePlans, KeysThatContradictEachOtherAreRefused) {
 }
 
 }  // namespace plan_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

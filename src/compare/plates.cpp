@@ -98,7 +98,7 @@ std::function<Srgb8(double)> signed_colours(Theme theme) {
 
 }  // namespace crescent::plates
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -460,4 +460,4 @@ Picture noise_plate(const RenderStats& all, const NoiseResult& n, Theme theme) {
         fmt::format("tiles of {} × {} pixels, variance of one render over renders", all.tiles.size, all.tiles.size));
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

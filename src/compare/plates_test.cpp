@@ -8,7 +8,7 @@
 #include "tests/support/memory_renders.h"
 #include "tests/support/wellformed.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace plates_test {
 
 using ::testing::HasSubstr;
@@ -77,4 +77,4 @@ TEST(ComparePages, EscapeNamesAndListFiles) {
 }
 
 }  // namespace plates_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

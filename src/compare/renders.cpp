@@ -19,7 +19,7 @@
 #include "compare/plan.h"
 #include "output/tone_map.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 Render::Render(std::string path, int w, int h, Empty)
     : file(std::move(path)), width(w), height(h), data{0, 0, w - 1, h - 1}, display(data) {}
@@ -344,4 +344,4 @@ Render read_npy(const OpenFile& file) {
     return out;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

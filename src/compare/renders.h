@@ -22,7 +22,7 @@
 #include "compare/plan.h"
 #include "metrics/metrics.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- One render of another program, read from a file of a format below. Rows run bottom-up, pixel (i, j) is at j *
 // width + i, as in a Film. Units are those of the renderer; Y is the luminance for
@@ -279,4 +279,4 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
 /// Reads the results of the second pass; the regions of `all` must be among those of the file. Throws InputError.
 void read_moments_regions(const std::string& path, const ComparePlan& plan, const RenderStats& all, ArmStats& to);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

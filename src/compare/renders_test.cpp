@@ -18,7 +18,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/written_exr.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace renders_test {
 
@@ -341,4 +341,4 @@ TEST_F(Memory, VarianceOfOneSampleIsDividedByTheirNumber) {
 
 }  // namespace renders_test
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -15,7 +15,7 @@
 #include "math/statistics.h"
 #include "metrics/metrics.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 inline constexpr const char* the_reference = "the reference";
 inline constexpr double confidence = 0.95;     // of every interval
@@ -183,4 +183,4 @@ struct CompareResult {
     std::string sentence;  // describes the state
 };
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -15,7 +15,7 @@
 #include "math/simd/random.h"
 #include "math/statistics.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -192,4 +192,4 @@ std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, co
     return found;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -164,4 +164,4 @@ Render CommonView::read(const std::string& path, const std::string& layer) {
     return render;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/written_exr.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace view_test {
 
 using ::testing::AllOf;
@@ -201,4 +201,4 @@ TEST_F(Views, MasksApplyToTheImageRegardlessOfTheirOrigin) {
 }
 
 }  // namespace view_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

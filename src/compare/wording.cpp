@@ -18,7 +18,7 @@
 #include "math/statistics.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -539,4 +539,4 @@ std::vector<std::string> found_about_means(const CompareResult& result) {
     return out;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

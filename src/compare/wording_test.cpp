@@ -6,7 +6,7 @@
 #include "compare/outputs.h"
 #include "tests/support/memory_renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace wording_test {
 
 TEST(MeanAndError, OfOneValueHasNoError) {
@@ -105,4 +105,4 @@ TEST(Roughness, IsTheErrorOfAReferenceOfOneFile) {
 }
 
 }  // namespace wording_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

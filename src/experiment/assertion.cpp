@@ -9,7 +9,7 @@
 #include "experiment/parser.h"
 #include "render/film_metrics.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 std::string to_string(const ParsedQuantity& q) {
     if (q.number) return fmt::format("{}", *q.number);
@@ -275,4 +275,4 @@ void resolve_assertions(ParseContext& context) {
     }
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 /// One side of an assertion. n = 0: not given; s = 0: the experiment's own.
 struct ParsedQuantity {
@@ -62,4 +62,4 @@ std::optional<Comparison> parse_comparison(
 /// others. Returns the error in the names, "" if all of them will be measured.
 std::string resolve_quantity(ParsedQuantity& quantity, const Experiment& experiment);
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace crescent::inline experiment {
+namespace crescent {
 namespace assertion_test {
 
 TEST(Comparisons, HoldBelowAtOrAboveTheirBound) {
@@ -31,4 +31,4 @@ TEST(Comparisons, WithNoNumberNeverHold) {
 }
 
 }  // namespace assertion_test
-}  // namespace crescent::inline experiment
+}  // namespace crescent

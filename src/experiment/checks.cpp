@@ -14,7 +14,7 @@
 #include "experiment/input_files.h"
 #include "samplers/info.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -340,4 +340,4 @@ void check_names(ParseContext& context) {
     }
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

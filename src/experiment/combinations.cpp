@@ -16,7 +16,7 @@
 #include "samplers/info.h"
 #include "samplers/weight_formula.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -294,7 +294,7 @@ private:
 
     static FormulaInputs probe(const Material& material, std::uint32_t k, std::vector<double>& p) {
         const Surface m = surface_of(material, material.s.value_or(1));
-        const auto unit = [&](std::uint32_t i) { return static_cast<double>(simd::draw(1, k, 0, i).x); };
+        const auto unit = [&](std::uint32_t i) { return static_cast<double>(crescent::draw(1, k, 0, i).x); };
         for (std::size_t i = 0; i < p.size(); ++i) p[i] = 10 * unit(static_cast<std::uint32_t>(i) + 2);
         FormulaInputs in;
         in.s = m.s, in.alpha = m.alpha, in.rho_d = luminance(m.rho_d), in.rho_s = m.rho_s;
@@ -309,4 +309,4 @@ private:
 
 void check_combinations(ParseContext& context) { Checks(context).all(); }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

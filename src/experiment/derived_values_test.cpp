@@ -5,7 +5,7 @@
 #include "experiment/experiment.h"
 #include "tests/support/scene_text.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 namespace derived_values_test {
 
 using testing::ElementsAre;
@@ -53,4 +53,4 @@ TEST(SourceOfAnArm, IsNamed) {
     EXPECT_EQ(source_of(combined), "one of 8 candidates of cosine, resampled in proportion to product");
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

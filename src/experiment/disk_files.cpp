@@ -12,7 +12,7 @@
 #include "experiment/input_files.h"
 #include "render/exr.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -73,4 +73,4 @@ std::shared_ptr<const MeshPack> mesh_in_file(const std::string& path) {
 std::shared_ptr<const RgbImage> sky_in_file(const std::string& path) { return read_sky(path); }
 std::shared_ptr<const RgbImage> texture_in_file(const std::string& path) { return read_texture(path); }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -7,7 +7,7 @@
 
 #include "samplers/info.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -178,4 +178,4 @@ std::vector<LightTable> all_lights(const SceneData& scene) {
     return out;
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

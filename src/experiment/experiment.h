@@ -20,7 +20,7 @@
 #include "samplers/external_sampler.h"
 #include "scene/scene_data.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 // ---- Published values for an experiment, shown next to the measured ones. JSON:
 //   {"source": "...", "seed": 7, "runs": [{"arm": "cosine", "n": 64, "s": 32, "rmse.H": 7.66, ...}], "furnaces":
@@ -50,7 +50,7 @@ Published parse_published(std::string_view text, const std::string& name);
 /// Reads a whole text file of at most 4 MiB; `what` names it in the InputError if it cannot be read.
 std::string read_text(const std::string& path, std::string_view what);
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent
 
 // ---- The list of plates (figures) that an experiment can request. To add one, add a file in plates/ with its painter,
 // draw_PAINTER(Sheet&), and a line here; the list determines the keys of experiments and their schema, `crescent list
@@ -72,7 +72,7 @@ std::string read_text(const std::string& path, std::string_view what);
     plate(meters, meters, 0, 64, drawing, "the table of what was measured, and RMSE against N")
 // clang-format on
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 #define CRESCENT_NAME(name, ...) name,
 /// One of the plates, by its name in an experiment.
@@ -314,4 +314,4 @@ inline std::size_t end_of_path(std::string_view override_text) {
     return std::string_view::npos;
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

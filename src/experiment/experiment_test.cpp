@@ -10,7 +10,7 @@
 #include "experiment/schema.h"
 #include "tests/support/scene_text.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 namespace experiment_test {
 
 using testing::ElementsAre;
@@ -280,4 +280,4 @@ TEST(PublishedFigures, OfTheWrongFormAreTheReadersMistake) {
 }
 
 }  // namespace experiment_test
-}  // namespace crescent::inline experiment
+}  // namespace crescent

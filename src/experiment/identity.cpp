@@ -9,7 +9,7 @@
 #include "experiment/input_files.h"
 #include "experiment/schema.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -178,4 +178,4 @@ std::uint64_t hash(const Experiment& experiment) {
     return XXH3_64bits(text.data(), text.size());
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "experiment/schema.h"
 #include "tests/support/scene_text.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 namespace identity_test {
 
 const std::string folder = std::string(CRESCENT_SOURCE_DIR) + "/experiments/";
@@ -247,4 +247,4 @@ TEST(Identity, HoldsWhatWasPublishedNotWhere) {
 }
 
 }  // namespace identity_test
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -13,7 +13,7 @@
 #include "experiment/parser.h"
 #include "scene/texture.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 void load_sky(SkyLight& sky) {
     std::shared_ptr<const RgbImage> image = sky_in_file(sky.file);
@@ -248,4 +248,4 @@ void read_meshes(Experiment& experiment) {
     throw_if_any(std::move(found));
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

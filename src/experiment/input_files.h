@@ -9,7 +9,7 @@
 #include "scene/mesh/mesh.h"
 #include "scene/sky.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 /// The textures of a mesh by the keys that name them.
 struct TextureKey {
@@ -61,4 +61,4 @@ std::string sampler_file_hashes(const Experiment& experiment);
 /// Throws InputError with the place of each plugin, program and Python sampler that the experiment names.
 void refuse_code(const Experiment& experiment);
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

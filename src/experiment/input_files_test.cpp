@@ -9,7 +9,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/scene_text.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 namespace input_files_test {
 
 class MeshFiles : public testing::Test {
@@ -93,4 +93,4 @@ TEST_F(MeshFiles, AndSkiesAreBelowTheExperiment) {
 }
 
 }  // namespace input_files_test
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -7,7 +7,7 @@
 #include "experiment/schema.h"
 #include "samplers/info.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -160,4 +160,4 @@ std::string json_schema_of(const Section& root, const char* title) {
 
 std::string schema_json() { return json_schema_of(schema(), "crescent experiment"); }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -5,7 +5,7 @@
 
 #include "experiment/experiment.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 namespace mistakes_test {
 
 using testing::HasSubstr;
@@ -373,4 +373,4 @@ TEST(Mistakes, JunkIsRefusedAndDoesNotCrash) {
 }
 
 }  // namespace mistakes_test
-}  // namespace crescent::inline experiment
+}  // namespace crescent

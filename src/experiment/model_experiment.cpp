@@ -11,7 +11,7 @@
 #include "math/simd/math.h"
 #include "math/simd/scalar.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -139,4 +139,4 @@ std::string experiment_for(const ModelScene& scene) {
         fmt::format("[plates.ladder]\nkind = \"ladder\"\nruns = [{{ arm = \"{}\" }}, {{ arm = \"both\" }}]\n", surface);
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

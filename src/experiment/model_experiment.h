@@ -11,7 +11,7 @@
 #include "scene/mesh/mesh.h"
 #include "scene/scene_data.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 /// Returns the table [camera] of a view in which the whole box is seen, from above and the side.
 std::string camera_table(const Bounds& box);
@@ -51,4 +51,4 @@ struct ModelScene {
 /// plate of them, a region of the whole image, a reference.
 std::string experiment_for(const ModelScene& scene);
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

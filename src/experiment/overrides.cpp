@@ -8,7 +8,7 @@
 #include "experiment/experiment.h"
 #include "experiment/parser.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -222,4 +222,4 @@ void apply_overrides(ParseContext& context, Node& root, const std::vector<std::s
     for (const std::string& text : overrides) Override(context, root, text).apply(text);
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "experiment/input_files.h"
 #include "samplers/info.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 void ParseContext::report(const std::string& path, const SourceLocation& at, const std::string& message) {
     diagnostics.push_back({at, message});
@@ -477,4 +477,4 @@ std::string read_text(const std::string& path, std::string_view what) {
     return read_input(path, std::size_t{4} << 20, what);
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "experiment/experiment.h"
 #include "experiment/schema.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 // ---- An experiment file as a tree of plain nodes in file order, each with its place. The only interface to the TOML
 // parser.
@@ -100,4 +100,4 @@ void resolve_assertions(ParseContext& context);
 /// Reports every mistake in an arm with a kind: after names and shapes were read.
 void check_combinations(ParseContext& context);
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

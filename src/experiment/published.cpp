@@ -9,7 +9,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -119,4 +119,4 @@ std::optional<Published> load_published(const std::string& path) {
     return parse_published(read_text(path, "a JSON of published figures"), path);
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "experiment/assertion.h"
 #include "samplers/info.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -176,4 +176,4 @@ std::string schema_text() {
     return out;
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

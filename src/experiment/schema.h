@@ -15,7 +15,7 @@
 #include "experiment/experiment.h"
 #include "scene/body.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 /// The smallest roughness. A lobe of 1e-4 is 1,700 steps of single precision (6e-8) wide in a direction's coordinates;
 /// of 1e-5 the densities of its samples are not known to a figure, and films have pixels that are not numbers.
@@ -371,4 +371,4 @@ template <class List, auto Form> std::vector<Key> parameter_keys() {
     return keys;
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

@@ -2,7 +2,7 @@
 #include "experiment/input_files.h"
 #include "experiment/schema.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -375,4 +375,4 @@ const Section& schema() {
     return root;
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

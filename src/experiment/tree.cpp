@@ -8,7 +8,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -112,4 +112,4 @@ Node read_toml(std::string_view text, const std::string& file) {
     }
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

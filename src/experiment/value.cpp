@@ -9,7 +9,7 @@
 #include "experiment/parser.h"
 #include "math/functions.h"
 
-namespace crescent::inline experiment {
+namespace crescent {
 
 namespace {
 
@@ -209,4 +209,4 @@ bool read_value(ParseContext& context, const Key& key, const Node& node, const s
     return ValueReader(context, key, path, value).read(node);
 }
 
-}  // namespace crescent::inline experiment
+}  // namespace crescent

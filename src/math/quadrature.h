@@ -64,7 +64,7 @@ private:
 // ---- Integrals over an interval by two rules at once: Kronrod's, and the Gauss rule among its nodes (Piessens et al.
 // 1983, QUADPACK); their difference bounds the error of the finer one, with a large margin if the integrand is smooth.
 
-namespace crescent::inline reference {
+namespace crescent {
 
 /// Nodes from the middle outwards; every second one, from the middle on, is also Gauss's.
 template <std::size_t n> struct KronrodRule {
@@ -107,4 +107,4 @@ template <std::size_t n, class F> auto by_two_rules(const KronrodRule<n>& rule, 
     return TwoRules<decltype(first + first)>{half * fine, half * (fine - coarse), half * (coarse - 2.0 * first)};
 }
 
-}  // namespace crescent::inline reference
+}  // namespace crescent

@@ -24,7 +24,7 @@ TEST(Sobol, HasTheFirstPointsOfJoeAndKuo) {
 
 TEST(Sobol, FillsEveryElementaryIntervalOnceForAnySeed) {
     for (std::uint32_t seed = 0; seed < 20; ++seed) {
-        const auto scramble = simd::pcg4d(simd::Vec4u<std::uint32_t>{seed, 1, 2, 3});
+        const auto scramble = pcg4d(Vec4u<std::uint32_t>{seed, 1, 2, 3});
         for (int across = 0; across <= 8; ++across) {
             const int columns = 1 << across, rows = 256 / columns;
             std::set<std::pair<int, int>> cells;
@@ -44,7 +44,7 @@ TEST(Sobol, IsUniformOverSeeds) {
         double count[4][4] = {};
         const int seeds = 32000;
         for (std::uint32_t s = 0; s < seeds; ++s) {
-            const Vec2<float> u = scrambled_sobol(index, simd::pcg4d(simd::Vec4u<std::uint32_t>{s, 77, 0, 5}));
+            const Vec2<float> u = scrambled_sobol(index, pcg4d(Vec4u<std::uint32_t>{s, 77, 0, 5}));
             ++count[static_cast<int>(4 * u.x)][static_cast<int>(4 * u.y)];
         }
         double chi2 = 0;

@@ -11,7 +11,7 @@
 #include "base/errors.h"
 #include "math/functions.h"
 
-namespace crescent::inline statistics {
+namespace crescent {
 
 Spread spread(std::span<const double> x) {
     Spread s;
@@ -428,4 +428,4 @@ std::vector<bool> holm(std::span<const double> p, double alpha) {
     return out;
 }
 
-}  // namespace crescent::inline statistics
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace crescent::inline statistics {
+namespace crescent {
 
 // ---- Mean, standard deviation and maximum of numbers.
 
@@ -192,4 +192,4 @@ inline std::optional<std::vector<double>> solved(
     return b;
 }
 
-}  // namespace crescent::inline statistics
+}  // namespace crescent

@@ -11,7 +11,7 @@
 
 #include "math/statistics.h"
 
-namespace crescent::inline statistics {
+namespace crescent {
 namespace statistics_test {
 
 constexpr double bound = 1e-12;
@@ -186,4 +186,4 @@ TEST(Hypotheses, ALoneDeviationIsWhatGrubbsCallsAnOutlier) {
 
 }  // namespace statistics_test
 
-}  // namespace crescent::inline statistics
+}  // namespace crescent

@@ -18,7 +18,7 @@
 #include "render/estimator.h"
 #include "samplers/all.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 namespace {
 
@@ -193,4 +193,4 @@ Evidence measure_evidence(const Experiment& experiment, const std::string& isa, 
     return out;
 }
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "base/progress.h"
 #include "experiment/experiment.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 /// Quantiles over replicates of the combined white furnace of the Phong sampler, R = n, at N samples.
 struct FurnaceQuantiles {
@@ -53,4 +53,4 @@ struct Evidence {
 /// with a Phong lobe.
 Evidence measure_evidence(const Experiment& experiment, const std::string& isa, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

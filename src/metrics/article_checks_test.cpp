@@ -5,7 +5,7 @@
 #include "metrics/article_checks.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 namespace article_checks_test {
 
 /// A furnace's median is below the expected value by about the part of the diffuse tail that n samples do not reach,
@@ -43,4 +43,4 @@ TEST(Evidence, MeetsTheoryWhereTheoryIsKnown) {
 }
 
 }  // namespace article_checks_test
-}  // namespace crescent::inline metrics
+}  // namespace crescent

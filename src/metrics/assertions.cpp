@@ -9,7 +9,7 @@
 #include "math/statistics.h"
 #include "metrics/metrics.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 namespace {
 
@@ -161,4 +161,4 @@ std::vector<AssertionResult> evaluate_assertions(
     return results;
 }
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

@@ -5,7 +5,7 @@
 
 #include "metrics/metrics.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 namespace assertions_test {
 
 Experiment two_arms(const std::vector<std::pair<std::string, bool>>& checks) {
@@ -126,4 +126,4 @@ TEST(Assertions, FailOnWhatIsNotANumberOrWasNotMeasured) {
 }
 
 }  // namespace assertions_test
-}  // namespace crescent::inline metrics
+}  // namespace crescent

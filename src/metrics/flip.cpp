@@ -14,7 +14,7 @@
 #include "math/statistics.h"
 #include "render/flip_kernel.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 namespace {
 
@@ -260,4 +260,4 @@ std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, cons
     return out;
 }
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

@@ -10,7 +10,7 @@
 
 #include "scene/scene_data.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 /// A picture in linear Rec.709, row after row; both pictures have their rows in the same order.
 struct FlipImage {
@@ -44,4 +44,4 @@ std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, cons
     std::span<const FlipImage> tests, std::span<const Box> boxes, double pixels_per_degree,
     const std::string& isa = "");
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "metrics/flip.h"
 #include "render/kernel.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 namespace flip_test {
 
 /// A test picture by formula, so that another program can compute the same one.
@@ -68,7 +68,7 @@ TEST(Flip, ReturnsTheSameBitsOnEveryInstructionSet) {
     std::vector<float> a[3], b[3];
     for (std::uint32_t c = 0; c < 3; ++c)
         for (std::uint32_t i = 0; i < width * height; ++i) {
-            const Vec2<float> u = simd::draw(c, i, 0);
+            const Vec2<float> u = crescent::draw(c, i, 0);
             a[c].push_back(u.x * 100);
             b[c].push_back(u.y < 0.5f ? u.x * 100 : u.y);
         }
@@ -91,4 +91,4 @@ TEST(Flip, IsZeroForEqualPictures) {
 }
 
 }  // namespace flip_test
-}  // namespace crescent::inline metrics
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "render/estimator.h"
 #include "render/reference/lobe_albedo.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 namespace {
 
@@ -119,4 +119,4 @@ std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::
     return fit_pooled_tail(largest_samples(scene, arm, plan.n, seed, box, plan.kept, isa, monitor, drawn));
 }
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

@@ -15,7 +15,7 @@
 #include "scene/scene.h"
 #include "scene/scene_data.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 /// The draws of a furnace: its metric except the tail, and every X.
 struct FurnaceDraws {
@@ -56,4 +56,4 @@ TailPlan tail_plan(const Box& box);
 std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::uint32_t seed, const Box& box,
     const std::string& isa, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

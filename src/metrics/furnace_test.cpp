@@ -8,7 +8,7 @@
 
 #include "render/estimator.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 namespace furnace_test {
 
 TEST(BadSamples, PlantedNaNIsCountedAndReachesTheFilm) {
@@ -41,4 +41,4 @@ TEST(Furnace, CosineOnLambertHasNoVariance) {
 }
 
 }  // namespace furnace_test
-}  // namespace crescent::inline metrics
+}  // namespace crescent

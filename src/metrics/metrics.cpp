@@ -11,7 +11,7 @@
 #include "math/functions.h"
 #include "math/statistics.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 const RegionMetrics* RunMetrics::region(const std::string& name) const {
     const auto at =
@@ -409,4 +409,4 @@ std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunM
     return out;
 }
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

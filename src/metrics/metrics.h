@@ -16,7 +16,7 @@
 #include "render/film.h"
 #include "render/film_metrics.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 inline constexpr double not_paired = std::numeric_limits<double>::quiet_NaN(), not_measured = not_paired;
 
@@ -229,4 +229,4 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
 std::vector<AssertionResult> evaluate_assertions(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn = true);
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "render/reference/reference.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 namespace metrics_test {
 
 /// Returns the tail of n Pareto samples u^-k.
@@ -278,4 +278,4 @@ TEST(RunIndex, TellsSeedsInTheOrderOfTheRuns) {
 }
 
 }  // namespace metrics_test
-}  // namespace crescent::inline metrics
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "render/estimator.h"
 #include "render/reference/reference.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 namespace {
 
@@ -184,4 +184,4 @@ std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& 
         });
 }
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

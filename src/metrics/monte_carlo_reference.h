@@ -13,7 +13,7 @@
 #include "render/reference/reference.h"
 #include "render/tiles.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 
 /// Returns seed k of the article's reference: hashed from its own, and different from those of the experiment's arms
 /// for any number of seeds.
@@ -27,4 +27,4 @@ PairedPlan paired_plan(const Experiment& experiment);
 std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& views, const Experiment& experiment,
     const std::string& isa, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline metrics
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "render/reference/reference.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline metrics {
+namespace crescent {
 namespace monte_carlo_reference_test {
 
 /// Returns the standard errors between the two references, over the whole image.
@@ -75,4 +75,4 @@ TEST(Estimator, ArticleReferenceSharesNoRandomStream) {
 }
 
 }  // namespace monte_carlo_reference_test
-}  // namespace crescent::inline metrics
+}  // namespace crescent

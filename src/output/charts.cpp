@@ -11,7 +11,7 @@
 #include "math/functions.h"
 #include "output/format.h"
 
-namespace crescent::inline output {
+namespace crescent {
 
 // ---- Linear axes have ticks at 1, 2 or 5 times a power of ten, with four to eight steps; log axes have ticks from the
 // row of a table for their length in decades.
@@ -246,4 +246,4 @@ std::string strip_svg(const Strip& s) {
         w, h, w, h, words, marks);
 }
 
-}  // namespace crescent::inline output
+}  // namespace crescent

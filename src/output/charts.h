@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline output {
+namespace crescent {
 
 // ---- Axes of charts for all renderers (SVG in pages, Cairo on plates and in the video): their range, their ticks, the
 // place of a value, and the separation of names next to a chart; all lengths in pixels come from the caller.
@@ -101,4 +101,4 @@ struct Strip {
 /// A band as a strip with its median: <svg>.
 std::string strip_svg(const Strip& strip);
 
-}  // namespace crescent::inline output
+}  // namespace crescent

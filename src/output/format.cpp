@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "math/functions.h"
 
-namespace crescent::inline output {
+namespace crescent {
 namespace {
 
 bool starts_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
@@ -241,4 +241,4 @@ std::string sarif_text(
         {"runs", Json::array({run})}});
 }
 
-}  // namespace crescent::inline output
+}  // namespace crescent

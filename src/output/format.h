@@ -11,7 +11,7 @@
 
 #include "base/vec.h"
 
-namespace crescent::inline output {
+namespace crescent {
 
 /// Returns the shortest decimal that reads back as the same double; "nan", "inf", "-inf" for the rest.
 std::string shortest(double x);
@@ -127,4 +127,4 @@ struct SarifResult {
 std::string sarif_text(
     const std::string& version, const std::vector<std::string>& rules, const std::vector<SarifResult>& results);
 
-}  // namespace crescent::inline output
+}  // namespace crescent

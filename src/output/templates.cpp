@@ -10,7 +10,7 @@
 #include "base/errors.h"
 #include "base/text.h"
 
-namespace crescent::inline output {
+namespace crescent {
 
 namespace {
 
@@ -81,4 +81,4 @@ std::string render_page(Templates templates, std::string_view name, const Json& 
     return std::move(out).str();
 }
 
-}  // namespace crescent::inline output
+}  // namespace crescent

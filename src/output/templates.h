@@ -11,7 +11,7 @@
 
 #include "output/format.h"
 
-namespace crescent::inline output {
+namespace crescent {
 
 /// A template and its file name.
 struct Template {
@@ -29,4 +29,4 @@ Templates compare_templates();
 /// written as shortest() does. Throws Bug if a value is named that the model lacks, or a template that does not exist.
 std::string render_page(Templates templates, std::string_view name, const Json& model);
 
-}  // namespace crescent::inline output
+}  // namespace crescent

@@ -8,7 +8,7 @@
 
 #include "math/functions.h"
 
-namespace crescent::inline output {
+namespace crescent {
 
 namespace {
 
@@ -126,4 +126,4 @@ Srgb8 turbo(double t) {
     return out;
 }
 
-}  // namespace crescent::inline output
+}  // namespace crescent

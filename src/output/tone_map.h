@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-namespace crescent::inline output {
+namespace crescent {
 
 /// 8-bit sRGB, as in a PNG.
 using Srgb8 = std::array<unsigned char, 3>;
@@ -40,4 +40,4 @@ Srgb8 turbo(double t);
 /// Ground and colours of plates: light on a dark ground, or dark on a light one.
 enum class Theme { dark, light };
 
-}  // namespace crescent::inline output
+}  // namespace crescent

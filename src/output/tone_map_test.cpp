@@ -6,7 +6,7 @@
 
 #include "output/tone_map.h"
 
-namespace crescent::inline output {
+namespace crescent {
 
 namespace tone_map_test {
 
@@ -126,4 +126,4 @@ TEST(Turbo, GoesInSmallStepsAndClamps) {
 
 }  // namespace tone_map_test
 
-}  // namespace crescent::inline output
+}  // namespace crescent

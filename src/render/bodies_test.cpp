@@ -12,7 +12,7 @@
 
 #include "render/disk_hit.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace bodies_test {
 
 using Long = long double;
@@ -191,4 +191,4 @@ TEST(BodiesInKernels, ThatAreSmallAndFarHideWhatTheyHide) {
 }
 
 }  // namespace bodies_test
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -10,7 +10,7 @@
 
 #include "render/point_kernel.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 namespace {
 
@@ -412,7 +412,7 @@ void estimate_combination(const Combination& combination, const KernelCall& call
                 [&](std::size_t run, std::size_t row, std::uint32_t block) {
                     const std::uint32_t pixel = points.pixel[runs[run].point];
                     return numbers ? (*numbers)(pixel, first + row, block)
-                                   : simd::draw(call.seed, pixel, first + row, block);
+                                   : crescent::draw(call.seed, pixel, first + row, block);
                 },
                 part);
             for (std::size_t r = 0; r < runs.size(); ++r) {
@@ -424,4 +424,4 @@ void estimate_combination(const Combination& combination, const KernelCall& call
     }
 }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -14,7 +14,7 @@
 #include "samplers/combination_plan.h"
 #include "samplers/external_sampler.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 /// One direction of a sample: X gains weight f L cos / pdf.
 struct WeightedDirection {
@@ -99,4 +99,4 @@ private:
 void estimate_combination(const Combination& combination, const KernelCall& call, const std::string& isa,
     const PixelNumbers* numbers = nullptr, bool in_kernels = true);
 
-}  // namespace crescent::inline render
+}  // namespace crescent

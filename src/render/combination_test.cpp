@@ -12,7 +12,7 @@
 #include "tests/support/skies.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace combination_test {
 
 /// A square that emits above the ball, and one below it that reflects alone.
@@ -128,7 +128,7 @@ TEST(CombinationsInKernels, HaveTheBitsOfTheGeneralPath) {
 TEST(CombinationsInKernels, TakeOtherNumbers) {
     const Scene scene = scene_of(scenes[4]);
     const PixelNumbers numbers = [](std::uint32_t pixel, std::uint64_t sample, std::uint32_t block) {
-        return simd::draw(77, pixel, sample + 1000, block);
+        return crescent::draw(77, pixel, sample + 1000, block);
     };
     for (const CombinationPlan& plan : plans()) {
         const Combination combination = combination_of(plan);
@@ -173,4 +173,4 @@ TEST(Mixtures, EvaluateAPartThatOccursSeveralTimesOnce) {
 }
 
 }  // namespace combination_test
-}  // namespace crescent::inline render
+}  // namespace crescent

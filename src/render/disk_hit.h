@@ -5,7 +5,7 @@
 #include "render/shading_points.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 /// A disk with its normal turned so that the emitting side faces the surface: c.n < 0. If no emitting side faces it, r2
 /// < 0 and no ray meets the disk.
@@ -107,4 +107,4 @@ template <class F> MaskOf<F> blocked_by(const OccluderF& body, Vec3<F> o, Vec3<F
     return blocked_by(body, o, d, distance * number<F>(1e-5), distance * number<F>(1 - 1e-5));
 }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

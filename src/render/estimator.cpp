@@ -16,7 +16,7 @@
 #include "render/combination.h"
 #include "render/technique.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 namespace {
 
@@ -282,14 +282,14 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
     return std::move(largest).in_order();
 }
 
-}  // namespace crescent::inline render
+}  // namespace crescent
 
 // ---- Fetches the draws of many shading points in one batch and passes them to the scalar kernel one by one; an
 // unusable draw becomes a NaN pdf, which kernels count as bad.
 
 #include "render/point_kernel.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 namespace {
 
@@ -367,4 +367,4 @@ void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
     }
 }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -15,7 +15,7 @@
 #include "samplers/external_sampler.h"
 #include "scene/scene.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 /// Returns what a sample costs.
 SampleCost cost_of_sample(const SamplerRef& arm);
@@ -60,4 +60,4 @@ void for_each_tile(
 /// is NaN, negative, infinite in single precision, or 0 in single precision but not in double.
 void estimate_external(const ExternalSampler& sampler, const KernelCall& call);
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -13,7 +13,7 @@
 
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace estimator_test {
 
 using test::all_arms;
@@ -180,4 +180,4 @@ TEST(InstructionSets, UnknownNameSuggestsTheNearest) {
 }
 
 }  // namespace estimator_test
-}  // namespace crescent::inline render
+}  // namespace crescent

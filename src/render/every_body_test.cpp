@@ -8,7 +8,7 @@
 
 #include "render/disk_hit.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace every_body_test {
 
 class Drawn {
@@ -125,4 +125,4 @@ TEST(EveryBody, PointsAreWithinExtentAndAzimuths) {
 }
 
 }  // namespace every_body_test
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -27,7 +27,7 @@
 #include "base/parallel.h"
 #include "scene/texture.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 namespace {
 
@@ -257,4 +257,4 @@ std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
 std::shared_ptr<const RgbImage> read_sky(const std::string& path) { return read(path, why_no_sky_of); }
 std::shared_ptr<const RgbImage> read_texture(const std::string& path) { return read(path, why_no_texture_of); }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

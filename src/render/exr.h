@@ -14,7 +14,7 @@
 #include "render/film.h"
 #include "scene/sky.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 /// String attributes of the header: (name, text).
 using Attributes = std::vector<std::pair<std::string, std::string>>;
@@ -36,4 +36,4 @@ void write_texture(const std::string& path, const RgbImage& image);
 std::shared_ptr<const RgbImage> read_sky(const std::string& path);
 std::shared_ptr<const RgbImage> read_texture(const std::string& path);
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -15,7 +15,7 @@
 #include <limits>
 #include <set>
 
-namespace crescent::inline render {
+namespace crescent {
 namespace exr_test {
 
 constexpr int width = 5, height = 3;
@@ -109,4 +109,4 @@ TEST_F(Exr, AReferenceReadBackIsTheReference) {
 }
 
 }  // namespace exr_test
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-namespace crescent::inline render {
+namespace crescent {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::string hash(const Film& film) { return hash_of(film_bytes<const std::byte>(
 
 std::string hash(const ReferenceFilm& film) { return hash_of(reference_bytes<const std::byte>(film)); }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace crescent::inline render {
+namespace crescent {
 
 /// What was run: a sampler at n samples per pixel, exponent s, seed.
 struct RunKey {
@@ -80,4 +80,4 @@ private:
     std::shared_ptr<void> state_;
 };
 
-}  // namespace crescent::inline render
+}  // namespace crescent

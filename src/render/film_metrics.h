@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-namespace crescent::inline render {
+namespace crescent {
 
 /// One pixel of a film, with the reference. Y in W/(sr m^2).
 struct FilmPixel {
@@ -194,7 +194,7 @@ struct FEvaluationsMetric {
     std::uint64_t value(const FilmFacts& f) const { return f.evaluations; }
 };
 
-}  // namespace crescent::inline render
+}  // namespace crescent
 
 // metric(name, type)
 // clang-format off: one a line

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-namespace crescent::inline render {
+namespace crescent {
 
 // ---- Colour spaces of FLIP: linear Rec.709 and XYZ (IEC 61966-2-1), relative to the white of (1, 1, 1).
 
@@ -60,4 +60,4 @@ using FlipKernel = void (*)(const FlipTile&);
 /// Returns the kernel for a name of isas(); "" means the best. Throws InputError like kernels_for().
 FlipKernel flip_kernel_for(const std::string& isa);
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "math/simd/math.h"
 #include "render/flip_kernel.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace CRESCENT_ISA {
 
 template <class F> struct FlipPixels {
@@ -199,4 +199,4 @@ private:
 template <class F> void compute_flip(const FlipTile& tile) { FlipWork<F>(tile).compute(); }
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent::inline render
+}  // namespace crescent

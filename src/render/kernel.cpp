@@ -37,7 +37,7 @@
 #define CRESCENT_MACHINE_HAS(feature) true  // required by the compiler flags
 #endif
 
-namespace crescent::inline render {
+namespace crescent {
 
 KernelTable scalar_kernels();
 FlipKernel scalar_flip();
@@ -144,4 +144,4 @@ int arm_index(std::string_view sampler) {
     return found;
 }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -23,7 +23,7 @@
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 // ---- What a kernel needs of a combination whose samplers are all built in: a plain description, and functions that
 // are compiled once for all instruction sets.
@@ -144,4 +144,4 @@ const KernelTable& kernels_for(const std::string& isa);
 /// Returns the index in the list of samplers, or -1.
 int arm_index(std::string_view sampler);
 
-}  // namespace crescent::inline render
+}  // namespace crescent

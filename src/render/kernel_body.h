@@ -13,7 +13,7 @@
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace CRESCENT_ISA {
 
 inline constexpr std::uint64_t block_length = 16;
@@ -336,4 +336,4 @@ template <class F, template <class> class... A> constexpr KernelTable kernels_of
 }
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent::inline render
+}  // namespace crescent

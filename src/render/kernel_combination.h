@@ -11,7 +11,7 @@
 #include "render/kernel_lights.h"
 #include "samplers/all.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace CRESCENT_ISA {
 
 template <class F> MaskOf<F> no_lane() { return number<F>(1) < number<F>(0); }
@@ -265,4 +265,4 @@ private:
 };
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "render/disk_hit.h"
 #include "render/kernel.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace CRESCENT_ISA {
 
 template <class F> F load_lanes(const std::vector<float>& a, std::size_t at) { return load_as<F>(a.data() + at); }
@@ -280,4 +280,4 @@ protected:
 };
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -3,9 +3,9 @@
 #include "render/flip_kernel_body.h"
 #include "render/kernel_body.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 KernelTable scalar_kernels() { return scalar::kernels_of<float>("scalar", Samplers{}); }
 FlipKernel scalar_flip() { return scalar::compute_flip<float>; }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

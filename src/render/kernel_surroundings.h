@@ -7,7 +7,7 @@
 #include "math/simd/scalar.h"
 #include "render/kernel_lights.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace CRESCENT_ISA {
 
 /// Sums over the samples that met light that varies: g, g * lobe, and both times L by channel.
@@ -217,4 +217,4 @@ private:
 };
 
 }  // namespace CRESCENT_ISA
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -14,7 +14,7 @@
 #include "scene/lobes/all.h"
 #include "scene/scene_data.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 namespace {
 
@@ -317,4 +317,4 @@ std::vector<double> running_mean(const std::vector<PixelSample>& samples) {
     return out;
 }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -16,7 +16,7 @@
 #include "render/shading_points.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 /// One draw. X = 0 if the direction is below the horizon or nothing was drawn.
 struct PixelSample {
@@ -93,4 +93,4 @@ private:
 /// Returns the mean of X over the first 1, 2, ... draws; a pair of two techniques is one draw.
 std::vector<double> running_mean(const std::vector<PixelSample>& samples);
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "tests/support/skies.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace pixel_test {
 
 constexpr std::uint64_t n = 48;
@@ -127,4 +127,4 @@ TEST(OpenPixel, SeesADiskAsWideAsItsDistanceMakesIt) {
 }
 
 }  // namespace pixel_test
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -6,7 +6,7 @@
 #define CRESCENT_ISA scalar
 #include "render/kernel_body.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 /// Estimates shading point `at` with an arm that hands out its directions.
 template <class A> using PointKernel = void (*)(const KernelCall&, std::size_t at, const A& arm);
@@ -29,4 +29,4 @@ template <class A> PointKernel<A> point_kernel(const ShadingPoints& points) {
     return point_kernels<A>(Lobes{})[static_cast<std::size_t>(points.lobe + 1)];
 }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "base/vec.h"
 #include "scene/shadow.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 namespace {
 
@@ -271,4 +271,4 @@ std::vector<ShadingPoints> shading_points_of(const Scene& scene, const TileBox& 
     return std::move(sorter.groups);
 }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

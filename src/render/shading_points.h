@@ -9,7 +9,7 @@
 
 #include "scene/scene.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 inline constexpr std::size_t widest_pack = 32;  // AVX-512: two vectors of 16
 /// Memory that a kernel needs for each light of a scene, and for the light that varies, in bytes.
@@ -118,4 +118,4 @@ ShadingPoints empty_points(const Scene& scene, int lobe);
 /// Returns all geometry pixels of a tile, grouped by lobe, and the shape that each pixel sees.
 std::vector<ShadingPoints> shading_points_of(const Scene& scene, const TileBox& tile, std::int16_t* shape_map);
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -17,7 +17,7 @@
 #include "tests/support/skies.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace surroundings_test {
 
 Experiment under_sky(int height = 16) {
@@ -251,4 +251,4 @@ TEST(PairedReference, EstimatesSquaredErrorsWithoutBias) {
 }
 
 }  // namespace surroundings_test
-}  // namespace crescent::inline render
+}  // namespace crescent

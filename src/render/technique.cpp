@@ -11,7 +11,7 @@
 #define CRESCENT_ISA scalar
 #include "render/kernel_body.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 namespace {
 
@@ -339,4 +339,4 @@ bool is_usable(const Vec3<double>& wi, double p) {
     return std::fabs(dot(wi, wi) - 1) <= 2e-4 && pdf > 0 && pdf <= std::numeric_limits<float>::max();
 }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

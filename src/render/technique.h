@@ -13,7 +13,7 @@
 #include "samplers/sampler.h"
 #include "samplers/weight_formula.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 /// Rows that follow one another at one shading point.
 struct PointRun {
@@ -97,4 +97,4 @@ ExternalRun run_at(const ShadingPoints& shading_points, std::size_t at, Vec3<dou
 /// precision, in which the estimate is computed. pdf 0, which means that nothing was drawn, is for the caller.
 bool is_usable(const Vec3<double>& wi, double pdf);
 
-}  // namespace crescent::inline render
+}  // namespace crescent

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 struct TiledScene::Kept {
     Mutex lock;
@@ -53,4 +53,4 @@ std::uint64_t bytes_of_points(const Scene& scene) {
     return pixels * empty_points(scene, 0).bytes_of_one();
 }
 
-}  // namespace crescent::inline render
+}  // namespace crescent

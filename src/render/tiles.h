@@ -9,7 +9,7 @@
 #include "render/shading_points.h"
 #include "scene/scene.h"
 
-namespace crescent::inline render {
+namespace crescent {
 
 /// Const members may be called from any thread. Copies share the kept points.
 class TiledScene {
@@ -48,4 +48,4 @@ std::vector<TiledScene> views_at(const TiledScene& view, const std::vector<doubl
 /// Returns the bytes that the points of the whole image take if every pixel has one.
 std::uint64_t bytes_of_points(const Scene& scene);
 
-}  // namespace crescent::inline render
+}  // namespace crescent

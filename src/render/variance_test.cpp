@@ -7,7 +7,7 @@
 #include "render/estimator.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline render {
+namespace crescent {
 namespace variance_test {
 
 /// Returns the test scene with area lights of another size and the same radiance.
@@ -72,4 +72,4 @@ TEST(VarianceConformance, SamplesThatAreAllAlikeHaveNone) {
 }
 
 }  // namespace variance_test
-}  // namespace crescent::inline render
+}  // namespace crescent

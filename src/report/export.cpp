@@ -10,7 +10,7 @@
 #include "output/format.h"
 #include "report/report.h"
 
-namespace crescent::inline report {
+namespace crescent {
 namespace {
 
 Json optional_number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
@@ -335,4 +335,4 @@ std::string timing_json(const Timing& timing, const Provenance& provenance) {
     return text(out);
 }
 
-}  // namespace crescent::inline report
+}  // namespace crescent

@@ -7,7 +7,7 @@
 
 #include "metrics/metrics.h"
 
-namespace crescent::inline report {
+namespace crescent {
 
 RatioOfErrors compare(const std::string& a, double value_a, const std::string& b, double value_b) {
     RatioOfErrors c;
@@ -124,4 +124,4 @@ std::vector<std::string> headline_metrics(const Experiment& experiment) {
     return all;
 }
 
-}  // namespace crescent::inline report
+}  // namespace crescent

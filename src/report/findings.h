@@ -10,7 +10,7 @@
 #include "metrics/metrics.h"
 #include "report/report.h"
 
-namespace crescent::inline report {
+namespace crescent {
 
 /// "3.1 times", "the same as", with what was compared; see compare().
 struct RatioOfErrors {
@@ -69,4 +69,4 @@ private:
 /// Returns the metrics shown in tables, in their order: rmse.*, var.*, fireflies, ...
 std::vector<std::string> headline_metrics(const Experiment& experiment);
 
-}  // namespace crescent::inline report
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "output/format.h"
 #include "report/report.h"
 
-namespace crescent::inline report {
+namespace crescent {
 namespace {
 
 constexpr int deepest = 64;       // levels of arrays and objects; a metrics.json has ten
@@ -197,4 +197,4 @@ MetricsFile read_metrics(const std::string& text, const std::string& name) {
     }
 }
 
-}  // namespace crescent::inline report
+}  // namespace crescent

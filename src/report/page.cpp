@@ -13,7 +13,7 @@
 #include "output/templates.h"
 #include "samplers/info.h"
 
-namespace crescent::inline report {
+namespace crescent {
 namespace {
 
 constexpr std::size_t page_limit = 14'000'000;  // bytes of base64 allowed in the page
@@ -426,4 +426,4 @@ Json provenance(const Page& page) {
         {"all_seeds", fmt::format("{}", fmt::join(p.seeds, ", "))}, {"part", part}, {"films", films}};
 }
 
-}  // namespace crescent::inline report
+}  // namespace crescent

@@ -13,7 +13,7 @@
 #include "report/findings.h"
 #include "report/report.h"
 
-namespace crescent::inline report {
+namespace crescent {
 
 /// Plates that are embedded in the page, or linked if the page would be too large.
 class Figures {
@@ -95,7 +95,7 @@ std::string times(double ratio);
 /// Adds to each object what follows it in "a, b, c", as `comma`.
 Json with_commas(Json objects);
 
-}  // namespace crescent::inline report
+}  // namespace crescent
 
 // ---- The arms that a report compares, and sentences about them. All of it follows from SamplerInfo and from the
 // measurements.
@@ -110,7 +110,7 @@ inline std::string heavy_tail() { return "<span class=\"heavy\">heavy tail</span
 
 }  // namespace crescent::html
 
-namespace crescent::inline report {
+namespace crescent {
 
 /// An arm about the normal and one about the mirror direction that ran at one N; among several about the normal, the
 /// one that shares most sample counts with the other, then the one with the smallest errors.
@@ -135,4 +135,4 @@ std::string run_html(const RunKey& key, const Experiment& experiment);
 std::string ray_words(const Experiment& experiment);
 std::string bias_words(const Experiment& experiment);
 
-}  // namespace crescent::inline report
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "metrics/metrics.h"
 #include "output/format.h"
 
-namespace crescent::inline report {
+namespace crescent {
 
 /// The origin of an output; equal for equal runs.
 struct Provenance {
@@ -90,4 +90,4 @@ std::string terminal_summary(const ReportInputs& in, const Timing& timing, const
 /// As in metrics.json.
 Json provenance_json(const Provenance& provenance);
 
-}  // namespace crescent::inline report
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "output/charts.h"
 #include "report/page.h"
 
-namespace crescent::inline report {
+namespace crescent {
 namespace {
 
 /// The share of seeds below the published value.
@@ -512,4 +512,4 @@ Json disagreements(const Page& page) {
         {"rows", std::move(rows)}, {"remarks", remarks(page)}};
 }
 
-}  // namespace crescent::inline report
+}  // namespace crescent

@@ -7,7 +7,7 @@
 #include "experiment/experiment.h"
 #include "report/page.h"
 
-namespace crescent::inline report {
+namespace crescent {
 namespace {
 
 bool is_biased(const ArmPlan& arm, const Experiment& e) { return !missed_light(arm, e).empty(); }
@@ -291,4 +291,4 @@ Json furnaces(const Page& page) {
     return {{"with_published", published}, {"rows", rows}, {"shortfalls", shortfalls}};
 }
 
-}  // namespace crescent::inline report
+}  // namespace crescent

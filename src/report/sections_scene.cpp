@@ -10,7 +10,7 @@
 #include "samplers/info.h"
 #include "scene/lobes/lobe.h"
 
-namespace crescent::inline report {
+namespace crescent {
 namespace {
 
 std::string vec(const Vec3d& v) {
@@ -262,4 +262,4 @@ Json reference(Page& page) {
     return out;
 }
 
-}  // namespace crescent::inline report
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "report/findings.h"
 #include "report/report.h"
 
-namespace crescent::inline report {
+namespace crescent {
 namespace {
 
 constexpr std::size_t columns = 80;
@@ -180,4 +180,4 @@ std::string terminal_summary(
     return out + "\n" + speed(timing) + where(in, out_dir, parts);
 }
 
-}  // namespace crescent::inline report
+}  // namespace crescent

@@ -20,7 +20,7 @@
 #include "run/execute.h"
 #include "samplers/info.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -188,9 +188,9 @@ private:
     static Vec2<float> hashed(const PrimarySample& u, std::uint32_t block) {
         const auto x = std::bit_cast<std::uint64_t>(u.x), y = std::bit_cast<std::uint64_t>(u.y);
         const auto low = [](std::uint64_t v) { return static_cast<std::uint32_t>(v ^ (v >> 32)); };
-        const auto h = simd::pcg4d(simd::Vec4u<std::uint32_t>{
+        const auto h = pcg4d(Vec4u<std::uint32_t>{
             low(x), low(y), block, static_cast<std::uint32_t>(x >> 32) ^ static_cast<std::uint32_t>(y >> 29)});
-        return {simd::unit_float<float>(h.x), simd::unit_float<float>(h.y)};
+        return {unit_float<float>(h.x), unit_float<float>(h.y)};
     }
     std::shared_ptr<const Combination> combination_;
 };
@@ -399,4 +399,4 @@ std::vector<CheckCase> arm_cases(const Experiment& experiment, const std::string
     return plan.pixels > 0 ? cases.at_pixels(plan.pixels) : cases.on_grid(plan.full);
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

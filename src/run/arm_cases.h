@@ -9,7 +9,7 @@
 #include "experiment/experiment.h"
 #include "samplers/external_sampler.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 /// Where an arm is checked.
 struct ArmCasesPlan {
@@ -28,4 +28,4 @@ Experiment with_arms_of(Experiment experiment, std::vector<std::string> names);
 std::vector<CheckCase> arm_cases(const Experiment& experiment, const std::string& sampler,
     const ExternalSamplers& outside, const ArmCasesPlan& plan);
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

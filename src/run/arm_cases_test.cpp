@@ -10,7 +10,7 @@
 #include "base/errors.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 namespace arm_cases_test {
 
 using ::testing::HasSubstr;
@@ -123,4 +123,4 @@ TEST(ArmCases, KeepTheArmsThatAnArmCombines) {
 }
 
 }  // namespace arm_cases_test
-}  // namespace crescent::inline runs
+}  // namespace crescent

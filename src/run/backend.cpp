@@ -4,7 +4,7 @@
 
 #include "render/estimator.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -35,7 +35,7 @@ std::shared_ptr<const BackendKind> find_backend(const std::string& name) {
     return nullptr;
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent
 
 // ---- The hook is a static of its function, so that an initialiser of another file may use it first.
 

@@ -14,11 +14,8 @@
 #include "render/film.h"
 #include "run/plan.h"
 
-namespace crescent::inline render {
+namespace crescent {
 class TiledScene;
-}  // namespace crescent::inline render
-
-namespace crescent::inline runs {
 
 /// Computes films. One call at a time; an exception ends the run.
 class Backend {
@@ -66,7 +63,7 @@ std::vector<std::shared_ptr<const BackendKind>>& backend_kinds();
 /// Returns null if this program was built without it.
 std::shared_ptr<const BackendKind> find_backend(const std::string& name);
 
-}  // namespace crescent::inline runs
+}  // namespace crescent
 
 // ---- The hook that makes an explainer video of an experiment. apps/explainer registers itself here when the program
 // starts; the library does not depend on it.

@@ -23,7 +23,7 @@
 #include "run/checkpoint_items.h"
 #include "run/version.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -161,4 +161,4 @@ void Checkpoint::discard() {
     monitor_.log(folder_ + " still holds the checkpoint of another, unfinished run");
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "metrics/metrics.h"
 #include "run/plan.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 class Checkpoint {
 public:
@@ -44,4 +44,4 @@ private:
     std::size_t written_ = 0;  // of metrics_
 };
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -7,7 +7,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -141,4 +141,4 @@ CheckpointContent read_items(std::string_view bytes, std::string_view key, const
     return out;
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

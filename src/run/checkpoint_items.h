@@ -9,7 +9,7 @@
 
 #include "metrics/metrics.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 /// Returns the item with the key of a run.
 std::string key_item(std::string_view key);
@@ -26,4 +26,4 @@ struct CheckpointContent {
 /// Reads the items of the run with this key. Stops at the first item whose checksum, length or regions do not fit.
 CheckpointContent read_items(std::string_view bytes, std::string_view key, const Experiment& experiment);
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -17,7 +17,7 @@
 #include "run/plan.h"
 #include "run/version.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -178,4 +178,4 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
     return out;
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

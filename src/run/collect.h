@@ -12,7 +12,7 @@
 #include "run/execute.h"
 #include "samplers/external_sampler.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 /// Everything that a run measured, without references to other objects.
 struct Measured {
@@ -67,4 +67,4 @@ Measured join_texts(const std::vector<std::string>& texts, const std::string& co
 /// Writes metrics.json, metrics.csv and junit.xml, all at once. Throws OutputError.
 void write_metrics(const Measured& measured, const std::string& folder, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "run/version.h"
 #include "tests/support/small_run.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 namespace collect_test {
 
 using ::testing::ElementsAre;
@@ -92,4 +92,4 @@ TEST(Collect, TailsAreOfTheSamplesOfARegion) {
 }
 
 }  // namespace collect_test
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -18,7 +18,7 @@
 #include "run/checkpoint.h"
 #include "run/plan.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -206,4 +206,4 @@ JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job,
     return out;
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

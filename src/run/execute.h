@@ -21,7 +21,7 @@
 #include "samplers/external_sampler.h"
 #include "scene/scene.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 class Checkpoint;
 
@@ -103,4 +103,4 @@ ExternalSamplers open_external(const Experiment& experiment, double timeout_s = 
 /// A program, or what a Python file imports, may change between two runs without a trace in the experiment's hash.
 bool may_change(const Experiment& experiment);
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "run/checkpoint.h"
 #include "tests/support/small_run.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 namespace execute_test {
 
 using ::testing::Contains;
@@ -136,4 +136,4 @@ TEST(Execute, DefaultsAreTheCpuAndItsBestInstructions) {
 }
 
 }  // namespace execute_test
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -13,7 +13,7 @@
 #include "check/sources/external.h"
 #include "experiment/experiment.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -146,4 +146,4 @@ bool may_change(const Experiment& experiment) {
         experiment.arms, [](const ArmPlan& arm) { return arm.exec || arm.python || arm.combination.weights_python; });
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

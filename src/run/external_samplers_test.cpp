@@ -6,7 +6,7 @@
 #include "run/execute.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 namespace external_samplers_test {
 
 using ::testing::HasSubstr;
@@ -50,4 +50,4 @@ TEST(ExternalArms, ProgramsMayChangeBetweenRuns) {
 }
 
 }  // namespace external_samplers_test
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -19,7 +19,7 @@
 #include "output/format.h"
 #include "run/plan.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -270,4 +270,4 @@ void write_metrics(const Measured& m, const std::string& folder, ProgressMonitor
     staging.commit(monitor);
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

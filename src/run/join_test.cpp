@@ -6,7 +6,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/small_run.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 namespace join_test {
 
 using ::testing::ElementsAre;
@@ -70,4 +70,4 @@ TEST_F(Joined, PartsThatContradictEachOtherAreRefused) {
 }
 
 }  // namespace join_test
-}  // namespace crescent::inline runs
+}  // namespace crescent

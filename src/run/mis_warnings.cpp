@@ -6,7 +6,7 @@
 #include "check/decide/check_sampler.h"
 #include "run/arm_cases.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -44,4 +44,4 @@ std::vector<std::string> mis_warnings(const Experiment& experiment, const Extern
     return out;
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -8,10 +8,10 @@
 #include "experiment/experiment.h"
 #include "samplers/external_sampler.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 /// A line for each such arm. Only weights that the experiment gives are tested, at a few pixels; those of the balance
 /// and the power heuristic are 0 where the density is.
 std::vector<std::string> mis_warnings(const Experiment& experiment, const ExternalSamplers& outside);
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

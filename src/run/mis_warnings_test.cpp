@@ -7,7 +7,7 @@
 #include "run/execute.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 namespace mis_warnings_test {
 
 using ::testing::HasSubstr;
@@ -41,4 +41,4 @@ TEST(MisWarnings, AreNotGivenForWeightsThatVanishWithTheDensity) {
 }
 
 }  // namespace mis_warnings_test
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -13,7 +13,7 @@
 #include "render/film.h"
 #include "render/tiles.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 std::vector<std::uint32_t> seeds_of(const Experiment& experiment) {
     std::vector<std::uint32_t> series;
@@ -153,4 +153,4 @@ void check_memory(const Experiment& experiment) {
     if (const std::string why = why_too_large(experiment, available_memory()); !why.empty()) throw OutputError(why);
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -15,7 +15,7 @@
 #include "samplers/external_sampler.h"
 #include "scene/scene.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 /// One pass over the pixels: one arm, every sample count, one exponent, one seed.
 struct Job {
@@ -85,4 +85,4 @@ template <class Work> bool unless_stopped(int threads, const ProgressMonitor& mo
     } catch (const Interrupted&) { return false; }
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

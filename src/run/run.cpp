@@ -16,7 +16,7 @@
 #include "run/mis_warnings.h"
 #include "run/plan.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -107,4 +107,4 @@ Measured measure_in_memory(const Experiment& experiment, const RunOptions& optio
     return measured(plan, look(plan, engine), engine, options, monitor, nullptr);
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "run/plan.h"
 #include "run/write.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 /// The options of a run that are not in the experiment.
 struct RunOptions {
@@ -42,4 +42,4 @@ Measured measure_in_memory(const Experiment& experiment, const RunOptions& optio
 /// Interrupted.
 RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -3,10 +3,10 @@
 
 #include <commit.h>
 
-namespace crescent::inline runs {
+namespace crescent {
 
 std::string version() { return CRESCENT_VERSION; }
 std::string commit() { return CRESCENT_COMMIT; }
 std::string compiler() { return CRESCENT_COMPILER; }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace crescent::inline runs {
+namespace crescent {
 
 std::string version();   // "0.2.0"
 std::string commit();    // from `git describe`, or "unknown"
 std::string compiler();  // "GNU 12.2.0"
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

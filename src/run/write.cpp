@@ -21,7 +21,7 @@
 #include "run/plan.h"
 #include "run/version.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 
 namespace {
 
@@ -222,4 +222,4 @@ void check_font(const Experiment& experiment) {
     if (!experiment.plates.empty()) const plates::Canvas font(16, 16, plates::ground);
 }
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -9,11 +9,11 @@
 #include "run/collect.h"
 #include "run/execute.h"
 
-namespace crescent::inline base {
+namespace crescent {
 class Staging;
 }
 
-namespace crescent::inline runs {
+namespace crescent {
 
 /// Parses "metrics,report" to those outputs only. Throws InputError with the nearest word for an unknown word.
 OutputParts output_parts(const std::string& words);
@@ -45,4 +45,4 @@ ReportInputs report_inputs(const Measured& measured);
 /// OutputError if memory or the font is missing, Interrupted if the monitor requests it.
 std::vector<unsigned char> preview(const Experiment& experiment, const Engine& engine, ProgressMonitor& monitor);
 
-}  // namespace crescent::inline runs
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/small_run.h"
 
-namespace crescent::inline runs {
+namespace crescent {
 namespace write_test {
 
 using ::testing::Contains;
@@ -74,4 +74,4 @@ TEST(OutputWords, SelectParts) {
 }
 
 }  // namespace write_test
-}  // namespace crescent::inline runs
+}  // namespace crescent

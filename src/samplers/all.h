@@ -18,7 +18,7 @@
 #include "samplers/sky.h"
 #include "samplers/uniform.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 /// The types of the samplers, in the order of their indices. Each is a Sampler (samplers/sampler.h).
 template <template <class> class... A>
@@ -35,4 +35,4 @@ template <class Call, template <class> class... A> constexpr void for_each_sampl
     (f.template operator()<A>(), ...);
 }
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

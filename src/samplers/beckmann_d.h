@@ -7,7 +7,7 @@
 #include "samplers/halfway.h"
 #include "scene/lobes/beckmann.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct BeckmannD {
     static constexpr std::string_view name = "beckmann-d";
@@ -52,4 +52,4 @@ template <class F> struct BeckmannD {
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -6,7 +6,7 @@
 
 #include "samplers/halfway.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct Blinn {
     static constexpr std::string_view name = "blinn";
@@ -50,4 +50,4 @@ template <class F> struct Blinn {
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

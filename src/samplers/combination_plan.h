@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 enum class CombinationKind { mis, mixture, ris };
 
@@ -40,4 +40,4 @@ struct CombinationPlan {
 /// f L cos of the nearest light, without occlusion; f cos.
 inline constexpr const char *target_product = "product", *target_brdf = "brdf";
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

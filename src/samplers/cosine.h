@@ -4,7 +4,7 @@
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct Cosine {
     static constexpr std::string_view name = "cosine";
@@ -33,4 +33,4 @@ template <class F> struct Cosine {
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "base/errors.h"
 #include "scene/lights/all.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::vector<double> example_context(std::span<const std::string> uses) {
     return out;
 }
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

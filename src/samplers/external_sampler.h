@@ -11,11 +11,8 @@
 
 #include "base/vec.h"
 
-namespace crescent::inline render {
+namespace crescent {
 class Combination;
-}  // namespace crescent::inline render
-
-namespace crescent::inline samplers {
 
 /// The data of the surface point for a sampler, in addition to wo. Files and C use the same layout.
 struct ExternalSurface {
@@ -136,4 +133,4 @@ ExampleLight example_light();
 /// The columns of the surface on which `crescent check` tests a sampler: the default of a plugin, below one disk light.
 std::vector<double> example_context(std::span<const std::string> uses);
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

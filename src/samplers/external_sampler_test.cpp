@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace crescent::inline samplers {
+namespace crescent {
 namespace external_sampler_test {
 
 using ::testing::ElementsAre;
@@ -49,4 +49,4 @@ TEST(ContextColumns, OfTheExampleShineOnThePoint) {
 }
 
 }  // namespace external_sampler_test
-}  // namespace crescent::inline samplers
+}  // namespace crescent

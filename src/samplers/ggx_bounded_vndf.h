@@ -9,7 +9,7 @@
 #include "samplers/halfway.h"
 #include "scene/lobes/ggx.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct GgxBoundedVndf {
     static constexpr std::string_view name = "ggx-bounded-vndf";
@@ -58,4 +58,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

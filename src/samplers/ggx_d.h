@@ -7,7 +7,7 @@
 #include "samplers/halfway.h"
 #include "scene/lobes/ggx.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct GgxD {
     static constexpr std::string_view name = "ggx-d";
@@ -41,4 +41,4 @@ template <class F> struct GgxD {
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

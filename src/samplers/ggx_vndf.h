@@ -8,7 +8,7 @@
 #include "samplers/halfway.h"
 #include "scene/lobes/ggx.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct GgxVndf {
     static constexpr std::string_view name = "ggx-vndf";
@@ -44,4 +44,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -6,7 +6,7 @@
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> F half_jacobian(F wo_m) { return number<F>(4) * larger(wo_m, number<F>(1e-12)); }
 
@@ -34,4 +34,4 @@ template <class F> Vec3<F> normal_from_cap(F alpha, Vec3<F> stretched, F sin, Si
     return normalize(Vec3<F>{alpha * (sin * phi.cos + stretched.x), alpha * (sin * phi.sin + stretched.y), rise});
 }
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -4,7 +4,7 @@
 #include "math/functions.h"
 #include "samplers/all.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 namespace {
 
@@ -54,4 +54,4 @@ std::uint64_t directions_per_sample(std::string_view sampler) {
     return arm ? static_cast<std::uint64_t>(arm->techniques) : 1;
 }
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 /// The direction that a density is centred on, if it has one and is symmetric about it.
 enum class PdfAxis { none, normal, mirror };
@@ -91,4 +91,4 @@ std::vector<std::string> sampler_names();
 /// Returns the directions that a built-in sampler draws per sample.
 std::uint64_t directions_per_sample(std::string_view sampler);
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

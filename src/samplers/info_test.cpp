@@ -9,7 +9,7 @@
 #include "samplers/all.h"
 #include "scene/lobes/lobe.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 namespace info_test {
 
 TEST(ArmInfos, GoByOneNameWhichTheirLabelsHold) {
@@ -79,4 +79,4 @@ TEST(LobeInfos, NameAnArmThatDrawsFromThemAndAreComplete) {
 }
 
 }  // namespace info_test
-}  // namespace crescent::inline samplers
+}  // namespace crescent

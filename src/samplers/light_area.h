@@ -7,7 +7,7 @@
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct LightArea {
     static constexpr std::string_view name = "light-area";
@@ -137,4 +137,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -14,7 +14,7 @@
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct LightSolidAngle {
     static constexpr std::string_view name = "light-solid-angle";
@@ -149,4 +149,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "math/simd/scalar.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct LightTriangle {
     static constexpr std::string_view name = "light-triangle";
@@ -92,4 +92,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "samplers/light_area.h"
 #include "samplers/mixture.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 inline constexpr CaseSurface mis_cases[] = {{.lobe = "phong", .sharpness = 32, .lambert = true},
     {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + disk"},
@@ -89,4 +89,4 @@ template <class F> struct MisPower : TwoSampleMis<F, PowerHeuristic> {
     using TwoSampleMis<F, PowerHeuristic>::TwoSampleMis;
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "samplers/cosine.h"
 #include "samplers/phong.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct Mixture {
     static constexpr std::string_view name = "mixture";
@@ -46,4 +46,4 @@ template <class F> struct Mixture {
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

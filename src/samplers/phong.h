@@ -7,7 +7,7 @@
 #include "math/functions.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct Phong {
     static constexpr std::string_view name = "phong";
@@ -59,4 +59,4 @@ template <class F> struct Phong {
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "scene/lights/all.h"
 #include "scene/surroundings.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 /// A density over solid angle, 1/sr.
 template <class F> struct PerSr {
@@ -128,4 +128,4 @@ concept Sampler = std::constructible_from<S, const ShadingPoint<F>&> && requires
     { S::manual } -> std::convertible_to<SamplerDoc>;
 } && (DrawsTwo<S, F> || (!requires { S::techniques; } && DrawsOne<S, F>));
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "math/simd/scalar.h"
 #include "samplers/sampler.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct SkyByTexel {
     static constexpr std::string_view name = "sky";
@@ -74,4 +74,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -4,7 +4,7 @@
 
 #include "samplers/sampler.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 template <class F> struct Uniform {
     static constexpr std::string_view name = "uniform";
@@ -32,4 +32,4 @@ template <class F> struct Uniform {
     }
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "math/functions.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 namespace {
 
@@ -246,4 +246,4 @@ void WeightList::evaluate(const FormulaInputs& in, std::span<double> out) const 
             fmt::join(out, ", "), sum, in.s, in.alpha, in.rho_d, in.rho_s, in.cos_o));
 }
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

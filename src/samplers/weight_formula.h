@@ -19,7 +19,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline samplers {
+namespace crescent {
 
 /// The values that a formula may use.
 struct FormulaInputs {
@@ -93,4 +93,4 @@ private:
     SourceLocation at_{};
 };
 
-}  // namespace crescent::inline samplers
+}  // namespace crescent

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace crescent::inline samplers {
+namespace crescent {
 namespace weight_formula_test {
 
 const double densities[] = {0.5, 2};
@@ -51,4 +51,4 @@ TEST(WeightLists, AreFromZeroToOneAndSumToOne) {
 }
 
 }  // namespace weight_formula_test
-}  // namespace crescent::inline samplers
+}  // namespace crescent

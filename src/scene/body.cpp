@@ -8,7 +8,7 @@
 
 #include "math/functions.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 namespace {
 
@@ -64,4 +64,4 @@ Azimuths azimuths_of_corners(std::span<const Vec3d> points, Vec3d x, const Frame
     return {math::atan2(middle.y, middle.x) + 0.5 * (lo + hi), 0.5 * (hi - lo)};
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -17,7 +17,7 @@
 #include "base/vec.h"
 #include "math/simd/frame.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 // ---- The parameters of a kind of shape or light: name in a file, type, range and member; the table of an experiment
 // file and the words of a report are made from them.
@@ -263,4 +263,4 @@ template <class F> F plane_at(Vec3<F> n, F offset, Vec3<F> o, Vec3<F> d) {
 /// Returns how far a disk of unit normal n and radius 1 extends along `axis` from its centre.
 double disk_reach(Vec3d axis, Vec3d n);
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

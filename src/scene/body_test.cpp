@@ -7,7 +7,7 @@
 #include "scene/shapes/box.h"
 #include "scene/shapes/quad.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 namespace body_test {
 
 double azimuth_of(Vec3d d, const Frame<double>& frame) { return std::atan2(dot(d, frame.b), dot(d, frame.t)); }
@@ -38,4 +38,4 @@ TEST(Azimuths, AreAllOfThemWhereTheAxisMeetsTheMiddle) {
 }
 
 }  // namespace body_test
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "math/simd/random.h"
 #include "scene/scene_data.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 namespace intersect_test {
 
 /// Numbers in [-1, 1], one after another.
@@ -220,4 +220,4 @@ TEST(IntersectConformance, PanelsAreEnteredOnlyFromTheFront) {
 }
 
 }  // namespace intersect_test
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "math/functions.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 Scene::Made::Made(SceneData from) : data(std::move(from)) {
     const Camera& c = data.camera;
@@ -263,4 +263,4 @@ Surface Scene::surface(const Hit& hit) const {
     return out;
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

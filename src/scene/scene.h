@@ -11,7 +11,7 @@
 #include "scene/scene_data.h"
 #include "scene/surroundings.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 /// The hit of a primary ray. The normal is unit and faces the camera.
 struct Hit {
@@ -124,4 +124,4 @@ private:
     std::shared_ptr<const std::vector<std::int32_t>> shapes_;  // the shapes only, for a larger image
 };
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

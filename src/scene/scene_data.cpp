@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crescent::inline scene {
+namespace crescent {
 
 // ---- rho_s is the luminance of a coloured lobe and its tint is the colour over that, so that grey lobes keep their
 // bits; the default alpha is sqrt(2 / (s + 2)) (Walter et al. 2007).
@@ -134,4 +134,4 @@ const Shape* SceneData::find_shape(std::string_view name) const {
     return it == shapes.end() ? nullptr : &*it;
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -18,7 +18,7 @@
 #include "scene/sky.h"
 #include "scene/texture.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 // ---- The reflection of a surface: f = rho_d/pi + rho_s * lobe(s or alpha), albedos in [0, 1], f in 1/sr.
 
@@ -285,4 +285,4 @@ struct SceneData {
     const Shape* find_shape(std::string_view name) const;
 };
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

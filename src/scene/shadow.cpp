@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace crescent::inline scene {
+namespace crescent {
 
 // ---- Separating planes between a convex body and the hull of some points and a light.
 
@@ -81,4 +81,4 @@ bool holds(const Occluder& o, Vec3d x) {
     return std::visit([&](const auto& body) { return body.holds(x); }, o.body);
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

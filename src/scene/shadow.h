@@ -9,7 +9,7 @@
 #include "scene/body.h"
 #include "scene/scene.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 /// Returns the v for which the way from x to y(v) crosses the body's surface within `between`: one interval if x is
 /// outside the body, else at most two (points inside one body see each other).
@@ -61,4 +61,4 @@ template <class F> void each_open_part(std::span<Interval> hidden_parts, F&& f) 
     if (from < 1) f(Interval{from, 1});
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "math/simd/frame.h"
 #include "math/simd/random.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 namespace shadow_test {
 
 /// Numbers in [-1, 1], one after another.
@@ -119,4 +119,4 @@ TEST(EachOpenPart, IsTheRestOfTheChord) {
 }
 
 }  // namespace shadow_test
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -14,7 +14,7 @@
 #include "math/simd/scalar.h"
 #include "scene/texture.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 namespace {
 
@@ -180,4 +180,4 @@ std::uint32_t SkyTable::texel_at(Vec3d w) const {
     return static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(width()) + static_cast<std::uint32_t>(column);
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

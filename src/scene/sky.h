@@ -22,7 +22,7 @@
 #include "base/vec.h"
 #include "scene/texture.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 inline constexpr int widest_sky = 8192, highest_sky = 4096;  // texels
 inline constexpr double brightest_sky = 1e9;                 // W/(sr m^2), the limit of every radiance of a file
@@ -95,4 +95,4 @@ private:
     std::size_t guides_of_row_ = 1;
 };
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

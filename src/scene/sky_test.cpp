@@ -11,7 +11,7 @@
 #include "math/simd/scalar.h"
 #include "tests/support/skies.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 namespace sky_test {
 
 using testing::HasSubstr;
@@ -178,4 +178,4 @@ TEST(Skies, AreRefusedWithTheTexel) {
 }
 
 }  // namespace sky_test
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace crescent::inline scene {
+namespace crescent {
 
 namespace {
 
@@ -73,4 +73,4 @@ double triangles_pdf(const Surroundings& around, Vec3d x, Vec3d d) {
     return around.triangles ? around.triangles->pdf(x, d) : 0;
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "scene/sky.h"
 #include "scene/triangle_lights.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 struct Surroundings {
     std::optional<SkyTable> sky;
@@ -54,4 +54,4 @@ double sky_pdf(const Surroundings& around, std::uint32_t texel, Vec3d d);
 TriangleDraw sample_triangles(const Surroundings& around, Vec3d x, double u, double v, bool whole);
 double triangles_pdf(const Surroundings& around, Vec3d x, Vec3d d);
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

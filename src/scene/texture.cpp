@@ -14,7 +14,7 @@
 #include "base/errors.h"
 #include "scene/sky.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 namespace {
 
@@ -131,4 +131,4 @@ Rgb texel_at(const RgbImage& image, double u, double v) {
     return {double(t[0]), double(t[1]), double(t[2])};
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

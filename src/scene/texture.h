@@ -15,7 +15,7 @@
 
 #include "base/vec.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 inline constexpr int widest_texture = 8192;  // texels along each side
 
@@ -84,4 +84,4 @@ std::string why_no_texture_of(std::int64_t width, std::int64_t height);
 /// Returns the hash of the content, as 16 hexadecimal digits.
 std::string content_hash(const RgbImage& image);
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -9,7 +9,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 namespace texture_test {
 
 using testing::HasSubstr;
@@ -54,9 +54,6 @@ TEST(Textures, AreRefusedWithTheTexel) {
 }
 
 }  // namespace texture_test
-}  // namespace crescent::inline scene
-
-namespace crescent {
 
 // ---- A pack gives back the texels and their hash; a damaged one is refused with the place.
 namespace texture_test {

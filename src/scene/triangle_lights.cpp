@@ -9,7 +9,7 @@
 #include "base/errors.h"
 #include "scene/mesh/bvh_tree.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::uint32_t TriangleLights::find(std::uint32_t instance, std::uint32_t triangl
     return no_triangle;
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -15,7 +15,7 @@
 #include "base/vec.h"
 #include "scene/mesh/bvh.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 struct BvhTree;
 
@@ -72,4 +72,4 @@ private:
     float reach_ = 0;  // the largest coordinate, m
 };
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

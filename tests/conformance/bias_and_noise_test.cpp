@@ -8,7 +8,7 @@
 #include "compare/plan.h"
 #include "tests/support/synthetic_renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace bias_and_noise_test {
 
 using ::testing::HasSubstr;
@@ -203,4 +203,4 @@ TEST(CompareJudges, NoiseMovedWhereTheVariancesAreToldApart) {
 }
 
 }  // namespace bias_and_noise_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -46,7 +46,7 @@ n = 4096
 
 /// The film of an arm at 64 samples per pixel.
 Film film_of(const Experiment& e, const std::string& arm, std::uint64_t n = 64) {
-    const ExternalSamplers outside = runs::open_external(e);
+    const ExternalSamplers outside = open_external(e);
     ProgressMonitor monitor;
     return estimate_films(
         Scene(e), SamplerRef(e.find_arm(arm)->sampler, external_of(outside, arm)), {n}, e.seed, "", monitor)[0];
@@ -132,7 +132,7 @@ TEST(Combinations, HaveTheBitsOfAnyNumberOfThreadsAndOfAPrefix) {
     for (const std::string declared : {"kind = \"mis\"\nof = [\"cosine\", \"light-area\"]",
              "kind = \"ris\"\nof = [\"cosine\", \"light-area\"]\ncandidates = 4"}) {
         const Experiment e = with("[arms.tested]\n" + declared + "\n");
-        const ExternalSamplers outside = runs::open_external(e);
+        const ExternalSamplers outside = open_external(e);
         const SamplerRef arm("", external_of(outside, "tested"));
         ProgressMonitor monitor;
         const std::vector<Film> many = estimate_films(Scene(e), arm, {5, 64}, e.seed, "", monitor);
@@ -146,7 +146,7 @@ TEST(Combinations, HaveTheBitsOfAnyNumberOfThreadsAndOfAPrefix) {
 TEST(Combinations, StateTheirCost) {
     const auto cost = [](const std::string& declared) {
         const Experiment e = with("[arms.tested]\n" + declared + "\n");
-        return runs::open_external(e).at("tested")->as_combination()->cost();
+        return open_external(e).at("tested")->as_combination()->cost();
     };
     const SampleCost every = cost("kind = \"mis\"\nof = [\"cosine\", \"light-area\"]\nsamples = [1, 3]");
     EXPECT_EQ(every.directions, 4u);
@@ -166,7 +166,7 @@ TEST(Combinations, KeepTheWhiteFurnace) {
         SCOPED_TRACE(declared);
         const Experiment e = with("[arms.tested]\n" + declared + "\n");
         ProgressMonitor monitor;
-        for (const FurnaceResult& f : metrics::furnaces(e, nullptr, "", monitor, runs::open_external(e)))
+        for (const FurnaceResult& f : furnaces(e, nullptr, "", monitor, open_external(e)))
             EXPECT_LT(std::fabs(f.measured - f.expected), 4 * f.se + 1e-6) << f.measured << " " << f.expected;
     }
 }
@@ -174,7 +174,7 @@ TEST(Combinations, KeepTheWhiteFurnace) {
 CheckResult checked(const Experiment& e, int pixels) {
     ProgressMonitor monitor;
     TestSettings settings = TestSettings::quick();
-    return run_checks(runs::arm_cases(e, "tested", runs::open_external(e), {.pixels = pixels}), settings, monitor);
+    return run_checks(arm_cases(e, "tested", open_external(e), {.pixels = pixels}), settings, monitor);
 }
 
 TEST(ArmCases, PassACorrectCombinationAtPixelsOfItsScene) {

@@ -13,7 +13,7 @@
 #include "tests/support/samplers_at_point.h"
 #include "tests/support/sanitized.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 namespace reference_test {
 
 constexpr std::uint32_t scenes_a_shard = test::sanitized ? 5 : 15;
@@ -139,4 +139,4 @@ TEST(Estimator, UnbiasedArmsMeetTheQuadrature) {
 }
 
 }  // namespace reference_test
-}  // namespace crescent::inline reference
+}  // namespace crescent

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace synthetic_test {
 
 using Kind = SyntheticNoise::Kind;
@@ -80,4 +80,4 @@ TEST(SyntheticScenes, EqualSeedsGiveEqualResults) {
 }
 
 }  // namespace synthetic_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

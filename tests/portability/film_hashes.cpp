@@ -58,7 +58,7 @@ SkyLight some_sky() {
     image->width = 32, image->height = 16;
     for (std::uint32_t k = 0; k < 32 * 16; ++k)
         for (std::uint32_t c = 0; c < 3; ++c) {
-            const std::uint32_t hash = simd::pcg4d(simd::Vec4u<std::uint32_t>{k, c, 1, 2}).x;
+            const std::uint32_t hash = pcg4d(Vec4u<std::uint32_t>{k, c, 1, 2}).x;
             image->rgb.push_back(static_cast<float>(hash >> 8) * (k % 61 == 0 ? 0x1p-10f : 0x1p-24f));
         }
     SkyLight sky;

@@ -7,7 +7,7 @@
 #include "compare/compare.h"
 #include "tests/support/synthetic_renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// Renders by name; all of arm "a" begin with a, of "b" with b.
 class MemoryRenders {
@@ -57,4 +57,4 @@ private:
     }
 };
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

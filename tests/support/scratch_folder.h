@@ -12,7 +12,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 class ScratchFolder : public ::testing::Test {
 protected:
@@ -45,4 +45,4 @@ private:
     static inline int count_ = 0;
 };
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -20,7 +20,7 @@
 #include "math/simd/random.h"
 #include "math/statistics.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -212,4 +212,4 @@ CompareResult compare_synthetic(const SyntheticScene& scene, std::uint32_t seed,
     return test_differences(plan, read_all(plan, monitor, source_of(scene, seed)), monitor);
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -5,7 +5,7 @@
 
 #include "compare/compare.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// Noise of mean 1 + bias. normal: `size` is the standard deviation. lognormal: that of the logarithm. events: 0.9, and
 /// with this probability a bright event with exponential distribution, which contributes the rest, as a caustic or a
@@ -49,4 +49,4 @@ double event_size(const SyntheticNoise& noise);
 CompareResult compare_synthetic(
     const SyntheticScene& scene, std::uint32_t seed, const std::vector<CompareFlag>& more = {});
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

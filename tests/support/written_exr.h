@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// One part; a channel's value at a pixel is smooth in x and y and differs between channels.
 struct WrittenExr {
@@ -74,4 +74,4 @@ struct WrittenExr {
     }
 };
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

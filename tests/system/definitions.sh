@@ -8,7 +8,7 @@ cd "$CRESCENT_SOURCE" || exit 1
 
 for isa in sse4 avx2 avx512; do
     for object in $(find "${CRESCENT_BUILD:?}" -name "kernel_$isa.cpp.o"); do
-        shared=$(nm -C --defined-only "$object" | awk '$2 ~ /^[WVu]$/' | grep -v "crescent::[a-z]*::$isa::")
+        shared=$(nm -C --defined-only "$object" | awk '$2 ~ /^[WVu]$/' | grep -vE "crescent::([a-z]+::)?$isa::")
         [ -z "$shared" ] || die "$object shares functions with other files: $shared"
         checked=1
     done
@@ -21,7 +21,7 @@ doubles() {
         FNR == 1 { space = ""; hidden = 0 }
         /^namespace \{/ { hidden = 1 }
         /^\}  \/\/ namespace$/ { hidden = 0 }
-        /^namespace [a-z_:]+(inline [a-z_]+)? \{/ { space = $0; sub(/ \{.*/, "", space) }
+        /^namespace [a-z_:]+ \{/ { space = $0; sub(/ \{.*/, "", space) }
         !hidden && /^(struct|class|enum class) [A-Za-z_0-9]+( final)?( :[^;]*)? \{/ {
             name = $1 == "enum" ? $3 : $2
             full = space "::" name

@@ -101,12 +101,12 @@ CheckAt check_sampler_at(const SamplerAdapter& adapter, int technique, Vec3d wo,
 struct WeightTail {
     bool has_weights = false;  // whether every draw has a weight
     bool whole = false;        // whether some draws are below the surface
-    statistics::Spread spread;
-    double variance_error = 0;            // relative standard error of the variance
-    std::optional<statistics::Tail> fit;  // none if the largest weights are equal
-    std::size_t times_largest = 0;        // number of draws of the largest weight
-    bool bounded = false;                 // whether the largest weight is at most a few means
-    double integral = 0;                  // integral of f L cos where p > 0, from the points, including delta parts
+    Spread spread;
+    double variance_error = 0;      // relative standard error of the variance
+    std::optional<Tail> fit;        // none if the largest weights are equal
+    std::size_t times_largest = 0;  // number of draws of the largest weight
+    bool bounded = false;           // whether the largest weight is at most a few means
+    double integral = 0;            // integral of f L cos where p > 0, from the points, including delta parts
     // Regions where weights exceed the largest drawn, summed over the techniques:
     double unseen = 0, unseen_error = 0;  // integral of f L cos, and its standard error
     double unseen_chance = 0;             // integral of p

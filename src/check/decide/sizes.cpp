@@ -44,7 +44,7 @@ public:
     }
     /// The quantile of Student's t, shared by many tests with the same degrees of freedom.
     static double quantile(double freedom, double level) {
-        return statistics::student_two_sided_quantile(std::clamp(freedom, 1.0, 1e6), level);
+        return student_two_sided_quantile(std::clamp(freedom, 1.0, 1e6), level);
     }
     static Needed by_student(double floor, Variances v, double quantile, double freedom) {
         return {floor, v.all(), 0, quantile, 1 / (2 * std::clamp(freedom, 1.0, 1e6))};
@@ -204,7 +204,7 @@ double noncentrality(double degrees, double level) {
     double low = 0, high = degrees + 1000;
     for (int k = 0; k < 50; ++k) {
         const double middle = (low + high) / 2;
-        (statistics::chi_squared_tail(degrees, middle) > level ? low : high) = middle;
+        (chi_squared_tail(degrees, middle) > level ? low : high) = middle;
     }
     return high - degrees;
 }
@@ -561,7 +561,7 @@ std::optional<double> bias_of(const Evidence& e, double level) {
     const double n = e.observations.weighted_draws;
     if (!(n > 1) || !(expected.value > 0)) return {};
     const double mean = s.sum / n, v = std::max(s.square / n - mean * mean, 0.0) / n + expected.variance;
-    const double errors = statistics::student_two_sided_quantile(1e6, level) + power_of_each;
+    const double errors = student_two_sided_quantile(1e6, level) + power_of_each;
     return errors * std::sqrt(v) / expected.value + detection_floor;
 }
 
@@ -596,7 +596,7 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
 double half_interval(const Estimate& integral) {
     const double nu = freedom(integral.variance, integral.doubt);
     if (!(nu >= 1) || !std::isfinite(integral.variance)) return std::numeric_limits<double>::infinity();
-    return statistics::student_two_sided_quantile(std::min(nu, 1e6), 0.05) * std::sqrt(integral.variance);
+    return student_two_sided_quantile(std::min(nu, 1e6), 0.05) * std::sqrt(integral.variance);
 }
 
 double worst_ratio(const Sizes& s) {

@@ -26,18 +26,18 @@ bool is_of_few_values(std::span<const double> falling) {
     return values <= few_values;
 }
 
-std::optional<statistics::Tail> fit_of(std::span<const double> x) {
-    const std::size_t length = std::min(statistics::tail_length(x.size()) + 1, x.size());
+std::optional<Tail> fit_of(std::span<const double> x) {
+    const std::size_t length = std::min(tail_length(x.size()) + 1, x.size());
     std::vector<double> largest(x.begin(), x.end());
     std::partial_sort(
         largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(length), largest.end(), std::greater<>());
     const std::span<const double> falling = std::span<const double>(largest).first(length);
-    const std::optional<statistics::Tail> tail = statistics::fit_tail(falling);
-    const auto may_be_heavy = [](const statistics::Tail& t) { return t.k + 2 * t.se >= heavy_index; };
+    const std::optional<Tail> tail = fit_tail(falling);
+    const auto may_be_heavy = [](const Tail& t) { return t.k + 2 * t.se >= heavy_index; };
     if (!tail || !may_be_heavy(*tail)) return tail;
     if (times_of_largest(falling) >= bound_drawn || is_of_few_values(falling)) return {};
     if (length <= deeper_part * deeper_least) return tail;
-    const std::optional<statistics::Tail> upper = statistics::fit_tail(falling.first(1 + (length - 1) / deeper_part));
+    const std::optional<Tail> upper = fit_tail(falling.first(1 + (length - 1) / deeper_part));
     return upper && !may_be_heavy(*upper) ? upper : tail;
 }
 
@@ -65,10 +65,10 @@ void note_unseen(std::vector<WeightedPoint> unseen, WeightTail& to) {
         light += unseen[i].light, to.half_chance += unseen[i].chance;
 }
 
-double standard_error(const statistics::Spread& s) { return s.sd / std::sqrt(std::max(s.n, 1.0)); }
+double standard_error(const Spread& s) { return s.sd / std::sqrt(std::max(s.n, 1.0)); }
 
 /// Number of draws whose mean has a standard error of 1 %.
-double draws_for_1_percent(const statistics::Spread& s) {
+double draws_for_1_percent(const Spread& s) {
     return s.mean > 0 ? std::max(s.sd * s.sd / (s.mean * s.mean) / 1e-4, 1.0) : 1;
 }
 
@@ -142,7 +142,7 @@ std::vector<double> weights_of(std::span<const CheckAt> techniques) {
 WeightTail tail_of_weights(std::span<const double> x) {
     WeightTail out;
     out.has_weights = !x.empty();
-    out.spread = statistics::spread(x);
+    out.spread = crescent::spread(x);
     double fourth = 0;
     for (double v : x) fourth += sqr(sqr(v - out.spread.mean)) / out.spread.n;
     const double variance = sqr(out.spread.sd);

@@ -9,7 +9,7 @@
 
 #include "base/text.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 namespace {
 
@@ -188,4 +188,4 @@ std::string Domain::unit() const {
     return "per unit of the product measure";
 }
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace crescent::inline sources {
+namespace crescent {
 
 /// One factor of a product of domains.
 struct DomainPart {
@@ -65,4 +65,4 @@ private:
     std::string name_;
 };
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

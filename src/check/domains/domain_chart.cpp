@@ -11,7 +11,7 @@
 #include "base/vec.h"
 #include "math/functions.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 namespace {
 
@@ -475,4 +475,4 @@ std::optional<std::uint32_t> DomainChart::entry(const check::ChartRect& rect) co
     return static_cast<std::uint32_t>(first);
 }
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

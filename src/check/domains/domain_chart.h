@@ -13,7 +13,7 @@
 #include "check/domains/domain.h"
 #include "check/estimate/chart.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 /// The parts of a domain are mapped to a unit cube, and the cube to the sphere: one or two dimensions to the polar and
 /// the azimuthal coordinate of estimate/chart.h; three or four by dealing the bits of their coordinates to these two in
@@ -91,4 +91,4 @@ private:
     double from_cube(std::span<const double> y, std::span<double> point) const;
 };
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

@@ -135,7 +135,7 @@ std::optional<Vec3d> fitted_plane(std::span<const KnownRatio> ratios, int power)
                 for (std::size_t j = 0; j < 3; ++j) a[i][j] += weight * w[i] * w[j];
             }
         }
-        const auto n = statistics::solved(a, b, 1e-12);
+        const auto n = solved(a, b, 1e-12);
         if (!n) return {};
         out = Vec3d{(*n)[0], (*n)[1], (*n)[2]};
         for (Row& r : rows) r.error = std::fabs(dot(*out, r.w) / r.y - 1);
@@ -159,7 +159,7 @@ std::optional<Cause> plane_cause(std::span<const KnownRatio> ratios, std::span<c
         return Cause{"light in a plane", static_cast<double>(power), 0,
             fmt::format("By the derivatives of sample(u), draws over p is {} |n.w_i|^{}, with n = {}. For a light in a "
                         "plane with this normal, {}.",
-                output::figures(math::exp(-power * math::log(length(*n))), 4), -power,
+                crescent::figures(math::exp(-power * math::log(length(*n))), 4), -power,
                 direction_text(*n * (1 / length(*n))), what)};
     }
     return {};

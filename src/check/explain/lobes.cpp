@@ -195,7 +195,7 @@ std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t 
             // The square of a mean is biased by its variance.
             for (std::size_t k = 0; k < lobes; ++k) normal[k][k] -= c.mean_variance[k] / v;
         }
-        const auto x = statistics::solved(normal, right, 1e-6);
+        const auto x = solved(normal, right, 1e-6);
         if (!x) return {};
         for (double v : *x)
             if (!std::isfinite(v)) return {};
@@ -204,7 +204,7 @@ std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t 
     for (std::size_t k = 0; k < lobes; ++k) {
         std::vector<double> unit(lobes);
         unit[k] = 1;
-        const auto column = statistics::solved(normal, unit, 1e-6);
+        const auto column = solved(normal, unit, 1e-6);
         out.errors[k] = column ? std::sqrt(std::max((*column)[k], 0.0)) : 1;
     }
     out.misfit = chi_squared(cells, out.x);
@@ -217,8 +217,7 @@ bool explains(const Shares& s) {
     for (std::size_t k = 0; k < s.x.size(); ++k)
         if (s.x[k] < -3 * s.errors[k]) return false;  // no share is negative
     // The rest is within chance, or a fiftieth of the original misfit.
-    return statistics::chi_squared_tail(degrees, s.misfit) > fits_at ||
-        s.misfit - degrees < 0.02 * (s.before - degrees);
+    return chi_squared_tail(degrees, s.misfit) > fits_at || s.misfit - degrees < 0.02 * (s.before - degrees);
 }
 
 std::string lobe_sentence(const LobeChooser& by, const Shares& s) {

@@ -72,7 +72,7 @@ void derivatives(std::span<const Row> rows, std::size_t groups, const Fit& f, co
 double inverse_at(const Matrix& a, std::size_t k) {
     std::vector<double> unit(a.size());
     unit[k] = 1;
-    const auto column = statistics::solved(a, unit, 1e-12);
+    const auto column = solved(a, unit, 1e-12);
     return column ? (*column)[k] : 1e300;
 }
 
@@ -94,7 +94,7 @@ Fit fit(std::span<const Row> rows, std::size_t groups, std::vector<std::size_t> 
     Matrix information;
     for (int step = 0; step < most_steps && !f.factors.empty(); ++step) {
         derivatives(rows, groups, f, m, gradient, information);
-        const auto by = statistics::solved(information, gradient, 1e-12);
+        const auto by = solved(information, gradient, 1e-12);
         if (!by) break;
         double size = 0;
         for (std::size_t k = 0; k < by->size(); ++k) {

@@ -9,7 +9,7 @@
 
 #include "math/functions.h"
 
-namespace crescent::inline results {
+namespace crescent {
 
 namespace {
 
@@ -116,4 +116,4 @@ double constant_value(std::string_view text) {
     return value;
 }
 
-}  // namespace crescent::inline results
+}  // namespace crescent

@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
-namespace crescent::inline results {
+namespace crescent {
 
 /// The value of an expression: numbers, pi, e, + - * / ^, parentheses, and exp, log, sqrt, sin, cos, tan, abs.
 /// Throws std::invalid_argument with the column and what was expected.
 double constant_value(std::string_view text);
 
-}  // namespace crescent::inline results
+}  // namespace crescent

@@ -191,7 +191,7 @@ private:
             }
             const double rounding = 64 * ulp * std::max(std::fabs(d.expected), std::fabs(d.expected + d.value));
             if (std::fabs(d.value) <= rounding) continue;
-            if (statistics::normal_two_sided(d.errors()) > screening / channels()) continue;
+            if (normal_two_sided(d.errors()) > screening / channels()) continue;
             if (!is_confirmed(k, c, d)) continue;
             ++confirmed_;
             decision_ = {State::wrong, d, c, size};
@@ -215,7 +215,7 @@ private:
             b->extend(looks[k], monitor_);
         }
         const MeanDifference second = difference(a, b ? &*b : nullptr, channel);
-        return second.value * first.value > 0 && statistics::normal_two_sided(second.errors()) <= 2 * confirming;
+        return second.value * first.value > 0 && normal_two_sided(second.errors()) <= 2 * confirming;
     }
 
     // ---- Verdicts.

@@ -25,7 +25,7 @@ constexpr std::array<double, 3> shares_within = {0.5, 0.9, 0.99};
 
 Interval share_interval(double hits, double of) {
     if (!(of > 0)) return {};
-    const statistics::ShareInterval i = statistics::binomial_interval(of, hits, one_tail);
+    const ShareInterval i = binomial_interval(of, hits, one_tail);
     return {hits / of, i.low, i.high};
 }
 

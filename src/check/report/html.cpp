@@ -9,7 +9,7 @@
 #include "output/charts.h"
 #include "output/templates.h"
 
-namespace crescent::inline results {
+namespace crescent {
 
 namespace {
 
@@ -263,4 +263,4 @@ std::string verdict_html(const CheckResult& j, const ResultSource& source) {
     return render_page(check_templates(), "check.html", model);
 }
 
-}  // namespace crescent::inline results
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "check/verdict.h"
 #include "output/format.h"
 
-namespace crescent::inline results {
+namespace crescent {
 
 namespace {
 
@@ -241,4 +241,4 @@ std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end) {
     return "";
 }
 
-}  // namespace crescent::inline results
+}  // namespace crescent

@@ -9,7 +9,7 @@
 
 #include "check/verdict.h"
 
-namespace crescent::inline results {
+namespace crescent {
 
 /// The origin of a result; equal calls have equal ones.
 struct ResultSource {
@@ -109,4 +109,4 @@ bool one_sampler(const CheckResult& result);
 /// with its standard error, and its maximum; "" if every sampler has a pdf(w).
 std::string implied_text(const CheckResult& result);
 
-}  // namespace crescent::inline results
+}  // namespace crescent

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace crescent::inline results {
+namespace crescent {
 namespace print_test {
 
 using ::testing::HasSubstr;
@@ -107,4 +107,4 @@ TEST(NextSteps, NameTheFlagOrTheCall) {
 }
 
 }  // namespace print_test
-}  // namespace crescent::inline results
+}  // namespace crescent

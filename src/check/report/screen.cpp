@@ -11,7 +11,7 @@
 
 #include "check/verdict.h"
 
-namespace crescent::inline results {
+namespace crescent {
 
 namespace {
 
@@ -209,4 +209,4 @@ bool one_sampler(const CheckResult& result) {
     return std::ranges::all_of(result.verdicts, [&](const Verdict& v) { return v.arm == result.verdicts.front().arm; });
 }
 
-}  // namespace crescent::inline results
+}  // namespace crescent

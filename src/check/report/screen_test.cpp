@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace crescent::inline results {
+namespace crescent {
 namespace screen_test {
 
 using ::testing::HasSubstr;
@@ -94,4 +94,4 @@ TEST(Screens, AreOfOneSampler) {
 }
 
 }  // namespace screen_test
-}  // namespace crescent::inline results
+}  // namespace crescent

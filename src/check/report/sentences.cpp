@@ -42,7 +42,7 @@ std::string empty_sentence(const DrawChecks& c, double mass) {
     add(c.deltas, "are delta parts");
     add(unused > c.deltas ? unused - c.deltas : 0, "cannot be used");
     return fmt::format("p integrates to {:.5g}, but no draw is a direction of p: of {} draws {}.", mass, c.tested,
-        output::listed(parts));
+        crescent::listed(parts));
 }
 
 std::string mass_sentence(const CheckAt& c, const Answer& a) {
@@ -52,7 +52,7 @@ std::string mass_sentence(const CheckAt& c, const Answer& a) {
         return fmt::format(
             "p is 0 at all {:.0f} points at which it is integrated, and {} % of the samples draw a "
             "direction.",
-            c.integrals.points, output::figures(100 * drawn));
+            c.integrals.points, crescent::figures(100 * drawn));
     if (drawn > 1 - 1e-9) return fmt::format("p integrates to {}. Expected 1.", with_error(a.expected, half));
     return fmt::format("p integrates to {}. Expected {:.6g}, the share of the samples that draw a direction.",
         with_error(a.expected, half), drawn);

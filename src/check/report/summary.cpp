@@ -16,7 +16,7 @@
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 
-namespace crescent::inline results {
+namespace crescent {
 
 namespace {
 
@@ -387,4 +387,4 @@ std::string implied_text(const CheckResult& j) {
         out + "Finer in the JSON: implied_rings, implied_bins.";
 }
 
-}  // namespace crescent::inline results
+}  // namespace crescent

@@ -149,7 +149,7 @@ void add_faults_of_sampler(const CheckOutcome& outcome, const Traits& traits, Ve
         if (info(f.family).verdict != v.name) continue;
         v.state = State::wrong, v.size = std::max(v.size, share_of(f));
         v.message += (v.message.empty() ? "" : " ") + sentence_of(f, traits);
-        if (!here) v.place = f.wo ? "w_o = " + output::direction_text(*f.wo) : "pairs of directions";
+        if (!here) v.place = f.wo ? "w_o = " + direction_text(*f.wo) : "pairs of directions";
     }
 }
 

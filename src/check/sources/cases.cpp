@@ -11,7 +11,7 @@
 #include "check/sources/sampler_adapter.h"
 #include "math/functions.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 namespace {
 
@@ -440,4 +440,4 @@ std::vector<CheckCase> sampler_against(
     return out;
 }
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

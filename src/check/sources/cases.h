@@ -11,7 +11,7 @@
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 /// The surface of a case.
 struct SurfaceSetup {
@@ -182,4 +182,4 @@ CaseSetup case_setup(LobeKind lobe, bool lambert, const std::string& lighting, d
 CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std::string arm,
     std::shared_ptr<const SamplerAdapter> adapter);
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

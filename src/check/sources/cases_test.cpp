@@ -8,7 +8,7 @@
 #include "base/errors.h"
 #include "tests/support/function_sampler.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 namespace cases_test {
 
 using check::FunctionSampler;
@@ -100,4 +100,4 @@ TEST(CasesOfUsers, FollowTheDomainOfWo) {
 }
 
 }  // namespace cases_test
-}  // namespace crescent::inline sources
+}  // namespace crescent

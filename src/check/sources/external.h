@@ -13,7 +13,7 @@
 #include "check/sources/sampler_adapter.h"
 #include "samplers/external_sampler.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 // ---- A program. The handshake starts with `hello 2`, and the program answers with its declaration. Requests are text
 // lines, or blocks of doubles if the program declares them; docs/samplers.md has the grammar. The program ends at the
@@ -111,4 +111,4 @@ public:
 std::shared_ptr<const PluginSampler> open_plugin(const std::string& path, const PipeLimits& limits = {},
     const ExternalSurface& surface = {32, 0.24253562503633297, 0.5, 0.5});
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

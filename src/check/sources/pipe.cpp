@@ -21,7 +21,7 @@
 #include "check/sources/sampler_adapter.h"
 #include "samplers/external_sampler.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 namespace {
 
@@ -694,4 +694,4 @@ std::shared_ptr<const ProgramSampler> start_shader(
     return start_python_module("crescent_shader", all, "'crescent-bench[shader]'", limits, file);
 }
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "base/progress.h"
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 static_assert(std::endian::native == std::endian::little, "blocks are little-endian, and are copied as they are");
 
@@ -244,4 +244,4 @@ bool PipeConnection::take_block(
     return open;
 }
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

@@ -14,7 +14,7 @@
 #include "base/process.h"
 #include "check/sources/external.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 /// Received text for a message: shortened, with unprintable bytes as \xNN.
 inline std::string shown(std::string_view s) {
@@ -151,4 +151,4 @@ private:
     std::string end_of_output() const;
 };
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

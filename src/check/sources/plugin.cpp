@@ -27,7 +27,7 @@
 #include "check/sources/sampler_adapter.h"
 #include "samplers/external_sampler.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 namespace {
 
@@ -362,4 +362,4 @@ std::shared_ptr<const PluginSampler> open_plugin(
     return std::make_shared<Plugin>(path, limits, surface);
 }
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

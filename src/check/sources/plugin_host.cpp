@@ -28,7 +28,7 @@
 
 #include "check/sampler_plugin.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 const char* const plugin_host_name = "crescent-plugin-host";
 
@@ -264,7 +264,7 @@ namespace {
 
 }  // namespace
 
-}  // namespace crescent::inline sources
+}  // namespace crescent
 
 #ifdef CRESCENT_PLUGIN_HOST_PROGRAM
 int main() {

@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace crescent::inline sources {
+namespace crescent {
 
 inline constexpr const char* plugin_handshake = "crescent-plugin 2 ";
 
@@ -45,4 +45,4 @@ extern const char* const plugin_host_name;
 /// The same as a function: serves the library over stdin and stdout until the input ends.
 [[noreturn]] void serve_plugin(const char* library);
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

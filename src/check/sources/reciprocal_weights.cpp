@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "check/estimate/stream.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 namespace {
 
@@ -86,4 +86,4 @@ std::shared_ptr<const SamplerAdapter> with_bounded_weights(std::shared_ptr<const
     return std::make_shared<BoundedWeights>(std::move(sampler));
 }
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

@@ -6,7 +6,7 @@
 
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 /// A sampler with Traits::reciprocal_weight, whose weights are W and whose f is the target, as one whose weights are
 /// h W and whose f is h = target / (target + q), which is bounded; q: the median of the target over draws at that w_o.
@@ -14,4 +14,4 @@ namespace crescent::inline sources {
 /// importance sampling", section 3.
 std::shared_ptr<const SamplerAdapter> with_bounded_weights(std::shared_ptr<const SamplerAdapter> sampler);
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

@@ -16,7 +16,7 @@
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 namespace {
 
@@ -338,4 +338,4 @@ std::string SampleFile::place(std::size_t row) const {
     return row < lines_.size() ? fmt::format("{}:{}", name_, lines_[row]) : fmt::format("{}, row {}", name_, row);
 }
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

@@ -10,7 +10,7 @@
 #include "base/errors.h"
 #include "check/sources/sampler_adapter.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 /// Collects the mistakes of one file; throws InputError at the tenth, or in throw_if_any().
 struct FileDiagnostics {
@@ -81,4 +81,4 @@ private:
     double between(const GridCell& at) const;
 };
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

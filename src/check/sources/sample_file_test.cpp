@@ -7,7 +7,7 @@
 
 #include "check/sources/sample_file.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 namespace sample_file_test {
 
 using testing::ElementsAre;
@@ -111,4 +111,4 @@ TEST(TableFiles, NpyHeadersMayHaveLongGaps) {
 }
 
 }  // namespace sample_file_test
-}  // namespace crescent::inline sources
+}  // namespace crescent

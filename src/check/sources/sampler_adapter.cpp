@@ -15,7 +15,7 @@
 #include "math/simd/scalar.h"
 #include "output/format.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 // ---- The nearest light along w_i counts. Disks emit from the side of their normal; distances in m.
 
@@ -61,9 +61,9 @@ double CaseLighting::operator()(Vec3d wi) const {
         if (around->triangles) {
             const std::uint32_t k = around->triangles->nearest(position, w);
             if (k != no_triangle && (!met || around->triangles->distance(k, position, w) < met->distance))
-                return output::luminance(around->triangles->triangles()[k].radiance);
+                return crescent::luminance(around->triangles->triangles()[k].radiance);
         }
-        if (!met && around->sky) return output::luminance(around->sky->radiance(around->sky->texel_at(w)));
+        if (!met && around->sky) return crescent::luminance(around->sky->radiance(around->sky->texel_at(w)));
     }
     return met ? met->radiance : fill;
 }
@@ -104,7 +104,7 @@ Draw draw_of_point(
 
 std::string place_text(const Traits& traits, Vec3d w) {
     if (std::isnan(w.x + w.y + w.z)) return traits.domain ? traits.domain->first_outside() : "w_i NaN";
-    return traits.domain ? traits.domain->text(w) : "w_i = " + output::direction_text(w);
+    return traits.domain ? traits.domain->text(w) : "w_i = " + direction_text(w);
 }
 
 Vec3d tilt(double theta_deg, double azimuth_deg) {
@@ -386,4 +386,4 @@ std::shared_ptr<const SamplerAdapter> named_side(
     return std::make_shared<LabelledAdapter>(std::move(sampler), side);
 }
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

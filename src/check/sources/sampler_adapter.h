@@ -20,7 +20,7 @@
 #include "scene/lights/all.h"
 #include "scene/surroundings.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 
 // ---- Errors of an external sampler.
 
@@ -216,7 +216,7 @@ struct CaseAreaLight {
 
 /// Channel 0, 1 or 2 of a colour.
 inline double channel_of(Vec3d c, int channel) { return channel == 0 ? c.x : channel == 1 ? c.y : c.z; }
-inline double luminance(Vec3d c) { return output::luminance(Rgb{c.x, c.y, c.z}); }
+inline double luminance(Vec3d c) { return crescent::luminance(Rgb{c.x, c.y, c.z}); }
 
 /// The lights of a case: a uniform fill of the upper hemisphere, and lights that occlude it and each other.
 struct CaseLighting {
@@ -411,4 +411,4 @@ private:
 std::shared_ptr<const SamplerAdapter> named_side(
     std::shared_ptr<const SamplerAdapter> sampler, const std::string& side);
 
-}  // namespace crescent::inline sources
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "math/simd/random.h"
 #include "tests/support/function_sampler.h"
 
-namespace crescent::inline sources {
+namespace crescent {
 namespace sampler_adapter_test {
 
 constexpr CaseDiskLight overhead{20, {0, 0, 2}, {0, 0, -1}, 1};
@@ -192,4 +192,4 @@ TEST(SidesOfAComparison, AreNamedInErrors) {
 }
 
 }  // namespace sampler_adapter_test
-}  // namespace crescent::inline sources
+}  // namespace crescent

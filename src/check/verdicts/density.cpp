@@ -128,7 +128,7 @@ void test_nodes(const Evidence& e, const Visit& visit) {
     for (std::size_t d = 0; d < chi.size(); ++d)
         if (degrees[d] > 0)
             visit({Family::depth, static_cast<int>(d), chi[d] - degrees[d], std::sqrt(2 * degrees[d]), 0,
-                statistics::chi_squared_p(chi[d], degrees[d]), degrees[d]});
+                chi_squared_p(chi[d], degrees[d]), degrees[d]});
 }
 
 // ---- density, by bands of theta and of phi at every scale: the share of h in a band.

@@ -81,9 +81,9 @@ bool tail_may_be_heavy(std::span<const double> weights) {
     for (double x : weights) mean += x / static_cast<double>(weights.size()), largest = std::max(largest, x);
     if (largest <= bounded_weight * mean) return false;
     std::vector<double> w(weights.begin(), weights.end());
-    const std::size_t m = std::min(statistics::tail_length(w.size()) + 1, w.size());
+    const std::size_t m = std::min(tail_length(w.size()) + 1, w.size());
     std::partial_sort(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(m), w.end(), std::greater<>());
-    const std::optional<statistics::Tail> tail = statistics::fit_tail(std::span<const double>(w).first(m));
+    const std::optional<Tail> tail = fit_tail(std::span<const double>(w).first(m));
     return tail && tail->k + 2 * tail->se >= heavy_index;
 }
 

@@ -59,12 +59,10 @@ template <class Values> struct ReplicateMean {
 
 /// Two-sided Student p of a difference d beyond its floor, of variance v with nu degrees of freedom.
 inline double student_p_of(double d, double v, double nu) {
-    return d > 0 && std::isfinite(v) ? statistics::student_two_sided(std::min(nu, 1e6), d / std::sqrt(v + 1e-30)) : 1;
+    return d > 0 && std::isfinite(v) ? student_two_sided(std::min(nu, 1e6), d / std::sqrt(v + 1e-30)) : 1;
 }
 /// One-sided: the probability that a normal variable exceeds its mean by d.
-inline double normal_p_of(double d, double v) {
-    return d > 0 ? statistics::normal_two_sided(d / std::sqrt(v + 1e-30)) / 2 : 1;
-}
+inline double normal_p_of(double d, double v) { return d > 0 ? normal_two_sided(d / std::sqrt(v + 1e-30)) / 2 : 1; }
 
 // ---- The two stages of a test: the member of each family with the least p, and a second test of the same member.
 // `visit_all` visits every member of all families; an answer has a family, a member, a difference and a p.

@@ -11,7 +11,7 @@ namespace crescent::check {
 namespace statistics_test {
 
 /// P(N >= k) and P(N <= k) of a binomial.
-double above(double n, double p, double k) { return k <= 0 ? 1 : statistics::beta_i(k, n - k + 1, p, 1 - p); }
+double above(double n, double p, double k) { return k <= 0 ? 1 : beta_i(k, n - k + 1, p, 1 - p); }
 double below(double n, double p, double k) { return k >= n ? 1 : 1 - above(n, p, k + 1); }
 
 TEST(CheckStatistics, BennettBoundsTheBinomialTail) {
@@ -32,8 +32,8 @@ TEST(CheckStatistics, BennettBoundsTheBinomialTail) {
 TEST(CheckStatistics, BennettApproachesTheNormalDistribution) {
     const double z2 = bennett_z2(5, 1, 1e-6, 1e12);
     EXPECT_NEAR(z2, 25, 0.01);
-    EXPECT_GT(bennett_p(z2), statistics::normal_two_sided(5));
-    EXPECT_LT(bennett_p(z2), 20 * statistics::normal_two_sided(5));
+    EXPECT_GT(bennett_p(z2), normal_two_sided(5));
+    EXPECT_LT(bennett_p(z2), 20 * normal_two_sided(5));
 }
 
 TEST(CheckStatistics, UncertainVarianceWeakensATest) {

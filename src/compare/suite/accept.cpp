@@ -15,7 +15,7 @@
 #include "math/statistics.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -98,10 +98,10 @@ Json statistics_of(const RenderStats& all) {
             means.push_back(render[r].y), spreads.push_back(k > 1 ? render[r].spread * k / (k - 1) : std::nan(""));
         const MeanInterval m = mean_interval(means, confidence);
         Json& at = out["regions"][all.regions[r].name];
-        at = {{"mean_y", output::number(m.mean)}};
+        at = {{"mean_y", crescent::number(m.mean)}};
         if (k < 2) continue;
-        at["standard_deviation_of_render_mean"] = output::number(m.se * std::sqrt(k));
-        at["variance_of_pixel"] = output::number(mean_interval(spreads, confidence).mean);
+        at["standard_deviation_of_render_mean"] = crescent::number(m.se * std::sqrt(k));
+        at["variance_of_pixel"] = crescent::number(mean_interval(spreads, confidence).mean);
     }
     return out;
 }
@@ -345,4 +345,4 @@ std::vector<std::string> accept_views(
     return accepting.publish(monitor);
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -18,7 +18,7 @@
 #include "tests/support/synthetic_renders.h"
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace accept_test {
 
 using ::testing::HasSubstr;
@@ -292,4 +292,4 @@ TEST_F(Accepting, ThePlanStatesRendersThatAreEnough) {
 }
 
 }  // namespace accept_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "math/functions.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -343,4 +343,4 @@ void decide(const Suite& suite, SuiteResult& result) {
     result.sentence = suite_sentence(suite, result);
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -4,7 +4,7 @@
 
 #include "compare/suite/suite.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace decide_test {
 
 using ::testing::ElementsAre;
@@ -122,4 +122,4 @@ TEST(SuiteDecisions, TheFirstExitCodeThatAppliesIsTaken) {
 }
 
 }  // namespace decide_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

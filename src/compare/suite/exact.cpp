@@ -8,7 +8,7 @@
 
 #include "compare/renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -107,4 +107,4 @@ ExactDifference exact_difference(const RenderStats& all, const std::optional<Tol
     return out;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 struct RenderStats;
 
@@ -30,4 +30,4 @@ struct ExactDifference {
 /// Compares the first arm, the baseline, with the second; each is one render.
 ExactDifference exact_difference(const RenderStats& all, const std::optional<Tolerance>& tolerance);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

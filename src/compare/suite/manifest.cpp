@@ -13,12 +13,11 @@
 #include "base/files.h"
 #include "compare/open_file.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
 namespace fs = std::filesystem;
-using output::Json;
 
 constexpr const char* manifest_format = "crescent baseline 1";
 constexpr std::size_t largest_manifest = std::size_t{64} << 20;  // bytes: about 100 000 files
@@ -151,7 +150,7 @@ std::string manifest_text(const Manifest& manifest) {
     Json out = {{"format", manifest_format}, {"views", Json::object()}};
     for (const auto& [name, view] : manifest.views) out["views"][name] = view.entry;
     if (!manifest.removed.empty()) out["removed"] = manifest.removed;
-    return output::text(out);
+    return crescent::text(out);
 }
 
 std::vector<Diagnostic> manifest_differences(
@@ -203,4 +202,4 @@ std::string name_in(const std::string& folder, const std::string& path) {
     return fs::path(path).lexically_normal().lexically_relative(fs::path(folder).lexically_normal()).string();
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -12,7 +12,7 @@
 #include "base/errors.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 inline constexpr const char* manifest_name = "baseline.json";
 
@@ -24,13 +24,13 @@ struct ManifestFile {
 struct ManifestView {
     std::vector<ManifestFile> files;
     std::size_t renders = 0;
-    output::Json entry;  // all that is stated about the view
+    Json entry;  // all that is stated about the view
 };
 
 struct Manifest {
     std::string folder;
     std::map<std::string, ManifestView> views;
-    output::Json removed = output::Json::object();  // views that were removed: date, reason, program
+    Json removed = Json::object();  // views that were removed: date, reason, program
 };
 
 /// Reads the text of a manifest: sizes, types and names are checked. Throws InputError with the place in `file`.
@@ -50,4 +50,4 @@ std::string hash_of_file(const std::string& path);
 /// Returns the name of a path in a folder.
 std::string name_in(const std::string& folder, const std::string& path);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

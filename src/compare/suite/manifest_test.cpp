@@ -6,7 +6,7 @@
 
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace manifest_test {
 
 using ::testing::HasSubstr;
@@ -58,4 +58,4 @@ TEST_F(Manifests, OddTypesNamesAndDepthsAreRefused) {
 }
 
 }  // namespace manifest_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

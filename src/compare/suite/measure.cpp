@@ -13,7 +13,7 @@
 #include "compare/suite/suite.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -487,4 +487,4 @@ SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const Re
     return out;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "math/statistics.h"
 #include "report/plates/raster.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -165,4 +165,4 @@ void picture_both_sides(const Suite& suite, const RenderStats& all, const BiasRe
     });
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

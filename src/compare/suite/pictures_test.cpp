@@ -5,7 +5,7 @@
 #include "compare/suite/suite.h"
 #include "tests/support/memory_renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace pictures_test {
 
 /// A grey ramp of 64 x 4 pixels from 0 on, times a factor.
@@ -104,4 +104,4 @@ TEST(SuitePictures, OfManyViewsAreSmaller) {
 }
 
 }  // namespace pictures_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

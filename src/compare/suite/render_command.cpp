@@ -16,7 +16,7 @@
 #include "base/text.h"
 #include "compare/renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -168,4 +168,4 @@ std::vector<RenderEnd> make_renders(
     return out;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "base/progress.h"
 #include "compare/image_file.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// A command as words. No shell reads them, so names of views cannot be code.
 struct RenderCommand {
@@ -51,4 +51,4 @@ struct RenderLimits {
 std::vector<RenderEnd> make_renders(
     const std::vector<RenderJob>& jobs, const RenderLimits& limits, const ProgressMonitor& monitor);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

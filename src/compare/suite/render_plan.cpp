@@ -11,7 +11,7 @@
 #include "math/statistics.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 // ---- Let s1 and s2 be the estimated over the true standard error, now and in the repetition. The repetition finds c
 // s1 if c s1 + Z > t s2, with Z normal. In normal approximation of s (mean 1 - 1/(4 df), variance 1/(2 df)) this has a
@@ -157,15 +157,15 @@ std::string render_plan_text(const Suite& suite, const std::vector<ViewPlan>& pl
 }
 
 std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& plans) {
-    Json out = {
-        {"format", "crescent render plan 1"}, {"alpha", output::number(suite.options.alpha)}, {"views", Json::array()}};
+    Json out = {{"format", "crescent render plan 1"}, {"alpha", crescent::number(suite.options.alpha)},
+        {"views", Json::array()}};
     for (const ViewPlan& plan : plans) {
-        Json view = {{"view", plan.name}, {"renders", plan.renders}, {"smallest", output::number(plan.smallest)}};
-        if (plan.spp) view["spp"] = output::number(*plan.spp);
+        Json view = {{"view", plan.name}, {"renders", plan.renders}, {"smallest", crescent::number(plan.smallest)}};
+        if (plan.spp) view["spp"] = crescent::number(*plan.spp);
         if (!plan.why.empty()) view["why"] = plan.why;
         else {
-            view["region"] = plan.region, view["mean_y"] = output::number(plan.mean);
-            view["standard_deviation_of_render_mean"] = output::number(plan.deviation);
+            view["region"] = plan.region, view["mean_y"] = crescent::number(plan.mean);
+            view["standard_deviation_of_render_mean"] = crescent::number(plan.deviation);
             for (std::size_t s = 0; s < plan_samples.size(); ++s)
                 view["needed"].push_back({{"samples", plan_samples[s]},
                     {"renders", plan.needed[s] ? Json(*plan.needed[s]) : Json(nullptr)}});
@@ -175,4 +175,4 @@ std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& pl
     return text(out);
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

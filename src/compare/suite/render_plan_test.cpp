@@ -5,7 +5,7 @@
 
 #include "compare/suite/suite.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace render_plan_test {
 
 constexpr double z90 = 1.2815515655446004;
@@ -52,4 +52,4 @@ TEST(RenderPower, RareEventsFallAsOneOverTheRenders) {
 }
 
 }  // namespace render_plan_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -19,7 +19,7 @@
 #include "math/statistics.h"
 #include "report/report.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// The share of a view's level for the tests of equal means and of finite values; the rest is for the noise.
 inline constexpr double share_of_means = 0.75;
@@ -316,4 +316,4 @@ std::string render_plan_text(const Suite& suite, const std::vector<ViewPlan>& pl
 /// Returns the plans as JSON.
 std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& plans);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "experiment/parser.h"
 #include "experiment/schema.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -313,4 +313,4 @@ SuiteOptions read_suite_options(const std::vector<CompareFlag>& keys) {
 
 std::string suite_schema_text() { return manual_of(suite_schema()); }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -8,27 +8,28 @@
 #include "output/format.h"
 #include "output/templates.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
-Json p_json(double p) { return std::isnan(p) ? Json(nullptr) : output::number(p); }
+Json p_json(double p) { return std::isnan(p) ? Json(nullptr) : crescent::number(p); }
 
 Json mean_json(const MeanTest& t) {
-    Json out = {{"baseline", output::number(t.b)}, {"candidate", output::number(t.a)}, {"differs_in", t.differs_in()}};
+    Json out = {
+        {"baseline", crescent::number(t.b)}, {"candidate", crescent::number(t.a)}, {"differs_in", t.differs_in()}};
     if (!t.why.empty()) out["why"] = t.why;
     else
-        out["p"] = p_json(t.joint_p), out["standard_error"] = output::number(t.welch.se),
-        out["smallest"] = output::number(t.smallest), out["paired"] = t.paired;
+        out["p"] = p_json(t.joint_p), out["standard_error"] = crescent::number(t.welch.se),
+        out["smallest"] = crescent::number(t.smallest), out["paired"] = t.paired;
     if (!t.caveat.empty()) out["doubt"] = t.caveat;
     return out;
 }
 
 Json variance_json(const VarianceTest& t) {
-    Json out = {
-        {"baseline", output::number(t.baseline)}, {"candidate", output::number(t.candidate)}, {"differs", t.different}};
+    Json out = {{"baseline", crescent::number(t.baseline)}, {"candidate", crescent::number(t.candidate)},
+        {"differs", t.different}};
     if (!t.why.empty()) out["why"] = t.why;
-    else out["p"] = output::number(t.welch.p);
+    else out["p"] = crescent::number(t.welch.p);
     return out;
 }
 
@@ -36,7 +37,7 @@ Json places_json(const std::vector<Found>& found) {
     Json out = Json::array();
     for (const Found& f : found)
         out.push_back({{"box", {f.box.x0, f.box.y0, f.box.x1, f.box.y1}}, {"channel", quantity_names[f.quantity]},
-            {"baseline", output::number(f.b)}, {"candidate", output::number(f.a)}, {"p", output::number(f.p)}});
+            {"baseline", crescent::number(f.b)}, {"candidate", crescent::number(f.a)}, {"p", crescent::number(f.p)}});
     return out;
 }
 
@@ -44,14 +45,14 @@ Json outliers_json(const ViewOutliers& o) {
     Json first = Json::array();
     for (const ViewOutliers::Place& at : o.first)
         first.push_back({{"file", at.file}, {"pixel", {at.x, at.y}}, {"channel", quantity_names[at.quantity]},
-            {"value", output::number(at.value)}, {"others", output::number(at.others)}});
+            {"value", crescent::number(at.value)}, {"others", crescent::number(at.others)}});
     return {{"baseline", o.baseline}, {"candidate", o.candidate}, {"p", p_json(o.p)}, {"left_out", o.set_apart},
         {"first", first}};
 }
 
 Json outlier_render_json(const ViewOutlierRender& r) {
     if (r.file.empty()) return nullptr;
-    return {{"file", r.file}, {"deviation", output::number(r.deviation)}, {"ratio", output::number(r.ratio)},
+    return {{"file", r.file}, {"deviation", crescent::number(r.deviation)}, {"ratio", crescent::number(r.ratio)},
         {"outlier_pixels", r.pixels}, {"p", p_json(r.p)}};
 }
 
@@ -59,9 +60,9 @@ Json view_json(const ViewResult& view) {
     Json out = {{"view", view.name}, {"state", name_of(view.state)}, {"headline", view.headline},
         {"sentence", view.sentence}, {"width", view.width}, {"height", view.height},
         {"renders", {{"baseline", view.baseline_renders}, {"candidate", view.candidate_renders}}},
-        {"smallest", output::number(view.smallest)}, {"deterministic", view.exact}, {"moments", view.moments},
+        {"smallest", crescent::number(view.smallest)}, {"deterministic", view.exact}, {"moments", view.moments},
         {"p", {{"means", p_json(view.mean_p)}, {"variances", p_json(view.variance_p)}}},
-        {"level", output::number(view.level)},
+        {"level", crescent::number(view.level)},
         {"renders_needed", view.renders_needed ? Json(*view.renders_needed) : Json(nullptr)}, {"notes", view.notes},
         {"means", Json::object()}, {"variances", Json::object()}};
     for (const VarianceTest& t : view.variances) out["variances"][t.region] = variance_json(t);
@@ -127,9 +128,9 @@ std::vector<const ViewResult*> by_state(const SuiteResult& result) {
 
 std::string suite_json(const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& p) {
     Json out = {{"format", "crescent suite 1"}, {"title", suite.options.title}, {"sentence", result.sentence},
-        {"exit_code", exit_code(result, new_baseline)}, {"alpha", output::number(suite.options.alpha)},
-        {"share_of_means", output::number(share_of_means)}, {"views_tested", result.tested}, {"counts", Json::object()},
-        {"views", Json::array()}};
+        {"exit_code", exit_code(result, new_baseline)}, {"alpha", crescent::number(suite.options.alpha)},
+        {"share_of_means", crescent::number(share_of_means)}, {"views_tested", result.tested},
+        {"counts", Json::object()}, {"views", Json::array()}};
     for (std::size_t k = 0; k < view_state_names.size(); ++k)
         out["counts"][view_state_names[k]] = result.count(static_cast<ViewState>(k));
     for (const ViewResult& view : result.views) out["views"].push_back(view_json(view));
@@ -293,4 +294,4 @@ std::string suite_html(const Suite& suite, const SuiteResult& result, const Prov
             {"sentence", result.sentence}, {"states", states}, {"views", views}});
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -5,7 +5,7 @@
 
 #include "compare/suite/suite.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace suite_outputs_test {
 
 using ::testing::HasSubstr;
@@ -78,4 +78,4 @@ TEST(SuiteOutputs, MarkdownLeavesEqualViewsOut) {
 }
 
 }  // namespace suite_outputs_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

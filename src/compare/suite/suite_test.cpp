@@ -13,7 +13,7 @@
 #include "math/statistics.h"
 #include "tests/support/scratch_folder.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace suite_test {
 
 using ::testing::HasSubstr;
@@ -468,12 +468,12 @@ TEST(Suites, SarifNamesTheLineOfAViewInItsFile) {
     s.put_both("view", noise, brighter, 200);
     s.put_both("other", noise, noise, 300);
     s.suite.file = "tests/a suite.toml", s.suite.views[0].at = {"tests/a suite.toml", 7, 2};
-    const output::Json sarif = output::Json::parse(suite_sarif(s.suite, s.compare(), false, {}));
-    const output::Json& results = sarif["runs"][0]["results"];
+    const Json sarif = Json::parse(suite_sarif(s.suite, s.compare(), false, {}));
+    const Json& results = sarif["runs"][0]["results"];
     ASSERT_GE(results.size(), 1u);
     EXPECT_EQ(results[0]["ruleId"], "changed");
     EXPECT_EQ(results[0]["level"], "error");
-    const output::Json& place = results[0]["locations"][0]["physicalLocation"];
+    const Json& place = results[0]["locations"][0]["physicalLocation"];
     EXPECT_EQ(place["artifactLocation"]["uri"], "tests/a%20suite.toml");
     EXPECT_EQ(place["region"]["startLine"], 7);
 }
@@ -489,4 +489,4 @@ TEST(Hypotheses, SimesPIsTheLevelOfTheFirstDiscovery) {
 }
 
 }  // namespace suite_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "output/format.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 namespace {
 
@@ -290,4 +290,4 @@ Suite suite_of_commands(const RenderSides& sides, const std::vector<std::string>
     return out;
 }
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

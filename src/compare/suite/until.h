@@ -12,7 +12,7 @@
 #include "compare/suite/render_command.h"
 #include "compare/suite/suite.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 
 /// Makes some renders; the results are in the order of the jobs.
 using Renderer = std::function<std::vector<RenderEnd>(const std::vector<RenderJob>&)>;
@@ -45,4 +45,4 @@ SuiteResult decide_by_renders(Suite& suite, const RenderSides& sides, const Rend
 Suite suite_of_commands(const RenderSides& sides, const std::vector<std::string>& views, const std::string& folder,
     const SuiteOptions& options);
 
-}  // namespace crescent::inline comparison
+}  // namespace crescent

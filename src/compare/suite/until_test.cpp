@@ -14,7 +14,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/synthetic_renders.h"
 
-namespace crescent::inline comparison {
+namespace crescent {
 namespace until_test {
 
 using ::testing::HasSubstr;
@@ -189,4 +189,4 @@ TEST_F(Programs, ThatFailAreNamedAndLeaveNoFile) {
 }
 
 }  // namespace until_test
-}  // namespace crescent::inline comparison
+}  // namespace crescent

@@ -4,7 +4,7 @@
 #include "base/vec.h"
 #include "math/simd/math.h"
 
-namespace crescent::inline simd {
+namespace crescent {
 
 template <class F> struct Frame {
     Vec3<F> t, b, n;
@@ -24,4 +24,4 @@ template <class F> CRESCENT_INLINE Frame<F> frame_about(Vec3<F> n) {
 /// R = reflect(-wo, n) in the local frame.
 template <class F> CRESCENT_INLINE Vec3<F> mirror(Vec3<F> wo) { return {-wo.x, -wo.y, wo.z}; }
 
-}  // namespace crescent::inline simd
+}  // namespace crescent

@@ -14,7 +14,7 @@
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 
-namespace crescent::inline simd {
+namespace crescent {
 
 template <class F> struct SinCos {
     F sin, cos;
@@ -200,4 +200,4 @@ template <class F> CRESCENT_INLINE Vec3<F> normalize(Vec3<F> a) {
 }
 template <class F> CRESCENT_INLINE F length(Vec3<F> a) { return sqrt(dot(a, a)); }
 
-}  // namespace crescent::inline simd
+}  // namespace crescent

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace crescent::inline simd {
+namespace crescent {
 namespace math_test {
 
 double ulps(float got, long double want) {
@@ -59,4 +59,4 @@ TEST(ElementaryFunctions, PowClampsAtZeroAndKeepsTheEnds) {
 }
 
 }  // namespace math_test
-}  // namespace crescent::inline simd
+}  // namespace crescent

@@ -17,7 +17,7 @@
 
 #include "math/simd/scalar.h"
 
-namespace crescent::inline simd {
+namespace crescent {
 namespace CRESCENT_ISA {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -129,4 +129,4 @@ template <> CRESCENT_ALWAYS_INLINE CRESCENT_ISA::Uint load_as<CRESCENT_ISA::Uint
     return {hn::LoadU(UintTag{}, p), hn::LoadU(UintTag{}, p + half_lanes)};
 }
 
-}  // namespace crescent::inline simd
+}  // namespace crescent

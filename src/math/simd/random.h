@@ -8,7 +8,7 @@
 #include "base/vec.h"
 #include "math/simd/scalar.h"
 
-namespace crescent::inline simd {
+namespace crescent {
 
 /// Four unsigned 32-bit integers, or packs of them.
 template <class U> struct Vec4u {
@@ -57,4 +57,4 @@ inline std::uint32_t seed_of(std::uint32_t first, std::uint32_t index) {
     return index == 0 ? first : pcg4d(Vec4u<std::uint32_t>{first, index, 0x5eedu, 0u}).x;
 }
 
-}  // namespace crescent::inline simd
+}  // namespace crescent

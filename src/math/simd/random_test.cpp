@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-namespace crescent::inline simd {
+namespace crescent {
 namespace random_test {
 
 TEST(RandomStreams, Pcg4dGivesThePublishedFunction) {  // values from a separate implementation of the paper's listing
@@ -67,4 +67,4 @@ TEST(RandomStreams, SeedSeriesBeginsAsGivenWithoutRepeats) {
 }
 
 }  // namespace random_test
-}  // namespace crescent::inline simd
+}  // namespace crescent

@@ -17,7 +17,7 @@
 #define CRESCENT_INLINE CRESCENT_ALWAYS_INLINE
 #endif
 
-namespace crescent::inline simd {
+namespace crescent {
 
 /// The types that belong to a number type F: its mask and, for single precision, its 32-bit integers.
 template <class F> struct Lanes;
@@ -101,4 +101,4 @@ template <class F> struct LaneIntegers {
     CRESCENT_INLINE UintOf<F> pack() const { return load_as<UintOf<F>>(at); }
 };
 
-}  // namespace crescent::inline simd
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "math/quadrature.h"
 #include "render/reference/fans.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 
 namespace {
 
@@ -286,4 +286,4 @@ DiskIntegral whole_disk(const DiskPoint& point, const shapes::Disk& disk, const 
     return out;
 }
 
-}  // namespace crescent::inline reference
+}  // namespace crescent

@@ -13,7 +13,7 @@
 #include "scene/scene_data.h"
 #include "scene/shadow.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 
 // ---- The integrand of disk_quadrature.h: what one surface point reflects of the light from a point of a disk, in
 // double.
@@ -85,4 +85,4 @@ private:
 /// until two agree; the error is the difference of the last two.
 DiskIntegral whole_disk(const DiskPoint& point, const shapes::Disk& disk, const Frame<double>& frame);
 
-}  // namespace crescent::inline reference
+}  // namespace crescent

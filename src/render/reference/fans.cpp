@@ -14,7 +14,7 @@
 #include "math/quadrature.h"
 #include "render/reference/lobe_albedo.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 
 // ---- A half-plane from the axis through the point cuts the light's figure in a segment; along it the angle al from
 // the axis rises, and Lambert's part has a closed form in al, with a series where it would cancel.
@@ -359,4 +359,4 @@ FanEdges AllFans::edges_at(double tau) {
         tau, [&] { return each_open(Fan(point_, figure_, about_, math::sincos(turn(tau).azimuth)), [](Interval) {}); });
 }
 
-}  // namespace crescent::inline reference
+}  // namespace crescent

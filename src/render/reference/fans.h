@@ -14,7 +14,7 @@
 #include "scene/scene_data.h"
 #include "scene/shadow.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 
 // ---- One fan of directions from a surface point: the half-plane that ends in an axis, and the line in which it cuts a
 // light. Directions in it are cos(al) axis + sin(al) aside, al in [0, pi]; double precision.
@@ -121,4 +121,4 @@ private:
 /// Integrates at the point of the fans, with this or another exponent of its lobe.
 DiskIntegral fan_by_fan(const DiskPoint& point, AllFans& fans);
 
-}  // namespace crescent::inline reference
+}  // namespace crescent

@@ -9,7 +9,7 @@
 
 #include "render/reference/disk_quadrature.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 namespace fans_test {
 
 constexpr double far_away = 40;
@@ -64,4 +64,4 @@ TEST(Fans, FourQuartersOfALightAreTheWhole) {
 }
 
 }  // namespace fans_test
-}  // namespace crescent::inline reference
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "tests/support/oracle.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 namespace lights_test {
 
 /// Returns a light as the point x sees it, n = +z.
@@ -314,4 +314,4 @@ TEST(BallLights, OfAnySizeShineAlikeOnEveryArm) {
 }
 
 }  // namespace lights_test
-}  // namespace crescent::inline reference
+}  // namespace crescent

@@ -13,7 +13,7 @@
 #include "math/quadrature.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 
 // ---- Gauss-Kronrod with 15 points over intervals that double away from the axis, 7 if the whole is shorter than 0.3
 // of the lobe's width; intervals whose two rules differ are halved, at most six times.
@@ -186,4 +186,4 @@ double LobeAlbedo::operator()(double cos_o) const {
 
 double LobeAlbedo::error(double cos_o) const { return cell(math::acos(std::clamp(cos_o, -1.0, 1.0))).error; }
 
-}  // namespace crescent::inline reference
+}  // namespace crescent

@@ -11,7 +11,7 @@
 #include "scene/lobes/lobe.h"
 #include "scene/shadow.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 
 // ---- A BRDF's lobe along one fan of directions about its own peak or about any other axis, in double precision.
 
@@ -67,4 +67,4 @@ private:
     std::vector<Cell> cells_;
 };
 
-}  // namespace crescent::inline reference
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "render/estimator.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 
 namespace {
 
@@ -36,7 +36,7 @@ Moments estimate(const ShadingPoints& points, const Combination& combination, st
     const KernelCall call{&points, counts, seed, moments, stop, nullptr, memory.data()};
     const PixelNumbers numbers = [&](std::uint32_t pixel, std::uint64_t sample, std::uint32_t block) {
         constexpr std::uint32_t salt = 0x50b01;  // the hashes of films have small numbers of pairs here
-        const auto scramble = simd::pcg4d(simd::Vec4u<std::uint32_t>{pixel, block, seed, salt});
+        const auto scramble = pcg4d(Vec4u<std::uint32_t>{pixel, block, seed, salt});
         return math::scrambled_sobol(static_cast<std::uint32_t>(sample), scramble);
     };
     estimate_combination(combination, call, "", &numbers);
@@ -77,4 +77,4 @@ std::vector<ReferenceFilm> paired_reference(
         });
 }
 
-}  // namespace crescent::inline reference
+}  // namespace crescent

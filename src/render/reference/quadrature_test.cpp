@@ -10,7 +10,7 @@
 #include "tests/support/sanitized.h"
 #include "tests/support/test_scene.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 namespace quadrature_test {
 
 bool blocked(const Scene& scene, const Hit& hit, Vec3d y) {
@@ -169,4 +169,4 @@ TEST(LobeAlbedo, NeverReflectsMoreThanArrives) {
 }
 
 }  // namespace quadrature_test
-}  // namespace crescent::inline reference
+}  // namespace crescent

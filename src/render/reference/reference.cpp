@@ -7,7 +7,7 @@
 
 #include "render/reference/disk_quadrature.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 
 // ---- L_o = fill (rho_d + rho_s albedo) + sum over lights of (L - fill) times its integral, because a light replaces
 // the fill behind it; exponents differ only in the lobe, so they share the visibility search.
@@ -144,4 +144,4 @@ std::vector<ReferenceFilm> quadrature_reference(
         });
 }
 
-}  // namespace crescent::inline reference
+}  // namespace crescent

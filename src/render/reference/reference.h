@@ -21,7 +21,7 @@
 #include "render/tiles.h"
 #include "scene/scene.h"
 
-namespace crescent::inline reference {
+namespace crescent {
 
 // ---- The radiance of one pixel by quadrature, with the error stated by its parts; pixels may be computed in any
 // order.
@@ -131,4 +131,4 @@ std::vector<ReferenceFilm> paired_reference(
 void write_paired(const Scene& scene, const ShadingPoints& points, const PairedPlan& plan,
     const std::atomic<bool>* stop, ReferenceFilm& film);
 
-}  // namespace crescent::inline reference
+}  // namespace crescent

@@ -8,7 +8,7 @@
 #include "scene/lights/rectangle.h"
 #include "scene/lights/sphere.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 using LightKinds = KindList<lights::Disk, lights::Sphere, lights::Rectangle>;
 
@@ -26,4 +26,4 @@ template <class F> void with_light_kind(std::size_t index, F&& f) {
     });
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -9,7 +9,7 @@
 
 #include "scene/shapes/all.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 /// A flat figure that covers the directions of a light.
 using Figure = std::variant<shapes::Disk, shapes::Quad>;
@@ -42,4 +42,4 @@ template <class F> struct Aimed {
     F pdf;
 };
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -7,7 +7,7 @@
 #include "scene/lobes/ggx.h"
 #include "scene/lobes/phong.h"
 
-namespace crescent::inline lobes {
+namespace crescent {
 
 template <template <class> class... L> struct LobeList {
     static constexpr std::size_t count = sizeof...(L);
@@ -36,4 +36,4 @@ template <class F> F lobe_value(LobeKind kind, F s, F alpha, Vec3<F> wo, Vec3<F>
     return out;
 }
 
-}  // namespace crescent::inline lobes
+}  // namespace crescent

@@ -9,7 +9,7 @@
 
 #include "scene/lobes/lobe.h"
 
-namespace crescent::inline lobes {
+namespace crescent {
 
 template <class F> struct Beckmann {
     F alpha;  // (0, 1]
@@ -62,4 +62,4 @@ template <class F> struct BeckmannLobe {
     };
 };
 
-}  // namespace crescent::inline lobes
+}  // namespace crescent

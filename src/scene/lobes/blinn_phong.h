@@ -7,7 +7,7 @@
 
 #include "scene/lobes/lobe.h"
 
-namespace crescent::inline lobes {
+namespace crescent {
 
 template <class F> struct BlinnPhongLobe {
     static constexpr std::string_view name = "blinn-phong";
@@ -42,4 +42,4 @@ template <class F> struct BlinnPhongLobe {
     };
 };
 
-}  // namespace crescent::inline lobes
+}  // namespace crescent

@@ -9,7 +9,7 @@
 
 #include "scene/lobes/lobe.h"
 
-namespace crescent::inline lobes {
+namespace crescent {
 
 template <class F> struct Ggx {
     F alpha;  // (0, 1]
@@ -53,4 +53,4 @@ template <class F> struct GgxLobe {
     };
 };
 
-}  // namespace crescent::inline lobes
+}  // namespace crescent

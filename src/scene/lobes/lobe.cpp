@@ -4,7 +4,7 @@
 #include "base/errors.h"
 #include "scene/lobes/all.h"
 
-namespace crescent::inline lobes {
+namespace crescent {
 
 namespace {
 
@@ -45,4 +45,4 @@ LobeKind lobe_named(std::string_view name) {
     throw Bug(std::source_location::current(), "no built-in lobe is called " + std::string(name));
 }
 
-}  // namespace crescent::inline lobes
+}  // namespace crescent

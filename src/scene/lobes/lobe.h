@@ -10,7 +10,7 @@
 #include "math/functions.h"
 #include "math/simd/frame.h"
 
-namespace crescent::inline lobes {
+namespace crescent {
 
 // ---- The documentation of a lobe: the names, formulas and widths from which the schema, the reference, checks and
 // report are made; a lobe's file defines it as a `LobeDoc`, see lobes/all.h.
@@ -74,4 +74,4 @@ template <class F> CRESCENT_INLINE F both_above(Vec3<F> wo, Vec3<F> wi, F f) {
 //   density(cos)  of m at that cosine, 1/sr.
 // Any other lobe states static double albedo(s, alpha, cos_o, integrate), integrate(f, a, b) being an adaptive rule.
 
-}  // namespace crescent::inline lobes
+}  // namespace crescent

@@ -7,7 +7,7 @@
 
 #include "scene/lobes/lobe.h"
 
-namespace crescent::inline lobes {
+namespace crescent {
 
 template <class F> struct PhongLobe {
     static constexpr std::string_view name = "phong";
@@ -52,4 +52,4 @@ template <class F> struct PhongLobe {
     }
 };
 
-}  // namespace crescent::inline lobes
+}  // namespace crescent

@@ -7,7 +7,7 @@
 #include "base/vec.h"
 #include "math/functions.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 /// p -> p.x x + p.y y + p.z z + at.
 struct Affine {
@@ -50,4 +50,4 @@ inline Affine rotation(Vec3d degrees) {
     return about_z.after(about_y.after(about_x));
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

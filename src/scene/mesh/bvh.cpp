@@ -17,7 +17,7 @@
 
 #include "scene/mesh/bvh_tree.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 namespace {
 
@@ -218,4 +218,4 @@ std::size_t Bvh::bytes() const {
     return made_ ? made_->nodes.size() * sizeof(BvhNode) + made_->blocks.size() * sizeof(Block) : 0;
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -19,7 +19,7 @@
 #include "base/vec.h"
 #include "scene/mesh/affine.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 using Triangle = std::array<std::uint32_t, 3>;  // indices of its corners, counterclockwise seen from the front
 
@@ -90,4 +90,4 @@ private:
     Bounds bounds_;
 };
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -9,7 +9,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 namespace {
 
@@ -213,4 +213,4 @@ BvhTree build_tree(std::span<const Bounds> items) {
     return Builder(items)();
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

@@ -22,7 +22,7 @@
 
 #include "scene/mesh/bvh.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 // ---- An allocator for large arrays that are read in random order: on Linux in pages of 2 MiB where the system has
 // them, because most reads of 4 KiB pages would miss the table of recent translations. Aligned to a cache line.
@@ -214,4 +214,4 @@ template <class Test, class Fetch> [[gnu::always_inline]] inline bool visit_leav
     }
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

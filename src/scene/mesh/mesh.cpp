@@ -14,7 +14,7 @@
 
 #include "base/errors.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 namespace {
 
@@ -260,4 +260,4 @@ std::size_t MeshPack::bytes() const {
         mesh.normals.size() * sizeof(Vec3f) + mesh.uv.size() * sizeof(Vec2<float>);
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

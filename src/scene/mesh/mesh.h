@@ -13,7 +13,7 @@
 #include "base/vec.h"
 #include "scene/mesh/bvh.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 /// Triangles with common vertices. The front of a triangle is the side from which its corners are counterclockwise.
 struct Mesh {
@@ -80,4 +80,4 @@ inline constexpr std::size_t mesh_header_size = 40;
 /// read_mesh for what is wrong with these bytes.
 std::uint32_t read_triangle_count(std::string_view head, std::uint64_t size, const std::string& name);
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

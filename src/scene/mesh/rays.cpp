@@ -7,7 +7,7 @@
 
 #include "scene/mesh/bvh_tree.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 namespace {
 
@@ -149,4 +149,4 @@ double Rays::offset(std::uint32_t instance, Vec3d x) const {
     return unit_roundoff * (24 * made_->placed[instance].stretch + 2 * largest(x));
 }
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

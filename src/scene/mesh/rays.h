@@ -9,7 +9,7 @@
 #include "scene/mesh/affine.h"
 #include "scene/mesh/mesh.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 /// A mesh at a place.
 struct MeshInstance {
@@ -57,4 +57,4 @@ private:
     std::shared_ptr<const Made> made_;
 };
 
-}  // namespace crescent::inline scene
+}  // namespace crescent

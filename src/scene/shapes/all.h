@@ -9,7 +9,7 @@
 #include "scene/shapes/quad.h"
 #include "scene/shapes/sphere.h"
 
-namespace crescent::inline scene {
+namespace crescent {
 
 using Shapes = KindList<shapes::Sphere, shapes::Box, shapes::Quad, shapes::Panel, shapes::Plane, shapes::Disk>;
 
@@ -28,4 +28,4 @@ template <class... Found, class First, class... Rest> struct BodiesOf<KindList<F
 template <class... Kind> typename BodiesOf<KindList<>, Kind...>::List bodies_in(KindList<Kind...>);
 using Bodies = decltype(bodies_in(Shapes{}));
 
-}  // namespace crescent::inline scene
+}  // namespace crescent
