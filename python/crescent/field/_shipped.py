@@ -175,10 +175,3 @@ def emitters() -> list[Shipped]:
     ]
     shining = [Shipped("emitter", plugin, label=label) for label, plugin in shapes.items()]
     return shining + [Shipped("emitter", plugin) for plugin in skies]
-
-
-#: Plugins that are not checked here, and why.
-LEFT_OUT = {
-    "measured, measured_polarized": "need a file of measurements, which the package does not include",
-    "point, spot, directional, directionalarea, projector": "emit from one direction: there is no density to check",
-}
