@@ -212,7 +212,7 @@ def compared(mitsuba: Mitsuba, name: str, options: argparse.Namespace) -> tuple[
         sys.exit(done.returncode)
     metrics = json.loads((out / "metrics.json").read_text())
     found = metrics["bias"][0]
-    variance = {arm["arm"]: arm["regions"]["frame"]["meters"]["var"]["value"] for arm in metrics["arms"]}
+    variance = {arm["arm"]: arm["regions"]["frame"]["metrics"]["var"]["value"] for arm in metrics["arms"]}
     regions = [
         f"{region} {one['a'] / one['b'] - 1:+.2%} ({one['smallest']:.2%})"
         for region, one in found["regions"].items()

@@ -81,7 +81,7 @@ void add_list(CLI::App& app, Work& work) {
     std::shared_ptr<ListFlags> f;
     CLI::App* c = command(app, work, "list", "What an experiment can name.", list, f);
     c->add_option(
-         "TOPIC", f->what, "arms, shapes, lights, brdfs, plates, meters, verdicts, isas or devices; without it, all")
+         "TOPIC", f->what, "arms, shapes, lights, brdfs, plates, metrics, verdicts, isas or devices; without it, all")
         ->type_name("");
 }
 

@@ -83,7 +83,7 @@ const std::vector<Topic>& topics() {
         {"lights", "kinds of light", kinds<LightKinds>},
         {"brdfs", "lobes in addition to the Lambert term", lobes},
         {"plates", "kinds of picture", plates},
-        {"meters", "quantities that a check can name", metrics},
+        {"metrics", "quantities that a check can name", metrics},
         {"verdicts", "the tests of `check`, in this order", verdicts},
         {"isas", "instruction sets that this machine has, the best last", instruction_sets},
         {"devices", "GL devices that this machine has, by the number that --gl-device takes", devices, true},

@@ -28,15 +28,16 @@ std::vector<CheckCase> cases_named(const std::string& name, double theta) {
 }
 
 ordered_json verdict_fields(const Verdict& v) {
-    ordered_json out = {{"name", v.name}, {"state", word(v.state)}, {"say", v.message}, {"evidence", v.evidence}};
+    ordered_json out = {{"name", v.name}, {"state", word(v.state)}, {"message", v.message}, {"evidence", v.evidence}};
     if (v.state == State::wrong && v.expected) out["why"] = v.why_expected;
     return out;
 }
 
 }  // namespace
 
-/// {sampler, theta, evaluations} -> {name, state, cases: [{surface, case, verdicts: [{name, state, say, evidence}]}]};
-/// `evaluations` at each w_o, by default those of the program; efficiency, which depends on a clock, is omitted.
+/// {sampler, theta, evaluations} -> {name, state, cases: [{surface, case, verdicts: [{name, state, message,
+/// evidence}]}]}; `evaluations` at each w_o, by default those of the program; efficiency, which depends on a clock, is
+/// omitted.
 CRESCENT_EXPORT(checked)()->void {
     const ordered_json query = request();
     const std::string name = query.at("sampler").get<std::string>();

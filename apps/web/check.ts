@@ -6,7 +6,7 @@ import { el, minus } from "./dom";
 import { Lesson } from "./lessons";
 import { Model } from "./model";
 
-interface Verdict { name: string; state: string; say: string; why?: string }
+interface Verdict { name: string; state: string; message: string; why?: string }
 interface Checked { name: string; state: string; cases: { case: string; verdicts: Verdict[] }[] }
 interface Option { value: string; words: string }
 
@@ -14,7 +14,7 @@ const size = 176, draws = 512;
 
 function table(one: Checked["cases"][number]): HTMLElement {
   const rows = one.verdicts.map((v) => el("tr", {}, el("th", { scope: "row" }, v.name),
-    el("td", { class: v.state === "wrong" ? "bad" : "" }, v.state), el("td", {}, minus(v.say))));
+    el("td", { class: v.state === "wrong" ? "bad" : "" }, v.state), el("td", {}, minus(v.message))));
   return el("table", { class: "verdicts" }, el("caption", {}, one.case), el("tbody", {}, ...rows));
 }
 

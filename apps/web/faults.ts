@@ -28,7 +28,7 @@ export function faultSheet(check: (code: string, ground: string) => Promise<Chec
   const rows = exercises.map((exercise) => ({ exercise, before: el("td", {}, "being checked …"), after: el("td") }));
   const first = ({ state, verdicts: all }: Checked): string => {
     const found = all.find((v) => v.state === "wrong" || v.state === "error") ?? all.find((v) => v.state === "inconclusive");
-    return found ? `${found.name} ${found.state}: ${minus(plusMinus(found.say))}` : state;
+    return found ? `${found.name} ${found.state}: ${minus(plusMinus(found.message))}` : state;
   };
   const root = el("div", { id: "fault-sheet" }, el("h2", {}, "Find the fault"),
     el("p", {}, `${exercises.length} exercises of ${exercises.reduce((sum, { minutes }) => sum + minutes, 0)} minutes in all. Let the class predict before it looks.`),

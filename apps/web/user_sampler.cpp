@@ -169,8 +169,8 @@ CRESCENT_EXPORT(user_takes)(int numbers, int context)->void {
     takes_context = context != 0;
 }
 
-/// {sampler, surface, light, wo, evaluations} -> {state, verdicts: [{name, question, state, say, cause, theta, azimuth,
-/// hidden, evidence, states: [of each w_o]}]}: of each verdict the worst of all w_o.
+/// {sampler, surface, light, wo, evaluations} -> {state, verdicts: [{name, question, state, message, cause, theta,
+/// azimuth, hidden, evidence, states: [of each w_o]}]}: of each verdict the worst of all w_o.
 CRESCENT_EXPORT(user_checked)()->void {
     const ordered_json query = request();
     const std::vector<CheckCase> cases = cases_of(query);
@@ -193,7 +193,7 @@ CRESCENT_EXPORT(user_checked)()->void {
         if (!worst) continue;
         if (rank(worst->state) > rank(all)) all = worst->state;
         ordered_json one = {{"name", worst->name}, {"question", verdict_questions[k]}, {"state", word(worst->state)},
-            {"say", worst->message}, {"cause", worst->cause}, {"states", states}, {"evidence", worst->evidence},
+            {"message", worst->message}, {"cause", worst->cause}, {"states", states}, {"evidence", worst->evidence},
             {"hidden", ordered_json::object()}};
         for (const auto& [fault, size] : worst->hidden) one["hidden"][fault] = json_number(size);
         const auto at = worst->wo.value_or(std::pair(cases[0].theta_deg, cases[0].azimuth_deg));

@@ -20,7 +20,7 @@ const faults: Record<string, string> = {
 };
 
 export interface Verdict {
-  name: string; question: string; state: string; say: string; cause: string; theta: number; azimuth: number; states: string[]; hidden: Record<string, number | string>;
+  name: string; question: string; state: string; message: string; cause: string; theta: number; azimuth: number; states: string[]; hidden: Record<string, number | string>;
 }
 export interface Checked { state: string; evaluations: number; verdicts: Verdict[] }
 export interface Work { code: string; ground: string }
@@ -309,7 +309,7 @@ export class Workshop implements Viewer {
     const rows = result.verdicts.map((v) => el("tr", { "data-verdict": v.name, "data-state": v.state },
       el("th", { scope: "row" }, el("button", { type: "button", class: "plain", title: v.question, onclick: () => this.picture(v) }, v.name)),
       el("td", { class: v.state === "wrong" || v.state === "error" ? "bad" : v.state === "right" ? "good" : "" }, v.state),
-      el("td", {}, minus(plusMinus(v.say)), power(v), ...(v.cause && !v.say.includes(v.cause) ? [` ${minus(plusMinus(v.cause))}`] : []))));
+      el("td", {}, minus(plusMinus(v.message)), power(v), ...(v.cause && !v.message.includes(v.cause) ? [` ${minus(plusMinus(v.cause))}`] : []))));
     const first = result.verdicts.find(({ state }) => state === "wrong" || state === "error");
     this.verdicts.replaceChildren(
       el("p", {}, el("b", { "data-result": result.state }, result.state), first ? `: fix ${first.name} first. ` : ". ",

@@ -22,9 +22,9 @@ class Verdict:
     case: str  #: w_o and parameters: "w_o 60 deg az 250"
     name: str  #: valid, support, normalised, density, identity, physics, tail, mean or efficiency
     state: State
-    say: str  #: the message
+    message: str  #: what was found
     cause: str = ""  #: the cause, if one is found
-    settle: str = ""  #: the next step, if it is inconclusive
+    status: str = ""  #: the next step, if it is inconclusive
     expected: bool = True  #: False: another state was expected of a built-in sampler
     evidence: dict[str, Any] = field(default_factory=dict, repr=False)  #: the numbers of the test
     seconds: float = field(default=0.0, compare=False, repr=False)
@@ -36,9 +36,9 @@ def _verdict(raw: dict[str, Any]) -> Verdict:
         raw["case"],
         raw["name"],
         raw["state"],
-        raw["say"],
+        raw["message"],
         raw["cause"],
-        raw["settle"],
+        raw["status"],
         raw["expected"],
         _json.loads(raw["evidence"]),
         raw["seconds"],

@@ -41,16 +41,16 @@ class Summary:
         return mean if half is None else f"{mean} ± {half}"
 
 
-def _rows(result: Measured, meter: str, arm: str, n: int, region: str, s: float) -> list[dict[str, Any]]:
-    wanted = {"meter": meter, "arm": arm, "n": n, "region": region, "s": s}
+def _rows(result: Measured, metric: str, arm: str, n: int, region: str, s: float) -> list[dict[str, Any]]:
+    wanted = {"metric": metric, "arm": arm, "n": n, "region": region, "s": s}
     return [r for r in result.records() if all(r[k] == v for k, v in wanted.items()) and r["value"] is not None]
 
 
-def _values(result: Measured, meter: str, arm: str, n: int, region: str, s: float) -> Values:
-    rows = _rows(result, meter, arm, n, region, s)
+def _values(result: Measured, metric: str, arm: str, n: int, region: str, s: float) -> Values:
+    rows = _rows(result, metric, arm, n, region, s)
     if not rows:
-        there = sorted({(r["meter"], r["region"]) for r in result.records() if r["arm"] == arm and r["n"] == n})
-        what = f"{meter} of {region or 'the frame'}, {arm} n={n} s={s:g}"
+        there = sorted({(r["metric"], r["region"]) for r in result.records() if r["arm"] == arm and r["n"] == n})
+        what = f"{metric} of {region or 'the frame'}, {arm} n={n} s={s:g}"
         raise KeyError(f"no {what}: there are {there or 'no metrics of this arm at this n'}")
     return np.array([r["value"] for r in rows], float)
 

@@ -43,10 +43,10 @@ def values_of(r: Measured, metric: str, region: str, s: float | None) -> dict[st
     rows = r.records()
     out: dict[str, dict[int, list[float]]] = {}
     for row in rows:
-        if row["meter"] == metric and row["region"] == region and row["s"] == at and row["value"] is not None:
+        if row["metric"] == metric and row["region"] == region and row["s"] == at and row["value"] is not None:
             out.setdefault(row["arm"], {}).setdefault(row["n"], []).append(row["value"])
     if not out:
-        there = sorted({f"{row['meter']} of {row['region']}" if row["region"] else row["meter"] for row in rows})
+        there = sorted({f"{row['metric']} of {row['region']}" if row["region"] else row["metric"] for row in rows})
         raise KeyError(f"no {metric} of {region or 'the frame'} at s = {at:g}: there are {', '.join(there)}")
     return out
 
@@ -56,7 +56,7 @@ def only_region(r: Measured, metric: str, region: str | None) -> str:
     if region is not None:
         return region
     metric = "var" if metric in LARGEST_IS_BEST else ALIASES.get(metric, metric)
-    return next((row["region"] for row in r.records() if row["meter"] == metric), "")
+    return next((row["region"] for row in r.records() if row["metric"] == metric), "")
 
 
 def heavy_arms(r: Measured, region: str, s: float | None) -> set[str]:

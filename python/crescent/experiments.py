@@ -412,14 +412,14 @@ class Measured:
         return Measured, (self._core, self.samplers)
 
     def records(self) -> list[dict[str, Any]]:
-        """One row per number: arm, n, s, seed, `meter`, region, value; suitable for a data frame.
+        """One row per number: arm, n, s, seed, `metric`, region, value; suitable for a data frame.
 
         Counts are int, other numbers float, None if there is none; region is "" for the whole frame. Each changed key
         has a column, whose values are those of the file.
         """
         if self._rows is None:
             rows = csv.DictReader(io.StringIO(self._core.csv, newline=""))
-            self._rows = [{key: _field(key, text, row["meter"]) for key, text in row.items()} for row in rows]
+            self._rows = [{key: _field(key, text, row["metric"]) for key, text in row.items()} for row in rows]
         return [dict(row) for row in self._rows]
 
     @property
@@ -507,13 +507,13 @@ class Measured:
         axes = {"arm": list(dict.fromkeys(r["arm"] for r in rows)), **axes}
         regions = [r for r in dict.fromkeys(r["region"] for r in rows) if r]
         out: dict[str, Any] = {}
-        for meter in dict.fromkeys(r["meter"] for r in rows):
-            mine = [r for r in rows if r["meter"] == meter]
+        for metric in dict.fromkeys(r["metric"] for r in rows):
+            mine = [r for r in rows if r["metric"] == metric]
             coords = {**axes, "region": regions} if any(r["region"] for r in mine) else axes
             values = xarray.DataArray(np.full([len(c) for c in coords.values()], np.nan), coords, list(coords))
             for r in mine:
                 values.loc[{axis: r[axis] for axis in coords}] = np.nan if r["value"] is None else r["value"]
-            out[meter] = values
+            out[metric] = values
         return xarray.Dataset(out)
 
     def write(self, folder: str | PathLike[str]) -> None:
@@ -536,11 +536,11 @@ class Measured:
 _COUNTS = frozenset(_crescent.counting_metrics())
 
 
-def _field(column: str, text: str, meter: str) -> Any:
+def _field(column: str, text: str, metric: str) -> Any:
     """Reads a field of metrics.csv: a number by its column, None if there is none; a key's value as in the file."""
-    if column in ("arm", "meter", "region"):
+    if column in ("arm", "metric", "region"):
         return text
-    if column in ("n", "seed") or (column == "value" and meter in _COUNTS):
+    if column in ("n", "seed") or (column == "value" and metric in _COUNTS):
         return int(text) if text else None
     if column in ("s", "value"):
         number = float(text) if text else np.nan

@@ -215,9 +215,9 @@ AsDict as_dict(const Verdict& v) {
     out["case"] = v.check_case;
     out["name"] = v.name;
     out["state"] = std::string(word(v.state));
-    out["say"] = v.message;
+    out["message"] = v.message;
     out["cause"] = v.cause;
-    out["settle"] = next_step_text(v, FrontEnd::python);
+    out["status"] = next_step_text(v, FrontEnd::python);
     out["expected"] = v.expected;
     out["evidence"] = v.evidence.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     out["seconds"] = v.seconds;

@@ -73,7 +73,7 @@ def test_a_copy_of_the_cosine_sampler_has_its_film():
         built_in, mine = measured.films["cosine", n], measured.films["mine", n]
         close = np.isclose(built_in.y, mine.y, rtol=1e-3)
         assert close.mean() > 0.99 and difference(built_in, mine) < 0.1
-    row = next(r for r in measured.records() if r["arm"] == "mine" and r["meter"] == "rmse")
+    row = next(r for r in measured.records() if r["arm"] == "mine" and r["metric"] == "rmse")
     assert row["value"] > 0
 
 
@@ -205,7 +205,7 @@ def test_bad_draws_are_counted():
         return wi, np.where(u[:, 0] < 0.25, np.nan, p)
 
     measured = crescent.run(with_samplers(mine=crescent.Sampler(sample)), seeds=(1, 1))
-    bad = {(r["arm"], r["n"]): r["value"] for r in measured.records() if r["meter"] == "bad"}
+    bad = {(r["arm"], r["n"]): r["value"] for r in measured.records() if r["metric"] == "bad"}
     assert bad["cosine", 16] == 0 and bad["mine", 16] > 100
 
 

@@ -42,7 +42,7 @@ def test_a_judgement_is_data_files_and_no_truth_value(tmp_path):
     assert {v.case for v in j.verdicts} == {"w_o 30 deg az 0", "w_o 60 deg az 250"}
     assert all(v.sampler == "mine" for v in j) and j.of("density")[0].evidence
     data = json.loads(j.json())
-    assert data["format"] == "crescent check 2" and len(data["verdicts"]) == len(j.verdicts)
+    assert data["format"] == "crescent check 3" and len(data["verdicts"]) == len(j.verdicts)
     j.junit(tmp_path / "j.xml")
     j.html(tmp_path / "j.html")
     assert (tmp_path / "j.xml").read_text().startswith("<?xml") and "<html" in (tmp_path / "j.html").read_text()

@@ -32,7 +32,7 @@ def test_a_right_lens_is_right_and_one_without_root_is_named():
     assert wrong.state == "wrong"
     density = next(v for v in wrong.verdicts if v.name == "density")
     assert "square root is missing" in density.cause
-    assert "radius" in density.say
+    assert "radius" in density.message
 
 
 @pytest.mark.parametrize("rate, state", [(2.0, "right"), (2.2, "wrong")])
@@ -60,7 +60,7 @@ def test_an_entry_of_a_set_is_named():
 
     result = crescent.check(sample, lambda i: p[i], domain="set:37", numbers=1)
     assert states(result)["density"] == "wrong"
-    say = next(v.say for v in result.verdicts if v.name == "density")
+    say = next(v.message for v in result.verdicts if v.name == "density")
     assert say.startswith(("Entry 17 is drawn with", "Entry 30 is drawn with"))
 
 
@@ -103,7 +103,7 @@ def test_points_outside_are_named():
     result = crescent.check(lambda u: (2 * u - 1, 1 / np.pi), uniform_in_disk, domain="disk")
     valid = next(v for v in result.verdicts if v.name == "valid")
     assert valid.state == "wrong"
-    assert "outside the unit disk" in valid.say
+    assert "outside the unit disk" in valid.message
 
 
 def test_an_arm_draws_directions():
@@ -183,6 +183,6 @@ def test_reservoirs(loss, state):
     result = crescent.check(wo_deg=40, **reservoirs(loss))
     assert result.state == state
     if loss:
-        assert "light is lost" in next(v.say for v in result.verdicts if v.name == "mean")
+        assert "light is lost" in next(v.message for v in result.verdicts if v.name == "mean")
     with pytest.raises(TypeError, match="go together"):
         crescent.check(disk(np.sqrt), weight="reciprocal")

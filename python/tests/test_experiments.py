@@ -155,7 +155,7 @@ def test_films_are_the_memory_of_the_run(measured):
     assert reference.shape == (32, 48)
     box = np.s_[8:25, 16:33]  # both ends of a region's box are inclusive
     rmse = float(np.sqrt(np.mean((film.y[box].astype(float) - reference[box]) ** 2)))
-    told = [r for r in measured.records() if (r["arm"], r["n"], r["seed"], r["meter"]) == ("cosine", 16, 7, "rmse")]
+    told = [r for r in measured.records() if (r["arm"], r["n"], r["seed"], r["metric"]) == ("cosine", 16, 7, "rmse")]
     assert told[0]["region"] == "ball" and told[0]["value"] == pytest.approx(rmse, rel=1e-5)
     for key in (("phong", 5), "phong"):
         with pytest.raises(KeyError, match="there are cosine n=4"):
@@ -178,10 +178,10 @@ def test_metrics_are_records_json_and_xarray(measured):
 
 
 def test_records_have_numbers_as_numbers(measured):
-    kinds = {"arm": str, "n": int, "s": float, "seed": int, "meter": str, "region": str}
+    kinds = {"arm": str, "n": int, "s": float, "seed": int, "metric": str, "region": str}
     for row in measured.records():
         assert {key: type(row[key]) for key in kinds} == kinds
-        whole = row["meter"] in ("fireflies", "pixels", "tail_exceedances", "bad", "rays", "f_evaluations")
+        whole = row["metric"] in ("fireflies", "pixels", "tail_exceedances", "bad", "rays", "f_evaluations")
         assert row["value"] is None or type(row["value"]) is (int if whole else float), row
     changed = crescent.parse(TINY).with_({"fill.radiance": [1, 2, 3], "image.width": 40, "title": "x", "n": 16})
     row = crescent.run(changed, seeds=(1, 1)).records()[0]
@@ -341,7 +341,7 @@ def test_the_density_of_a_warp_by_differences():
 def test_flip_is_measured_of_the_first_seeds_and_joined(tmp_path):
     e = crescent.parse(TINY.replace("seeds = 2", "seeds = 3\nflip_seeds = 2"))
     whole = crescent.run(e)
-    rows = [r for r in whole.records() if r["meter"] == "flip"]
+    rows = [r for r in whole.records() if r["metric"] == "flip"]
     seeds = list(dict.fromkeys(r["seed"] for r in whole.records()))
     assert {r["seed"] for r in rows} == set(seeds[:2]) and all(0 <= r["value"] <= 1 for r in rows)
     assert len({(r["arm"], r["region"], r["seed"]) for r in rows}) == len(rows), "one sample count"
@@ -353,10 +353,10 @@ def test_flip_is_measured_of_the_first_seeds_and_joined(tmp_path):
     planes = [np.ascontiguousarray(of[c]) for of in (reference, film.planes) for c in "rgb"]
     everywhere = crescent._crescent.flip(*planes)
     assert row["value"] == pytest.approx(everywhere[y0 : y1 + 1, x0 : x1 + 1].mean(dtype=float), rel=1e-6)
-    bands = {b["meter"]: b["seeds"] for b in whole.metrics["bands"]}
+    bands = {b["metric"]: b["seeds"] for b in whole.metrics["bands"]}
     assert bands[f"flip.{row['region']}"] == 2
     for k in (1, 3):
         crescent.run(e, seeds=(k, min(k + 1, 3)), out=tmp_path / str(k))
     joined = crescent.join([tmp_path / "1", tmp_path / "3"])
-    assert [r for r in joined.records() if r["meter"] == "flip"] == rows
+    assert [r for r in joined.records() if r["metric"] == "flip"] == rows
     assert joined.metrics["bands"] == whole.metrics["bands"]

@@ -15,7 +15,7 @@ from crescent._tables import latex  # noqa: E402
 from crescent._values import best_in, compared_at, values_of  # noqa: E402
 from tiny import TINY  # noqa: E402
 
-METRIC = "meter"
+METRIC = "metric"
 NINE = [f"{k}-an-arm-of-24-letters-{k}" for k in "abcdefghi"]
 
 

@@ -66,7 +66,7 @@ def test_the_interval_of_a_slope_over_seeds_has_its_coverage():
 
 def test_a_ladder_draws_the_medians_of_every_arm(result):
     ax = plot.ladder(result)
-    rows = [r for r in result.records() if r["meter"] == "rmse" and r["s"] == result.s]
+    rows = [r for r in result.records() if r["metric"] == "rmse" and r["s"] == result.s]
     for line in ax.get_lines():
         arm = line.get_label().split(":")[0]
         for n, y in zip(line.get_xdata(), line.get_ydata()):
@@ -99,7 +99,7 @@ def test_heat_shows_rows_top_down(result):
 
 def test_a_table_has_every_arm_and_count_and_says_where_it_comes_from(result):
     text = result.to_latex()
-    rows = [r for r in result.records() if r["meter"] == "rmse" and r["s"] == result.s]
+    rows = [r for r in result.records() if r["metric"] == "rmse" and r["s"] == result.s]
     for arm in {r["arm"] for r in rows}:
         assert arm.replace("_", r"\_") in text
     for n in {r["n"] for r in rows}:

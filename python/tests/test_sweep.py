@@ -212,7 +212,7 @@ def test_a_sweep_has_the_bytes_of_runs_and_computes_only_what_is_new(tiny, tmp_p
     wanted = {
         row["seed"]: row["value"]
         for row in crescent.run(e).records()
-        if (row["arm"], row["n"], row["meter"], row["s"]) == ("cosine", 16, "rmse", 32)
+        if (row["arm"], row["n"], row["metric"], row["s"]) == ("cosine", 16, "rmse", 32)
     }
     assert found == wanted and len(found) == 5
     page = (out / "report.html").read_text()
@@ -359,7 +359,7 @@ def test_a_combination_comes_with_the_samplers_that_it_is_of(tiny, tmp_path):
     assert not made.failed
     at = e.with_({"ball.s": 8})
     at.samplers.update(e.samplers)
-    there = [r["value"] for r in crescent.run(at, seeds=(1, 2)).records() if (r["arm"], r["meter"]) == ("both", "y_mean")]
+    there = [r["value"] for r in crescent.run(at, seeds=(1, 2)).records() if (r["arm"], r["metric"]) == ("both", "y_mean")]
     swept = [r["value"] for r in made.to_arrow().to_pylist() if (r["arm"], r["metric"]) == ("both", "y_mean")]
     assert there and sorted(swept) == sorted(there)
     e.samplers["mine"] = crescent.Sampler(lambda wo, u: draw(wo, 1 - u), pdf)  # the combination is another one, too

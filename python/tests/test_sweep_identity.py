@@ -137,7 +137,7 @@ def test_a_sweep_of_an_ablation_computes_each_value(tmp_path):
         e.samplers["mine"] = Scaled(factor).sample
         swept = crescent.sweep(e, seeds=1, out=tmp_path / "out", workers=1, verify=0)
         assert swept.computed > 0 and not swept.failed
-        rows = [r for r in swept.measured().records() if (r["arm"], r["meter"]) == ("mine", "y_mean")]
+        rows = [r for r in swept.measured().records() if (r["arm"], r["metric"]) == ("mine", "y_mean")]
         found.append(rows[-1]["value"])
     assert found[0] == pytest.approx(1.5 * found[1], rel=1e-5)
 

@@ -27,7 +27,7 @@ Json measured_json(const MetricValue& m) {
 
 Json region_json(const RegionResult& r) {
     Json out = {{"pixels", r.pixels}};
-    for (const auto& [name, value] : r.metrics) out["meters"][name] = measured_json(value);
+    for (const auto& [name, value] : r.metrics) out["metrics"][name] = measured_json(value);
     out["tail"] = r.tail
         ? Json{{"k", number(r.tail->k)}, {"se", number(r.tail->se)}, {"exceedances", r.tail->exceedances}}
         : Json(nullptr);
@@ -131,7 +131,7 @@ Json seeds_json(const BiasResult& b) {
 
 Json bias_json(const BiasResult& b, int width) {
     Json out = {{"a", b.a}, {"b", b.b}, {"differs", b.differs()}, {"identical", b.identical}, {"paired", b.paired},
-        {"say", b.sentence}, {"method", b.dependent ? "Benjamini-Yekutieli" : "Benjamini-Hochberg"},
+        {"message", b.sentence}, {"method", b.dependent ? "Benjamini-Yekutieli" : "Benjamini-Hochberg"},
         {"regions", Json::object()}, {"shared_seeds", seeds_json(b)},
         {"non_finite", non_finite_json(b.non_finite, width)}};
     if (!b.reference_error.empty()) out["reference_error"] = b.reference_error;
@@ -155,7 +155,7 @@ Json noise_json(const NoiseResult& n) {
     for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
         if (n.distinguished[t]) ++(n.log2_ratio[t] < 0 ? less : more);
     Json out = {{"a", n.a}, {"b", n.b}, {"tiles", n.log2_ratio.size()}, {"less_noise", less}, {"more_noise", more},
-        {"say", n.sentence}, {"regions", Json::object()}};
+        {"message", n.sentence}, {"regions", Json::object()}};
     for (const NoiseResult::Histogram& h : n.regions)
         out["regions"][h.region] = {{"told_apart", h.different}, {"not_told_apart", h.rest}};
     return out;
@@ -179,8 +179,8 @@ const char* word_of(CompareResult::State state) {
 
 std::string compare_json(
     const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const Provenance& p) {
-    Json out = {{"format", "crescent comparison 1"}, {"title", plan.title}, {"width", all.width},
-        {"height", all.height}, {"state", word_of(result.state)}, {"say", result.sentence},
+    Json out = {{"format", "crescent comparison 2"}, {"title", plan.title}, {"width", all.width},
+        {"height", all.height}, {"state", word_of(result.state)}, {"message", result.sentence},
         {"alpha", number(plan.alpha)}, {"trim", number(plan.trim)}};
     for (std::size_t a = 0; a < result.arms.size(); ++a)
         out["arms"].push_back(arm_json(result.arms[a], all.arms[a], all.regions, all.reference.has_value()));
@@ -196,7 +196,8 @@ std::string compare_json(
     }
     out["bias"] = out["noise"] = out["assertions"] = out["rankings"] = out["ladders"] = Json::array();
     for (const Ranking& r : result.rankings)
-        out["rankings"].push_back({{"region", r.region}, {"by", r.measure}, {"order", r.order}, {"say", r.sentence}});
+        out["rankings"].push_back(
+            {{"region", r.region}, {"by", r.measure}, {"order", r.order}, {"message", r.sentence}});
     for (const SppLadder& l : result.ladders) out["ladders"].push_back(ladder_json(l, result));
     for (const BiasResult& b : result.bias) out["bias"].push_back(bias_json(b, all.width));
     for (const NoiseResult& n : result.noise) out["noise"].push_back(noise_json(n));
@@ -211,7 +212,7 @@ std::string compare_json(
 }
 
 std::string compare_csv(const CompareResult& result) {
-    std::string out = "arm,renders,region,meter,value,low,high,why\r\n";
+    std::string out = "arm,renders,region,metric,value,low,high,why\r\n";
     for (const ArmResult& arm : result.arms)
         for (const RegionResult& r : arm.regions)
             for (const auto& [name, m] : r.metrics)

@@ -43,8 +43,8 @@ TEST(CompareJson, HasTheNumbersOfTheResult) {
     EXPECT_EQ(json["state"], "fails");
     EXPECT_EQ(json["arms"].size(), 2u);
     const auto& b = json["arms"][1]["regions"]["frame"];
-    EXPECT_NEAR(b["meters"]["y_mean"]["value"], 2, 0.05);
-    EXPECT_EQ(b["meters"]["rmse"]["value"], nullptr);
+    EXPECT_NEAR(b["metrics"]["y_mean"]["value"], 2, 0.05);
+    EXPECT_EQ(b["metrics"]["rmse"]["value"], nullptr);
     EXPECT_EQ(b["pixels"], 256);
     EXPECT_EQ(json["arms"][0]["seconds"], 2);    // the mean over its files
     EXPECT_EQ(json["arms"][1]["spp"], nullptr);  // one file of three states it

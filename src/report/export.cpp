@@ -60,7 +60,7 @@ Json interval_json(const Band& band, bool paired) {
 }
 
 Json band_json(const SeedSpread& b, bool paired) {
-    return {{"arm", b.key.arm}, {"n", b.key.n}, {"s", number(b.key.s)}, {"meter", b.metric},
+    return {{"arm", b.key.arm}, {"n", b.key.n}, {"s", number(b.key.s)}, {"metric", b.metric},
         {"published", optional_number(b.published)}, {"measured", number_or_null(b.measured, paired)},
         {"median", number_or_null(b.band.median, paired)}, {"q05", number_or_null(b.band.q05, paired)},
         {"q95", number_or_null(b.band.q95, paired)}, {"seeds", b.band.seeds},
@@ -196,7 +196,7 @@ std::string metrics_json(const ReportInputs& in) {
     const auto of_rmse = [&](const SeedSpread& b) { return band_json(b, paired && b.metric.starts_with("rmse")); };
     Json provenance = provenance_json(in.provenance);
     provenance["experiment"] = experiment_json(in);
-    const Json out = {{"format", "crescent metrics 1"}, {"title", in.experiment.title},
+    const Json out = {{"format", "crescent metrics 2"}, {"title", in.experiment.title},
         {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels},
         {"runs", list(m.runs, [&](const RunMetrics& run) { return run_json(run, paired); })},
         {"bands", list(m.bands, of_rmse)},
@@ -213,7 +213,7 @@ std::string metrics_json(const ReportInputs& in) {
 
 namespace {
 
-constexpr std::array<std::string_view, 7> fixed_columns = {"arm", "n", "s", "seed", "meter", "region", "value"};
+constexpr std::array<std::string_view, 7> fixed_columns = {"arm", "n", "s", "seed", "metric", "region", "value"};
 
 struct Rows {
     std::string out;

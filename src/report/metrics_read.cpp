@@ -168,8 +168,8 @@ Json parse_bounded(const std::string& text) {
 }
 
 MetricsFile file_of(const Json& json, const std::string& name) {
-    if (json.at("format") != "crescent metrics 1")
-        throw InputError({name, 0, 0}, "expected the format 'crescent metrics 1'");
+    if (json.at("format") != "crescent metrics 2")
+        throw InputError({name, 0, 0}, "expected the format 'crescent metrics 2'");
     MetricsFile out;
     out.provenance = provenance_of(json.at("provenance"));
     out.experiment = experiment_of(out.provenance, json.at("provenance").at("experiment"), name);

@@ -138,9 +138,9 @@ TEST(MetricsJson, LeavesSamplesThatItsSchemaRefuses) {
     keep("unknown", unknown, false);
     auto added = parsed(Sample());
     added["runs"][0]["mae"] = 0.5;
-    keep("added-meter", added, true);
+    keep("added-metric", added, true);
     added["runs"][0]["mae"] = "half";
-    keep("text-for-a-meter", added, false);
+    keep("text-for-a-metric", added, false);
 }
 
 TEST(MetricsJson, HeavyTailStandsInPlaceOfTheInterval) {
@@ -171,7 +171,7 @@ TEST(MetricsCsv, QuotesNamesAsRfc4180Says) {
     s.metrics.runs[0].key.arm = "a, \"b\"";
     s.metrics.runs[0].largest = nan;
     const std::string csv = metrics_csv(s.inputs());
-    EXPECT_TRUE(csv.starts_with("arm,n,s,seed,meter,region,value\r\n\"a, \"\"b\"\"\",64,32,7,rmse,H,6\r\n"));
+    EXPECT_TRUE(csv.starts_with("arm,n,s,seed,metric,region,value\r\n\"a, \"\"b\"\"\",64,32,7,rmse,H,6\r\n"));
     EXPECT_NE(csv.find(",largest,,nan\r\n"), std::string::npos);
     EXPECT_NE(csv.find(",tail_k,S,0.1\r\n"), std::string::npos);
 }
@@ -181,7 +181,7 @@ TEST(MetricsCsv, HasOneUniqueColumnForEachSetKey) {
     s.metrics.runs.resize(1);
     s.experiment.overrides = {"seed=9", "n=64", "fill.radiance=[1, 1, 1]", "exposure=2", "seeds=3", "exposure=4"};
     const std::string csv = metrics_csv(s.inputs());
-    EXPECT_TRUE(csv.starts_with("arm,n,s,seed,meter,region,value,set.seed,set.n,fill.radiance,exposure\r\n")) << csv;
+    EXPECT_TRUE(csv.starts_with("arm,n,s,seed,metric,region,value,set.seed,set.n,fill.radiance,exposure\r\n")) << csv;
     EXPECT_NE(csv.find(",rmse,H,6,9,64,\"[1, 1, 1]\",4\r\n"), std::string::npos) << csv;
 }
 

@@ -704,7 +704,7 @@ def record(result: Any, **of: Any) -> dict[str, Any]:
         "state": result.state,
         "evaluations": result.questions,
         "verdicts": {v.name: v.state for v in not_right},
-        "say": [v.say + v.settle for v in not_right],
+        "message": [v.message + v.status for v in not_right],
         "causes": sorted({v.cause for v in result.verdicts if v.cause and v.state == "wrong"}),
     }
 

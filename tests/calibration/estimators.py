@@ -272,7 +272,7 @@ RESERVOIRS = (ris, mis, merged)
 
 def record(result: Any, **known: Any) -> dict[str, Any]:
     not_right = [v for v in result.verdicts if v.state not in ("right", "skipped")]
-    return {**known, "state": result.state, "say": [v.say for v in not_right], "causes": [v.cause for v in not_right]}
+    return {**known, "state": result.state, "message": [v.message for v in not_right], "causes": [v.cause for v in not_right]}
 
 
 def check_number(rng: np.random.Generator, number: int, wrong: bool) -> dict[str, Any]:

@@ -113,7 +113,8 @@ void run_set(const Options& o) {
         if (o.out.empty() || r["state"] != r["expected"])
             fmt::print("{} {} {} {} {:g} {}: {} ({}) {:.2f} s {}\n", set.name, index, r["family"].get<std::string>(),
                 r["kind"].get<std::string>(), r["size"].get<double>(), r["real"].get<std::string>(),
-                r["state"].get<std::string>(), r["wrong"].dump(), r["cpu"].get<double>(), r["say"].get<std::string>());
+                r["state"].get<std::string>(), r["wrong"].dump(), r["cpu"].get<double>(),
+                r["message"].get<std::string>());
         std::fflush(stdout);
     }
 }

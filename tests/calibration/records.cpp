@@ -37,7 +37,7 @@ Json record_of(const CaseKey& key, const RunOf& run, const Case& c, const Result
     r["cause"] = c.cause, r["causes"] = result.causes;
     r["stated"] = result.stated, r["p"] = result.p;
     r["cpu"] = std::round(result.cpu_seconds * 1e4) / 1e4, r["evaluations"] = result.evaluations;
-    r["directions"] = result.wo, r["say"] = result.message.substr(0, 300);
+    r["directions"] = result.wo, r["message"] = result.message.substr(0, 300);
     return r;
 }
 

@@ -68,9 +68,9 @@ ticks = re.findall(r'M58.0 ([\d.]+) H.*?text-anchor="end">([\d.e-]+)</text>', fi
 (y0, v0), (y1, v1) = [(float(y), math.log(float(v))) for y, v in (ticks[0], ticks[-1])]
 dots = re.findall(r'class="dot.*? cy="([\d.]+)"', figure)
 drawn = [math.exp(v0 + (float(y) - y0) / (y1 - y0) * (v1 - v0)) for y in dots]
-meter = {a["arm"]: a["regions"]["frame"]["meters"]["var"]["value"] for a in bare["arms"]}
+metric = {a["arm"]: a["regions"]["frame"]["metrics"]["var"]["value"] for a in bare["arms"]}
 for name, value in zip(bare["ladders"][0]["arms"], drawn, strict=True):
-    assert abs(value / math.sqrt(meter[name]) - 1) < 0.02, (name, value, meter[name])
+    assert abs(value / math.sqrt(metric[name]) - 1) < 0.02, (name, value, metric[name])
 END
 expect 0 "$CRESCENT" compare ladder.toml --spp 16 --out alike --quiet
 [ ! -e alike/plates/ladders.png ] || die "a plate of no ladder"

@@ -315,7 +315,7 @@ def page_of_checks(out: str | PathLike[str]) -> str:
     for point in points:
         verdict = _first(point, point["kind"])
         if verdict is not None:
-            cells = (label(point["values"]), point["kind"], verdict["case"], verdict["verdict"], verdict["say"])
+            cells = (label(point["values"]), point["kind"], verdict["case"], verdict["verdict"], verdict["message"])
             rows.append("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>")
     if rows:
         parts.append("<h2>Points that are not right</h2><table>" + "\n".join(rows) + "</table>\n")

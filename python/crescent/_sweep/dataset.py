@@ -46,11 +46,11 @@ def _at_equal_time(rows: Sequence[Mapping[str, str]], times: Sequence[Sequence[A
         of_s = [row for row in rows if row["s"] and float(row["s"]) == s]
         for n, seed in dict.fromkeys((row["n"], row["seed"]) for row in of_s):
             first = next(row for row in of_s if (row["n"], row["seed"]) == (n, seed))
-            out.append({**first, "meter": "seconds", "region": "", "value": repr(seconds * int(n))})
+            out.append({**first, "metric": "seconds", "region": "", "value": repr(seconds * int(n))})
         for row in of_s:
-            if row["meter"] == "var" and row["value"] and float(row["value"]) > 0:
+            if row["metric"] == "var" and row["value"] and float(row["value"]) > 0:
                 value = 1 / (float(row["value"]) * a_sample * int(row["n"]))
-                out.append({**row, "meter": "efficiency_time", "value": repr(value)})
+                out.append({**row, "metric": "efficiency_time", "value": repr(value)})
     return out
 
 
@@ -107,7 +107,7 @@ class Dataset:
             "n": [int(row["n"]) for row in rows],
             "s": [number(row["s"]) for row in rows],
             "seed": [int(row["seed"]) for row in rows],
-            "metric": [row["meter"] for row in rows],
+            "metric": [row["metric"] for row in rows],
             "region": [row["region"] for row in rows],
             "value": [number(row["value"]) for row in rows],
             "suspect": [suspect] * count,

@@ -125,7 +125,7 @@ def _checked(task: Task) -> Result:
         settings = values
     result = check(sampler, alpha=task["alpha"], seed=task["seed"], full=task["full"], settings=settings, threads=1)
     rows = [
-        {"case": v.case, "verdict": v.name, "state": v.state, "say": v.say, "cause": v.cause} for v in result.verdicts
+        {"case": v.case, "verdict": v.name, "state": v.state, "message": v.message, "cause": v.cause} for v in result.verdicts
     ]
     return {"state": result.state, "tests": result.tests, "verdicts": rows, "json": result.json()}
 

@@ -24,7 +24,7 @@ class Note:
         """Returns whether it explains this verdict of this plugin."""
         return all(
             re.search(pattern, text, re.S) is not None
-            for pattern, text in ((self.plugins, title), (self.verdicts, verdict.name), (self.says, verdict.say))
+            for pattern, text in ((self.plugins, title), (self.verdicts, verdict.name), (self.says, verdict.message))
         )
 
 

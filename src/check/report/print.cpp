@@ -103,7 +103,7 @@ std::string verdict_table(const CheckResult& result, bool all) {
 }
 
 std::string verdict_json(const CheckResult& result, const ResultSource& source) {
-    nlohmann::ordered_json root = head_of("crescent check 2", source);
+    nlohmann::ordered_json root = head_of("crescent check 3", source);
     root["state"] = word(result.state);
     root["as_expected"] = result.as_expected;
     root["alpha"] = result.alpha;
@@ -112,7 +112,7 @@ std::string verdict_json(const CheckResult& result, const ResultSource& source) 
     root["failed_twice"] = result.confirmed;
     if (result.questions > 0) root["questions"] = result.questions;
     if (!result.unmet.empty()) root["unmet_expectations"] = result.unmet;
-    root["asked_for"] = cases_of(result);
+    root["requested"] = cases_of(result);
     root["left_out"] = nlohmann::ordered_json::array();
     for (const SkippedCase& l : result.left_out)
         root["left_out"].push_back({{"arm", l.arm}, {"case", l.check_case}, {"verdicts", l.verdicts}, {"why", l.why}});
@@ -123,9 +123,9 @@ std::string verdict_json(const CheckResult& result, const ResultSource& source) 
         one["case"] = v.check_case;
         one["name"] = v.name;
         one["state"] = word(v.state);
-        one["say"] = v.message;
+        one["message"] = v.message;
         if (!v.cause.empty()) one["cause"] = v.cause;
-        if (const std::string next = next_step_text(v); !next.empty()) one["settle"] = next;
+        if (const std::string next = next_step_text(v); !next.empty()) one["status"] = next;
         one["expected"] = v.expected;
         if (!v.why_expected.empty()) one["why_expected"] = v.why_expected;
         if (v.waived) one["waived"] = true;
@@ -140,7 +140,7 @@ std::string verdict_timing(const CheckResult& result, const ResultSource& source
     root["verdicts"] = nlohmann::ordered_json::array();
     for (const Verdict& v : result.verdicts) {
         nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.check_case}, {"name", v.name}, {"seconds", v.seconds}};
-        if (!v.timed_message.empty()) one["say"] = v.timed_message;
+        if (!v.timed_message.empty()) one["message"] = v.timed_message;
         one.update(v.timing);
         root["verdicts"].push_back(std::move(one));
     }

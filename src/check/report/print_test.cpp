@@ -35,7 +35,7 @@ TEST(ResultAsJson, HasEachVerdictWithItsEvidence) {
     ASSERT_EQ(json["verdicts"].size(), 5u);
     EXPECT_EQ(json["verdicts"][2]["state"], "inconclusive");
     EXPECT_EQ(json["verdicts"][0]["evidence"]["p"], 0.25);
-    EXPECT_EQ(json["asked_for"].size(), 2u);  // arms and cases
+    EXPECT_EQ(json["requested"].size(), 2u);  // arms and cases
 }
 
 TEST(ResultAsJson, HasNoTimes) {

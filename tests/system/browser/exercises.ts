@@ -8,7 +8,7 @@ import { evaluations, four } from "../../../apps/web/workshop_settings";
 
 import "../../../apps/web/vendor/codemirror/editor"; // in the page, scripts of their own
 
-interface Verdict { name: string; state: string; say: string; hidden: Record<string, number> }
+interface Verdict { name: string; state: string; message: string; hidden: Record<string, number> }
 declare const global: Record<string, unknown>;
 
 /** The page's answer to this code: its state, and its verdicts. */
@@ -28,7 +28,7 @@ export function exerciseLines(module: WebAssembly.Module): string[] {
   const lines: string[] = [], bad: string[] = [];
   const state = (code: string, ground: string): [string, string] => {
     const { state, verdicts } = checked(module, code, ground), first = verdicts.find((v) => v.state === "wrong" || v.state === "error") ?? verdicts.find((v) => v.state === "inconclusive");
-    return [state, first ? `${first.name}: ${first.say}` : ""];
+    return [state, first ? `${first.name}: ${first.message}` : ""];
   };
   for (const { name, code, ground, repair } of exercises) {
     const [before, why] = state(code, ground), [after, left] = repair ? state(code.replace(repair[0], () => repair[1]), ground) : ["", ""];

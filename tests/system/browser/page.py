@@ -186,7 +186,7 @@ def a_lesson_is_confirmed(driver):
     found = re.findall(r"(\w+), N = 64: RMSE of your box ([\d.]+), from ([\d.]+) to ([\d.]+)", said)
     assert [arm for arm, *_ in found] == ["uniform", "cosine", "phong"], said
     for arm, *numbers in found:
-        band = next(b for b in bands if (b["arm"], b["n"], b["s"], b["meter"]) == (arm, 64, 32, "rmse.mine"))
+        band = next(b for b in bands if (b["arm"], b["n"], b["s"], b["metric"]) == (arm, 64, 32, "rmse.mine"))
         for text, name in zip(numbers, ("median", "q05", "q95")):
             assert math.isclose(float(text), band[name], rel_tol=1e-3), f"{arm}, {name}: {text}, not {band[name]}"
 

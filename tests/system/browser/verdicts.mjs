@@ -11,10 +11,10 @@ function hold(is, words) { if (!is) throw new Error(words); }
 const { verdicts } = JSON.parse(readFileSync(native, "utf8")), arm = verdicts[0].arm;
 let compared = 0;
 for (const { case: at, verdicts: of } of api.json("checked", { sampler: arm, theta: Number(angle) }).cases)
-  for (const { name, state, say, evidence } of of) {
+  for (const { name, state, message, evidence } of of) {
     const there = verdicts.find((v) => v.case === at && v.name === name);
-    hold(there && isDeepStrictEqual({ state, say, evidence }, { state: there.state, say: there.say, evidence: there.evidence }),
-      `${arm}, ${at}, ${name}: ${JSON.stringify({ state, say, evidence })}, not ${JSON.stringify(there)}`);
+    hold(there && isDeepStrictEqual({ state, message, evidence }, { state: there.state, message: there.message, evidence: there.evidence }),
+      `${arm}, ${at}, ${name}: ${JSON.stringify({ state, message, evidence })}, not ${JSON.stringify(there)}`);
     ++compared;
   }
 hold(compared === verdicts.filter((v) => v.name !== "efficiency").length, `${compared} verdicts of ${verdicts.length}`);
