@@ -217,6 +217,7 @@ std::function<int()> parse(int argc, char** argv) {
     Work work;
     add_run(app, work);
     add_join(app, work);
+    add_report(app, work);
     add_film(app, work);
     add_list(app, work);
     add_schema(app, work);

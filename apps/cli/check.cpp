@@ -402,7 +402,7 @@ std::string command_of(const CheckFlags& f) {
 
 /// Opens every file before the first draw, so that minutes of work are not lost to a missing folder.
 void try_files(const CheckFlags& flags) {
-    for (const std::string& path : {flags.json, flags.timing, flags.junit, flags.sarif, flags.html, flags.repro})
+    for (const std::string& path : {flags.json, flags.junit, flags.sarif, flags.html, flags.repro})
         if (!path.empty()) can_write(path);
 }
 
@@ -411,7 +411,6 @@ void try_files(const CheckFlags& flags) {
 void write_files(const CheckFlags& flags, const CheckResult& j) {
     const ResultSource source{crescent::version(), crescent::commit(), command_of(flags)};
     if (!flags.json.empty()) write_whole(flags.json, verdict_json(j, source));
-    if (!flags.timing.empty()) write_whole(flags.timing, verdict_timing(j, source));
     if (!flags.junit.empty()) write_whole(flags.junit, verdict_junit(j));
     if (!flags.sarif.empty()) write_whole(flags.sarif, verdict_sarif(j, place_of_sampler(flags), source));
     if (!flags.html.empty()) write_whole(flags.html, verdict_html(j, source));
@@ -489,8 +488,8 @@ void print_verdicts(const CheckResult& j, bool verbose) {
 
 int check(const CheckFlags& given) {
     CheckFlags flags = given;
-    for (std::string* file : {&flags.json, &flags.timing, &flags.junit, &flags.sarif, &flags.html,
-             &flags.repro})  // a sampler may call chdir
+    for (std::string* file : {&flags.json, &flags.junit, &flags.sarif, &flags.html, &flags.repro})
+        // a sampler may call chdir
         if (!file->empty()) *file = std::filesystem::absolute(*file).string();
     const Stopwatch watch;
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());

@@ -49,6 +49,11 @@ struct JoinFlags {
 };
 int join(const JoinFlags& flags);
 
+struct ReportFlags {
+    std::string file, out;  // out "": beside the file
+};
+int report(const ReportFlags& flags);
+
 struct FilmFlags {
     std::string file;
     std::vector<std::string> overrides;  // PATH=VALUE
@@ -77,14 +82,14 @@ struct CheckFlags {
     std::map<std::string, std::vector<std::string>> shader;  // options of a shader, by flag
     std::string over;                                        // NAME=VALUES of a shader
     std::string domain;                                      // of a shader, or of a program that states none
-    std::string estimates;            // the expected value of an estimator of a number, one or three expressions
-    std::string against;              // a built-in arm, or a program
-    std::vector<std::string> expect;  // waivers, files of them, or "same": with against, a difference fails
-    std::vector<std::string> wo;      // x,y,z or degrees
-    std::string json, timing, junit, sarif, html;  // files to write
-    std::string repro;                             // a script to write
-    double alpha = 1e-3, patience = 0;             // patience: s for a program; 0: two minutes, with --full an hour
-    double timeout = 0;                            // s per response of a program or plugin; 0: the defaults
+    std::string estimates;                 // the expected value of an estimator of a number, one or three expressions
+    std::string against;                   // a built-in arm, or a program
+    std::vector<std::string> expect;       // waivers, files of them, or "same": with against, a difference fails
+    std::vector<std::string> wo;           // x,y,z or degrees
+    std::string json, junit, sarif, html;  // files to write
+    std::string repro;                     // a script to write
+    double alpha = 1e-3, patience = 0;     // patience: s for a program; 0: two minutes, with --full an hour
+    double timeout = 0;                    // s per response of a program or plugin; 0: the defaults
     unsigned seed = 1;
     int pixels = 0;  // of an experiment; 0: the grid of w_o
     bool no_code = false;

@@ -39,6 +39,7 @@ void timeout(CLI::App& command, double& to);
 // Each adds one command; `work` receives its implementation once the parser finds it.
 void add_run(CLI::App& app, Work& work);
 void add_join(CLI::App& app, Work& work);
+void add_report(CLI::App& app, Work& work);
 void add_film(CLI::App& app, Work& work);
 void add_check(CLI::App& app, Work& work);
 void add_compare(CLI::App& app, Work& work);

@@ -57,7 +57,6 @@ CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
 void outputs(CLI::App& c, CheckFlags& f) {
     for (CLI::Option* file :
         {c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes"),
-            c.add_option("--timing", f.timing, "write what each verdict and each sample took"),
             c.add_option("--junit", f.junit, "write for a build server"),
             c.add_option("--sarif", f.sarif, "write what fails, for the annotations of a code host"),
             c.add_option("--html", f.html, "write one page with maps, histograms and roses"),

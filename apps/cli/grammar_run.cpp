@@ -27,6 +27,9 @@ instrument; seeds that two of them have must agree bit for bit. Written under
 DIR: metrics.json, metrics.csv and junit.xml, as of one run with all seeds.
 Assertions that need seeds which are in no part are skipped.)";
 
+constexpr const char* report_footer = R"(Of a run the page is report.html, with the plates that are in plates/ beside
+FILE; of check.json it is check.html.)";
+
 constexpr const char* film_footer = R"(The film of an experiment: every picture, curve and number comes from the run
 that it is made with. Written under DIR as one: crescent.mp4, captions
 (.vtt, .srt), transcript (.txt), frames.json and a still of every shot.
@@ -110,6 +113,17 @@ void add_join(CLI::App& app, Work& work) {
         ->type_name("...")
         ->check(not_empty);
     c->add_option("--out", f->out, "where the outputs go")->required()->type_name("DIR")->check(not_empty);
+}
+
+void add_report(CLI::App& app, Work& work) {
+    std::shared_ptr<ReportFlags> f;
+    CLI::App* c = command(app, work, "report", "Make the page of a stored result.", report, f);
+    c->footer(report_footer);
+    c->add_option("FILE", f->file, "the metrics.json of a run, or what check --json wrote")
+        ->required()
+        ->type_name("")
+        ->check(not_empty);
+    c->add_option("--out", f->out, "the page; default: beside FILE")->type_name("FILE")->check(not_empty);
 }
 
 void add_film(CLI::App& app, Work& work) {

@@ -86,7 +86,6 @@ struct Verdict {
     // Values that vary between runs are separate, so that equal calls give equal verdicts.
     double seconds = 0;
     std::string timed_message;
-    nlohmann::ordered_json timing = nlohmann::ordered_json::object();
     bool expected = true;      // expected of a right sampler, or of this built-in arm
     std::string why_expected;  // printed if a wrong verdict is expected
     bool waived = false;       // the caller expects it, so it does not count

@@ -172,10 +172,11 @@ CompareResult compare_renders(const ComparePlan& plan, const CompareOptions& opt
     monitor.check();
     for (const auto& [name, png] : pictures) staging.write("plates/" + name + ".png", png);
     if (!result.ladders.empty()) staging.write("plates/ladders.svg", ladders_svg(result, plan.theme));
-    staging.write("metrics.json", compare_json(plan, all, result, provenance));
+    const Json stored = compare_result_json(plan, all, result, provenance);
+    staging.write("metrics.json", text(stored));
     staging.write("metrics.csv", compare_csv(result));
     staging.write("junit.xml", compare_junit(plan, result));
-    staging.write("report.html", compare_html(plan, all, result, provenance, pictures));
+    staging.write("report.html", compare_html(stored, pictures));
     staging.commit(monitor);
     summary = compare_summary(plan, all, result, options.out);
     return result;

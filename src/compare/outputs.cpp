@@ -33,7 +33,7 @@ Json region_json(const RegionResult& r) {
         : Json(nullptr);
     out["largest_share"] = number(r.largest_share);
     if (r.heavy()) out["heavy_tail"] = {{"renders_needed", or_null(r.renders_needed)}};
-    if (r.stated_ratio) out["told_variance_ratio"] = number(*r.stated_ratio);
+    if (r.stated_ratio) out["stated_variance_ratio"] = number(*r.stated_ratio);
     out["spectrum"] = {{"power", numbers(r.power)}, {"noise", to_string(r.colour)}};
     return out;
 }
@@ -44,7 +44,8 @@ Json arm_json(const ArmResult& arm, const ArmStats& readings, const std::vector<
     for (const RegionResult& r : arm.regions) out["regions"][r.region] = region_json(r);
     for (std::size_t k = 0; k < readings.files.size(); ++k) {
         const RenderFile& f = readings.files[k];
-        Json file = {{"file", f.path}, {"hash", f.hash}, {"layer", f.layer}};
+        Json file = {{"file", f.path}, {"hash", f.hash}, {"layer", f.layer}, {"spp", or_null(f.spp)},
+            {"seconds", or_null(f.seconds)}};
         if (!f.variance_channels.empty()) file["variance_channels"] = f.variance_channels;
         if (!f.sample_channel.empty()) file["sample_channel"] = f.sample_channel;
         for (std::size_t r = 0; r < sets.size(); ++r) {
@@ -131,8 +132,8 @@ Json seeds_json(const BiasResult& b) {
 
 Json bias_json(const BiasResult& b, int width) {
     Json out = {{"a", b.a}, {"b", b.b}, {"differs", b.differs()}, {"identical", b.identical}, {"paired", b.paired},
-        {"message", b.sentence}, {"method", b.dependent ? "Benjamini-Yekutieli" : "Benjamini-Hochberg"},
-        {"regions", Json::object()}, {"shared_seeds", seeds_json(b)},
+        {"message", b.sentence}, {"method", b.dependent ? dependent_method : "Benjamini-Hochberg"},
+        {"shown", quantity_names[b.shown()]}, {"regions", Json::object()}, {"shared_seeds", seeds_json(b)},
         {"non_finite", non_finite_json(b.non_finite, width)}};
     if (!b.reference_error.empty()) out["reference_error"] = b.reference_error;
     for (const MeanTest& t : b.regions) out["regions"][t.region] = region_test_json(t);
@@ -177,18 +178,22 @@ const char* word_of(CompareResult::State state) {
 
 }  // namespace
 
-std::string compare_json(
+Json compare_result_json(
     const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const Provenance& p) {
     Json out = {{"format", "crescent comparison 2"}, {"title", plan.title}, {"width", all.width},
         {"height", all.height}, {"state", word_of(result.state)}, {"message", result.sentence},
-        {"alpha", number(plan.alpha)}, {"trim", number(plan.trim)}};
+        {"found", found_about_means(result)}, {"alpha", number(plan.alpha)}, {"trim", number(plan.trim)}};
     for (std::size_t a = 0; a < result.arms.size(); ++a)
         out["arms"].push_back(arm_json(result.arms[a], all.arms[a], all.regions, all.reference.has_value()));
     out["reference"] = nullptr;
     if (all.reference) {
         Json reference = {{"files", Json::array()}, {"standard_error", Json::object()}};
-        for (const RenderFile& f : all.reference->files)
-            reference["files"].push_back({{"file", f.path}, {"hash", f.hash}});
+        for (std::size_t k = 0; k < all.reference->files.size(); ++k) {
+            const RenderFile& f = all.reference->files[k];
+            reference["files"].push_back(
+                {{"file", f.path}, {"hash", f.hash}, {"layer", f.layer}, {"spp", or_null(f.spp)},
+                    {"seconds", or_null(f.seconds)}, {"y_mean", number(all.reference->regions[k].back().y)}});
+        }
         for (const auto& [region, error] : result.reference_error)
             reference["standard_error"][region] = std::isnan(error) ? Json(nullptr) : number(error);
         reference["standard_error_from"] = result.reference_error_from;
@@ -208,7 +213,7 @@ std::string compare_json(
     out["warnings"] = result.warnings;
     out["provenance"] = {
         {"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler}, {"command", p.command}};
-    return text(out);
+    return out;
 }
 
 std::string compare_csv(const CompareResult& result) {

@@ -161,16 +161,18 @@ Picture noise_plate(const RenderStats& all, const NoiseResult& noise, Theme them
 Picture ladders_plate(const CompareResult& result, Theme theme);
 std::string ladders_svg(const CompareResult& result, Theme theme);
 
-/// docs/compare.schema.json describes it; equal inputs give equal bytes.
-std::string compare_json(
+/// metrics.json, which docs/compare.schema.json describes; equal inputs give equal values.
+Json compare_result_json(
     const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const Provenance& provenance);
 /// One metric per row, RFC 4180.
 std::string compare_csv(const CompareResult& result);
 std::string compare_junit(const ComparePlan& plan, const CompareResult& result);
 std::string compare_summary(
     const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const std::string& out_dir);
-/// One page that works offline; `pictures` are PNG bytes by name.
-std::string compare_html(const ComparePlan& plan, const RenderStats& all, const CompareResult& result,
-    const Provenance& provenance, const std::map<std::string, std::vector<unsigned char>>& plates);
+/// The method of places whose noise is correlated, as in the JSON.
+inline constexpr const char* dependent_method = "Benjamini-Yekutieli";
+/// One page that works offline, of compare_result_json() or of the file that it was stored in; `plates` are PNG bytes
+/// by name. Throws Json::exception if the result is something else.
+std::string compare_html(const Json& result, const std::map<std::string, std::vector<unsigned char>>& plates);
 
 }  // namespace crescent

@@ -30,7 +30,7 @@ struct Compared {
         renders.renders["b0"].spp = 16;
         plan = renders.plan(flags), all = renders.read(flags), result = renders.compare(flags);
     }
-    nlohmann::json json() const { return nlohmann::json::parse(compare_json(plan, all, result, {})); }
+    nlohmann::json json() const { return nlohmann::json::parse(text(compare_result_json(plan, all, result, {}))); }
     MemoryRenders renders;
     ComparePlan plan;
     RenderStats all;

@@ -1,14 +1,12 @@
-// The model of the page of a comparison, which compare.html lays out: the findings, the metrics with their intervals,
-// the pictures, the spectra, the files.
+// The page of a comparison, from its JSON alone; compare.html lays it out: the findings, the metrics with their
+// intervals, the pictures, the spectra, the files.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <numeric>
 
 #include "compare/compare.h"
-#include "compare/renders.h"
 #include "compare/outputs.h"
-#include "compare/plan.h"
 #include "output/charts.h"
 #include "output/templates.h"
 
@@ -18,15 +16,29 @@ namespace {
 
 // ---- Metrics with their intervals.
 
-Json interval_of(const MetricValue& m) {
+/// A metric's value with its interval, as compare_result_json() writes them.
+struct Metric {
+    std::optional<double> value;
+    std::optional<std::pair<double, double>> interval;
+    std::string why;
+};
+
+Metric metric_of(const Json& json) {
+    Metric out{read_optional(json.at("value")), {}, json.value("why", "")};
+    if (const Json& ends = json.at("interval"); !ends.is_null())
+        out.interval = {read_number(ends.at(0)), read_number(ends.at(1))};
+    return out;
+}
+
+Json interval_of(const Metric& m) {
     if (!m.interval) return false;
     return {{"low", with_minus(figures(m.interval->first, 3))}, {"high", with_minus(figures(m.interval->second, 3))}};
 }
 
-Json cell_of(const MetricValue& m) {
+Json cell_of(const Metric& m) {
     return {{"value", m.value ? with_minus(figures(*m.value)) : ""}, {"why", m.why},
         {"interval", m.value ? interval_of(m) : Json(false)},
-        {"is_heavy", m.value && !m.interval && m.why == "heavy tail"}};
+        {"is_heavy", m.value && !m.interval && m.why == heavy_tail}};
 }
 
 /// The title of a metric, as HTML.
@@ -40,95 +52,113 @@ const char* title_of(const std::string& metric) {
 }
 
 /// What a heavy tail or the renderer's own variance says about the numbers of an arm in a region.
-Json remarks_of(const std::string& region, const CompareResult& result) {
+Json remarks_of(const std::string& region, const Json& arms) {
     Json out = Json::array();
-    for (const ArmResult& arm : result.arms) {
-        const RegionResult& r = arm.region(region);
-        out.push_back({{"arm", arm.name}, {"share", r.heavy() ? percent(r.largest_share) : ""},
-            {"needed", r.renders_needed ? fmt::format("{:.0f}", *r.renders_needed) : ""},
-            {"stated_ratio", r.stated_ratio ? with_minus(figures(*r.stated_ratio, 3)) : ""}});
+    for (const Json& arm : arms) {
+        const Json& r = arm.at("regions").at(region);
+        const bool heavy = r.contains("heavy_tail");
+        const auto needed = heavy ? read_optional(r.at("heavy_tail").at("renders_needed")) : std::nullopt;
+        const auto stated = read_optional(r.value("stated_variance_ratio", Json()));
+        out.push_back({{"arm", arm.at("arm")}, {"share", heavy ? percent(read_number(r.at("largest_share"))) : ""},
+            {"needed", needed ? fmt::format("{:.0f}", *needed) : ""},
+            {"stated_ratio", stated ? with_minus(figures(*stated, 3)) : ""}});
     }
     return out;
 }
 
 /// A table of the metrics that some arm has in the region; the others are added to `not_measured` with their reasons.
-Json region_of(const PixelSet& set, const CompareResult& result, std::vector<Json>& not_measured) {
+Json region_of(const std::string& region, const Json& all, std::vector<Json>& not_measured) {
     std::vector<std::string> names;
     Json titles = Json::array(), arms = Json::array();
-    for (const auto& [name, m] : result.arms[0].region(set.name).metrics) {
-        const bool any = std::ranges::any_of(
-            result.arms, [&](const ArmResult& arm) { return arm.region(set.name).metric(name).value.has_value(); });
+    const Json& first = all.at(0).at("regions").at(region);
+    const auto metric = [&](const Json& arm, const std::string& name) {
+        return metric_of(arm.at("regions").at(region).at("metrics").at(name));
+    };
+    for (const auto& [name, m] : first.at("metrics").items()) {
+        const bool any = std::ranges::any_of(all, [&](const Json& arm) { return metric(arm, name).value.has_value(); });
         if (any) names.push_back(name), titles.push_back(title_of(name));
-        else not_measured.push_back({{"metric", title_of(name)}, {"why", m.why}});
+        else not_measured.push_back({{"metric", title_of(name)}, {"why", m.value("why", "")}});
     }
-    for (const ArmResult& arm : result.arms) {
+    for (const Json& arm : all) {
         Json cells = Json::array();
-        for (const std::string& name : names) cells.push_back(cell_of(arm.region(set.name).metric(name)));
-        arms.push_back({{"arm", arm.name}, {"renders", arm.renders}, {"cells", cells}});
+        for (const std::string& name : names) cells.push_back(cell_of(metric(arm, name)));
+        arms.push_back({{"arm", arm.at("arm")}, {"renders", arm.at("renders")}, {"cells", cells}});
     }
-    return {{"is_frame", set.name == whole_frame}, {"name", set.name}, {"pixels", set.pixels.size()},
-        {"metrics", titles}, {"arms", arms}, {"remarks", remarks_of(set.name, result)}};
+    return {{"is_frame", region == whole_frame}, {"name", region}, {"pixels", first.at("pixels")}, {"metrics", titles},
+        {"arms", arms}, {"remarks", remarks_of(region, all)}};
+}
+
+std::vector<std::string> region_names(const Json& result) {
+    std::vector<std::string> out;
+    for (const auto& [name, region] : result.at("arms").at(0).at("regions").items()) out.push_back(name);
+    return out;
 }
 
 /// The metrics that no arm has are those of the last region.
-void add_numbers(const RenderStats& all, const CompareResult& result, Json& to) {
+void add_numbers(const Json& result, Json& to) {
     std::vector<Json> not_measured;
     Json regions = Json::array();
-    for (const PixelSet& set : all.regions) {
+    for (const std::string& name : region_names(result)) {
         not_measured.clear();
-        regions.push_back(region_of(set, result, not_measured));
+        regions.push_back(region_of(name, result.at("arms"), not_measured));
     }
     to["regions"] = regions, to["not_measured"] = separated(std::move(not_measured));
 }
 
 // ---- Whether arms agree on the mean.
 
-Json row_of(const std::string& name, const MeanTest& t, const std::string& differs, const std::string& remark) {
-    const bool tested = t.why.empty();
-    return {{"region", name}, {"mean", cell_text(figures(t.a))}, {"other", cell_text(figures(t.b))},
-        {"p", cell_text(tested ? figures(t.welch.p, 2) : "")},
-        {"smallest", cell_text(tested ? percent(t.smallest, 2) : "")}, {"differs", differs}, {"remark", remark}};
+std::string figures_of(const Json& object, const char* key, int digits = 4) {
+    return object.contains(key) ? figures(read_number(object.at(key)), digits) : "";
+}
+
+Json row_of(const std::string& name, const Json& test, const std::string& differs, const std::string& remark) {
+    return {{"region", name}, {"mean", cell_text(figures_of(test, "a"))}, {"other", cell_text(figures_of(test, "b"))},
+        {"p", cell_text(figures_of(test, "p", 2))},
+        {"smallest", cell_text(test.contains("smallest") ? percent(read_number(test.at("smallest")), 2) : "")},
+        {"differs", differs}, {"remark", remark}};
 }
 
 /// Y of each region; below it the channels if one of them differs.
-Json rows_of(const BiasResult& b) {
+Json rows_of(const Json& pair) {
     Json out = Json::array();
-    for (const MeanTest& t : b.regions) {
-        const std::vector<std::string> in = t.differs_in();
-        if (!in.empty()) out.push_back(row_of(t.region, t, "differs in " + listed(in), ""));
-        else
-            out.push_back(row_of(t.region, t, "",
-                !t.why.empty()          ? t.why
-                    : !t.caveat.empty() ? t.caveat
-                    : b.identical       ? "identical"
-                                        : "no difference found"));
-        if (std::ranges::any_of(t.channels, [](const MeanTest& c) { return c.differs; }))
-            for (const MeanTest& c : t.channels)
+    const std::string nothing = pair.at("identical").get<bool>() ? "identical" : "no difference found";
+    for (const auto& [region, test] : pair.at("regions").items()) {
+        const auto in = test.at("differs_in").get<std::vector<std::string>>();
+        if (!in.empty()) out.push_back(row_of(region, test, "differs in " + listed(in), ""));
+        else out.push_back(row_of(region, test, "", test.value("why", test.value("doubt", nothing))));
+        const Json channels = test.value("channels", Json::object());
+        if (std::ranges::any_of(channels, [](const Json& c) { return c.at("differs").get<bool>(); }))
+            for (const auto& [name, c] : channels.items()) {
+                const bool differs = c.at("differs").get<bool>();
                 out.push_back(
-                    row_of(t.region + ", mean " + c.region, c, c.differs ? "differs" : "", c.differs ? "" : c.why));
+                    row_of(region + ", mean " + name, c, differs ? "differs" : "", differs ? "" : c.value("why", "")));
+            }
     }
     return out;
 }
 
 /// The number of places that differ, by the quantity that differs the most in each; false if none does.
-Json most_in(const std::vector<std::uint64_t>& by) {
+Json most_in(const Json& by) {
     std::vector<Json> out;
-    for (std::size_t q = 0; q < by.size(); ++q)
-        if (by[q]) out.push_back({{"quantity", quantity_names[q]}, {"count", by[q]}});
+    for (const auto& [quantity, count] : by.items())
+        if (count.get<std::uint64_t>()) out.push_back({{"quantity", quantity}, {"count", count}});
     return out.empty() ? Json(false) : Json{{"quantities", separated(std::move(out))}};
 }
 
 /// Tiles and pixels that differ; false if none was tested.
-Json places_of(const BiasResult& b) {
-    const bool tiles = !b.tiles.p.empty(), pixels = !b.pixel_p.empty(), shown = b.shown() != 0;
-    if (!tiles && !pixels && !shown) return false;
-    Json out = {{"tiles", false}, {"pixels", false}, {"maps_show", shown ? quantity_names[b.shown()] : ""},
-        {"dependent", b.dependent}};
-    if (tiles)
-        out["tiles"] = {{"tested", b.tiles.tested}, {"different", b.tiles.different}, {"left_out", b.tiles.left_out},
-            {"by", most_in(b.tiles_by)}};
-    if (pixels)
-        out["pixels"] = {{"tested", b.pixels_tested}, {"different", b.pixels_different}, {"by", most_in(b.pixels_by)}};
+Json places_of(const Json& pair) {
+    const Json &tiles = pair.at("tiles"), &pixels = pair.at("pixels");
+    const auto shown = pair.at("shown").get<std::string>();
+    const bool is_y = shown == quantity_names[0];
+    if (tiles.at("tested") == 0 && pixels.at("tested") == 0 && is_y) return false;
+    Json out = {{"tiles", false}, {"pixels", false}, {"maps_show", is_y ? "" : shown},
+        {"dependent", pair.at("method") == dependent_method}};
+    if (tiles.at("tested") != 0)
+        out["tiles"] = {{"tested", tiles.at("tested")}, {"different", tiles.at("different")},
+            {"left_out", tiles.at("left_out")}, {"by", most_in(tiles.at("most_in"))}};
+    if (pixels.at("tested") != 0)
+        out["pixels"] = {{"tested", pixels.at("tested")}, {"different", pixels.at("different")},
+            {"by", most_in(pixels.at("most_in"))}};
     return out;
 }
 
@@ -160,129 +190,187 @@ std::string histogram(
     return chart.str();
 }
 
-std::string pixel_histogram(const BiasResult& b) {
-    if (!b.pixels_tested) return {};
+using BinCounts = std::vector<std::uint64_t>;
+
+std::string pixel_histogram(const Json& pixels) {
+    if (pixels.at("tested") == 0) return {};
+    const auto p = pixels.at("p").get<BinCounts>();
     const Axis x{0, 1, false, "p of a pixel", {0, 0.2, 0.4, 0.6, 0.8, 1}};
-    return histogram(percents(b.pixel_p, sum_of(b.pixel_p)), {}, x, "% of pixels", "Histogram of p over pixels");
+    return histogram(percents(p, sum_of(p)), {}, x, "% of pixels", "Histogram of p over pixels");
 }
 
-Json pairs_of(const CompareResult& result) {
+Json pairs_of(const Json& result) {
     Json out = Json::array();
-    for (const BiasResult& b : result.bias)
-        out.push_back({{"a", b.a}, {"b", b.b}, {"paired", b.paired}, {"rows", rows_of(b)}, {"places", places_of(b)},
-            {"histogram", pixel_histogram(b)}});
+    for (const Json& pair : result.at("bias"))
+        out.push_back({{"a", pair.at("a")}, {"b", pair.at("b")}, {"paired", pair.at("paired")}, {"rows", rows_of(pair)},
+            {"places", places_of(pair)}, {"histogram", pixel_histogram(pair.at("pixels"))}});
     return out;
 }
 
 // ---- Where the noise differs, and its spectra.
 
-Json noise_of(const CompareResult& result) {
+Json noise_of(const Json& result) {
     Json out = Json::array();
-    for (const NoiseResult& n : result.noise) {
+    for (const Json& n : result.at("noise")) {
         Json charts = Json::array();
-        for (const NoiseResult::Histogram& h : n.regions) {
-            const double tiles = sum_of(h.different) + sum_of(h.rest);
+        for (const auto& [region, counts] : n.at("regions").items()) {
+            const auto different = counts.at("told_apart").get<BinCounts>();
+            auto rest = counts.at("not_told_apart").get<BinCounts>();
+            rest.resize(different.size());
+            const double tiles = sum_of(different) + sum_of(rest);
             if (tiles == 0) continue;
             const Axis x{-noise_range, noise_range, false,
-                fmt::format("log2 of the variance of {} over that of {}", n.a, n.b), {-4, -2, 0, 2, 4}};
-            charts.push_back({{"region", h.region},
+                fmt::format("log2 of the variance of {} over that of {}", n.at("a").get<std::string>(),
+                    n.at("b").get<std::string>()),
+                {-4, -2, 0, 2, 4}};
+            charts.push_back({{"region", region},
                 {"chart",
-                    histogram(percents(h.different, tiles), percents(h.rest, tiles), x, "% of tiles",
+                    histogram(percents(different, tiles), percents(rest, tiles), x, "% of tiles",
                         "Histogram of the variance ratio")}});
         }
-        out.push_back({{"sentence", n.sentence}, {"charts", charts}});
+        out.push_back({{"sentence", n.at("message")}, {"charts", charts}});
     }
     return out;
 }
 
-Json spectra_of(const RenderStats& all, const CompareResult& result) {
+std::vector<double> power_of(const Json& arm, const std::string& region) {
+    std::vector<double> out;
+    for (const Json& p : arm.at("regions").at(region).at("spectrum").at("power")) out.push_back(read_number(p));
+    return out;
+}
+
+Json spectra_of(const Json& result) {
     Json out = Json::array();
-    for (const PixelSet& set : all.regions) {
+    const Json& arms = result.at("arms");
+    for (const std::string& region : region_names(result)) {
         std::vector<double> values;
-        for (const ArmResult& arm : result.arms)
-            for (const double p : arm.region(set.name).power)
+        for (const Json& arm : arms)
+            for (const double p : power_of(arm, region))
                 if (p > 0) values.push_back(p);
         if (values.empty()) continue;
         Axis x{1, static_cast<double>(spectrum_bins), false, "frequency, cycles in 32 pixels", {1, 4, 8, 12, 16}};
         Chart chart(520, 240, x, log_axis("power of the error of Y", values), "Error spectrum");
-        std::vector<Json> arms;
-        for (std::size_t a = 0; a < result.arms.size(); ++a) {
-            const RegionResult& r = result.arms[a].region(set.name);
+        std::vector<Json> names;
+        for (std::size_t a = 0; a < arms.size(); ++a) {
+            const std::vector<double> power = power_of(arms[a], region);
             std::vector<Point> line;
-            for (std::size_t k = 0; k < r.power.size(); ++k) line.push_back({static_cast<double>(k + 1), r.power[k]});
+            for (std::size_t k = 0; k < power.size(); ++k) line.push_back({static_cast<double>(k + 1), power[k]});
             if (line.empty()) continue;
             const std::string colour = fmt::format("c{}", a % 6);
-            chart.line(line, colour), chart.name(line.back(), result.arms[a].name, colour);
-            arms.push_back({{"arm", result.arms[a].name}, {"colour", to_string(r.colour)}});
+            chart.line(line, colour), chart.name(line.back(), arms[a].at("arm").get<std::string>(), colour);
+            names.push_back(
+                {{"arm", arms[a].at("arm")}, {"colour", arms[a].at("regions").at(region).at("spectrum").at("noise")}});
         }
-        out.push_back({{"chart", chart.str()}, {"region", set.name}, {"arms", separated(std::move(arms))}});
+        out.push_back({{"chart", chart.str()}, {"region", region}, {"arms", separated(std::move(names))}});
     }
     return out;
 }
 
 // ---- Ladders, assertions, files.
 
-Json ladder_charts(const CompareResult& result) {
-    Json out = Json::array();
-    if (result.ladders.empty()) return out;
-    for (std::size_t r = 0; r < result.arms[0].regions.size(); ++r) {
-        const std::string& region = result.arms[0].regions[r].region;
-        const char* what = ladder_metric_name(result.arms[0].regions[r]);
-        std::vector<double> xs, ys;
-        for (const SppLadder& l : result.ladders)
-            for (const std::size_t a : l.arms) {
-                xs.push_back(*result.arms[a].spp);
-                const MetricValue m = ladder_metric(result.arms[a].regions[r]);
-                if (m.value) ys.push_back(*m.value);
-                if (m.interval) ys.push_back(m.interval->first), ys.push_back(m.interval->second);
-            }
-        Chart chart(520, 280, log_axis("samples a pixel", xs), log_axis(what, ys), "Ladder of " + region);
-        std::vector<Json> slopes;
-        for (std::size_t k = 0; k < result.ladders.size(); ++k) {
-            const SppLadder& l = result.ladders[k];
-            const std::string colour = fmt::format("c{}", k % 6);
-            std::vector<Point> line;
-            for (const std::size_t a : l.arms) {
-                const MetricValue m = ladder_metric(result.arms[a].regions[r]);
-                if (!m.value) continue;
-                line.push_back({*result.arms[a].spp, *m.value});
-                if (m.interval) chart.bar(*result.arms[a].spp, m.interval->first, m.interval->second, colour);
-            }
-            if (line.empty()) continue;
-            chart.line(line, colour), chart.dots(line, colour), chart.name(line.back(), l.name, colour);
-            const MetricValue& s = l.slopes[r].second;
-            if (s.value)
-                slopes.push_back(
-                    {{"arm", l.name}, {"slope", with_minus(figures(*s.value, 3))}, {"interval", interval_of(s)}});
+/// The metric of a ladder: the RMSE; without a reference, the standard deviation.
+Metric ladder_metric_in(const Json& region) {
+    const Json& metrics = region.at("metrics");
+    Metric out = metric_of(metrics.at("rmse"));
+    if (out.value) return out;
+    out = metric_of(metrics.at("var"));
+    const auto root = [](double v) { return std::sqrt(std::max(0.0, v)); };
+    if (out.value) out.value = root(*out.value);
+    if (out.interval) out.interval = {root(out.interval->first), root(out.interval->second)};
+    return out;
+}
+
+/// The points of one ladder in one region.
+struct LadderLine {
+    std::string name;
+    std::vector<double> spp;
+    std::vector<Metric> metrics;
+};
+
+std::vector<LadderLine> ladder_lines(const Json& result, const std::string& region) {
+    std::vector<LadderLine> out;
+    for (const Json& ladder : result.at("ladders")) {
+        LadderLine& line = out.emplace_back();
+        line.name = ladder.at("name").get<std::string>();
+        for (std::size_t k = 0; k < ladder.at("arms").size(); ++k) {
+            const auto arm = std::ranges::find_if(
+                result.at("arms"), [&](const Json& each) { return each.at("arm") == ladder.at("arms").at(k); });
+            if (arm == result.at("arms").end()) continue;
+            line.spp.push_back(read_number(ladder.at("spp").at(k)));
+            line.metrics.push_back(ladder_metric_in(arm->at("regions").at(region)));
         }
-        out.push_back(
-            {{"chart", chart.str()}, {"region", region}, {"what", what}, {"slopes", separated(std::move(slopes))}});
     }
     return out;
 }
 
-Json assertions_of(const CompareResult& result) {
+Json ladder_chart(const Json& result, const std::string& region) {
+    const std::vector<LadderLine> lines = ladder_lines(result, region);
+    const bool referred =
+        metric_of(result.at("arms").at(0).at("regions").at(region).at("metrics").at("rmse")).value.has_value();
+    const char* what = referred ? "RMSE" : "standard deviation";
+    std::vector<double> xs, ys;
+    for (const LadderLine& line : lines)
+        for (std::size_t k = 0; k < line.spp.size(); ++k) {
+            const Metric& m = line.metrics[k];
+            xs.push_back(line.spp[k]);
+            if (m.value) ys.push_back(*m.value);
+            if (m.interval) ys.push_back(m.interval->first), ys.push_back(m.interval->second);
+        }
+    Chart chart(520, 280, log_axis("samples a pixel", xs), log_axis(what, ys), "Ladder of " + region);
+    std::vector<Json> slopes;
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+        const std::string colour = fmt::format("c{}", l % 6);
+        std::vector<Point> points;
+        for (std::size_t k = 0; k < lines[l].spp.size(); ++k) {
+            const Metric& m = lines[l].metrics[k];
+            if (!m.value) continue;
+            points.push_back({lines[l].spp[k], *m.value});
+            if (m.interval) chart.bar(lines[l].spp[k], m.interval->first, m.interval->second, colour);
+        }
+        if (points.empty()) continue;
+        chart.line(points, colour), chart.dots(points, colour), chart.name(points.back(), lines[l].name, colour);
+        const Metric slope = metric_of(result.at("ladders").at(l).at("slopes").at(region));
+        if (slope.value)
+            slopes.push_back({{"arm", lines[l].name}, {"slope", with_minus(figures(*slope.value, 3))},
+                {"interval", interval_of(slope)}});
+    }
+    return {{"chart", chart.str()}, {"region", region}, {"what", what}, {"slopes", separated(std::move(slopes))}};
+}
+
+Json ladder_charts(const Json& result) {
     Json out = Json::array();
-    for (const AssertionResult& a : result.assertions)
-        out.push_back({{"name", a.name}, {"claim", a.text}, {"left", cell_text(figures(a.measured))},
-            {"right", cell_text(figures(a.bound))}, {"holds", a.pass}});
+    if (result.at("ladders").empty()) return out;
+    for (const std::string& region : region_names(result)) out.push_back(ladder_chart(result, region));
     return out;
 }
 
-Json file_of(const std::string& arm, const RenderFile& f, double y) {
-    return {{"arm", arm}, {"path", f.path}, {"layer", f.layer}, {"variance", f.variance_channels},
-        {"mean", cell_text(figures(y))}, {"spp", cell_text(f.spp ? figures(*f.spp) : "")},
-        {"seconds", cell_text(f.seconds ? figures(*f.seconds) : "")}};
+Json assertions_of(const Json& result) {
+    Json out = Json::array();
+    for (const Json& a : result.at("assertions"))
+        out.push_back({{"name", a.at("name")}, {"claim", a.at("text")}, {"left", cell_text(figures_of(a, "measured"))},
+            {"right", cell_text(figures_of(a, "bound"))}, {"holds", a.at("pass")}});
+    return out;
 }
 
-Json files_of(const RenderStats& all, const CompareResult& result) {
+Json file_of(const std::string& arm, const Json& f, double y) {
+    const auto cell = [&](const char* key) {
+        const auto value = read_optional(f.at(key));
+        return cell_text(value ? figures(*value) : "");
+    };
+    return {{"arm", arm}, {"path", f.at("file")}, {"layer", f.at("layer")},
+        {"variance", f.value("variance_channels", "")}, {"mean", cell_text(figures(y))}, {"spp", cell("spp")},
+        {"seconds", cell("seconds")}};
+}
+
+Json files_of(const Json& result) {
     Json out = Json::array();
-    for (std::size_t a = 0; a < all.arms.size(); ++a)
-        for (std::size_t k = 0; k < all.arms[a].files.size(); ++k)
-            out.push_back(file_of(result.arms[a].name, all.arms[a].files[k], all.arms[a].regions[k].back().y));
-    if (all.reference)
-        for (std::size_t k = 0; k < all.reference->files.size(); ++k)
-            out.push_back(file_of("reference", all.reference->files[k], all.reference->regions[k].back().y));
+    const std::string last = region_names(result).back();
+    for (const Json& arm : result.at("arms"))
+        for (const Json& f : arm.at("files"))
+            out.push_back(
+                file_of(arm.at("arm").get<std::string>(), f, read_number(f.at("regions").at(last).at("y_mean"))));
+    if (const Json& reference = result.at("reference"); !reference.is_null())
+        for (const Json& f : reference.at("files")) out.push_back(file_of("reference", f, read_number(f.at("y_mean"))));
     return out;
 }
 
@@ -296,20 +384,23 @@ Json pictures_of(const std::map<std::string, std::vector<unsigned char>>& plates
 
 }  // namespace
 
-std::string compare_html(const ComparePlan& plan, const RenderStats& all, const CompareResult& result,
-    const Provenance& provenance, const std::map<std::string, std::vector<unsigned char>>& plates) {
-    std::vector<std::string> found = found_about_means(result), rankings;
-    std::erase(found, result.sentence);
-    for (const Ranking& r : result.rankings) rankings.push_back(r.sentence);
-    Json model = {{"title", plan.title}, {"version", provenance.version}, {"command", provenance.command},
-        {"sentence", result.sentence}, {"fails", result.state == CompareResult::State::fails},
-        {"all_hold", result.sentence.empty() && !result.assertions.empty()}, {"found", found},
-        {"trimmed", plan.trim > 0 ? percent(plan.trim) : ""}, {"has_reference", all.reference.has_value()},
-        {"reference_error", result.reference_error_from}, {"rankings", rankings}, {"pairs", pairs_of(result)},
-        {"pictures", pictures_of(plates)}, {"noise", noise_of(result)}, {"ladders", ladder_charts(result)},
-        {"spectra", spectra_of(all, result)}, {"assertions", assertions_of(result)}, {"files", files_of(all, result)},
-        {"warnings", result.warnings}};
-    add_numbers(all, result, model);
+std::string compare_html(const Json& result, const std::map<std::string, std::vector<unsigned char>>& plates) {
+    const auto sentence = result.at("message").get<std::string>();
+    auto found = result.at("found").get<std::vector<std::string>>();
+    std::erase(found, sentence);
+    Json rankings = Json::array();
+    for (const Json& r : result.at("rankings")) rankings.push_back(r.at("message"));
+    const Json &reference = result.at("reference"), &provenance = result.at("provenance");
+    const double trim = read_number(result.at("trim"));
+    Json model = {{"title", result.at("title")}, {"version", provenance.at("version")},
+        {"command", provenance.at("command")}, {"sentence", sentence}, {"fails", result.at("state") == "fails"},
+        {"all_hold", sentence.empty() && !result.at("assertions").empty()}, {"found", found},
+        {"trimmed", trim > 0 ? percent(trim) : ""}, {"has_reference", !reference.is_null()},
+        {"reference_error", reference.is_null() ? Json("") : reference.at("standard_error_from")},
+        {"rankings", rankings}, {"pairs", pairs_of(result)}, {"pictures", pictures_of(plates)},
+        {"noise", noise_of(result)}, {"ladders", ladder_charts(result)}, {"spectra", spectra_of(result)},
+        {"assertions", assertions_of(result)}, {"files", files_of(result)}, {"warnings", result.at("warnings")}};
+    add_numbers(result, model);
     return render_page(compare_templates(), "compare.html", model);
 }
 

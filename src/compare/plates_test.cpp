@@ -68,7 +68,9 @@ TEST(ComparePages, EscapeNamesAndListFiles) {
     m.put("a<i>0", 1), m.put("a<i>1", 2), m.put("b0", 3), m.put("b1", 4);
     const CompareFlag title{{"title"}, "a < b & \"c\"", false, ""};
     const RenderStats all = m.read({title});
-    const std::string page = compare_html(m.plan({title}), all, m.compare({title}), {}, {{"renders", {1, 2, 3}}});
+    const Json result = compare_result_json(m.plan({title}), all, m.compare({title}), {});
+    const std::string page = compare_html(result, {{"renders", {1, 2, 3}}});
+    EXPECT_EQ(compare_html(parse_json(text(result)), {{"renders", {1, 2, 3}}}), page);
     EXPECT_THAT(page, HasSubstr("a &lt; b &amp; &quot;c&quot;"));
     EXPECT_THAT(page, HasSubstr("a&lt;i&gt;0"));
     EXPECT_THAT(page, Not(HasSubstr("a<i>0")));

@@ -143,6 +143,25 @@ Json separated(std::vector<Json> objects) {
     return objects;
 }
 
+double read_number(const Json& json) {
+    if (!json.is_string()) return json.get<double>();
+    for (const double x : {HUGE_VAL, -HUGE_VAL, std::nan("")})
+        if (json == number(x)) return x;
+    throw Json::type_error::create(302, "expected a number, \"nan\", \"inf\" or \"-inf\"", &json);
+}
+
+std::optional<double> read_optional(const Json& json) {
+    return json.is_null() ? std::nullopt : std::optional(read_number(json));
+}
+
+Json parse_json(const std::string& text) {
+    constexpr int deepest = 64;
+    return Json::parse(text, [](int depth, Json::parse_event_t, const Json& value) {
+        if (depth > deepest) throw Json::other_error::create(501, "values that are nested too deep", &value);
+        return true;
+    });
+}
+
 std::string text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 // ---- Three bytes make 24 bits and four digits; one or two left over make two or three digits, padded with "=".

@@ -72,8 +72,16 @@ inline constexpr const char* heavy_tail = "heavy tail";
 /// Used for every double in a JSON file.
 Json number(double x);
 Json numbers(const std::vector<double>& all);
+/// Reads what number() made. Throws Json::exception.
+double read_number(const Json& json);
+/// The same, or none for null.
+std::optional<double> read_optional(const Json& json);
 /// The objects of a list that reads "a, b and c": each with the `separator` after it.
 Json separated(std::vector<Json> objects);
+
+/// Parses at most 64 levels of arrays and objects, since what reads or compares them is recursive. Throws
+/// Json::exception.
+Json parse_json(const std::string& text);
 
 /// Indents by two blanks and ends with a newline; invalid UTF-8 in a name becomes U+FFFD.
 std::string text(const Json& json);

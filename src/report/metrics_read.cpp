@@ -14,28 +14,15 @@
 namespace crescent {
 namespace {
 
-constexpr int deepest = 64;       // levels of arrays and objects; a metrics.json has ten
 constexpr int most_seeds = 4096;  // as in an experiment
 
-/// Parses the output of number().
-double number_of(const Json& json) {
-    if (!json.is_string()) return json.get<double>();
-    for (const double x : {HUGE_VAL, -HUGE_VAL, std::nan("")})
-        if (json == number(x)) return x;
-    throw Json::type_error::create(302, "expected a number, \"nan\", \"inf\" or \"-inf\"", &json);
-}
-
-std::optional<double> optional_of(const Json& json) {
-    return json.is_null() ? std::nullopt : std::optional(number_of(json));
-}
-
-void read(const Json& json, double& to) { to = json.is_null() ? std::nan("") : number_of(json); }
+void read(const Json& json, double& to) { to = json.is_null() ? std::nan("") : read_number(json); }
 void read(const Json& json, std::uint64_t& to) { to = json.get<std::uint64_t>(); }
 
 std::optional<Tail> tail_of(const Json& json) {
     if (!json.contains("tail")) return {};
     const Json& tail = json.at("tail");
-    return Tail{number_of(tail.at("k")), number_of(tail.at("se")), tail.at("exceedances").get<std::uint64_t>()};
+    return Tail{read_number(tail.at("k")), read_number(tail.at("se")), tail.at("exceedances").get<std::uint64_t>()};
 }
 
 template <class T, class F> std::vector<T> list_of(const Json& json, F one) {
@@ -46,7 +33,7 @@ template <class T, class F> std::vector<T> list_of(const Json& json, F one) {
 
 RunMetrics run_of(const Json& json) {
     RunMetrics run;
-    run.key = {json.at("arm").get<std::string>(), json.at("n").get<std::uint64_t>(), number_of(json.at("s")),
+    run.key = {json.at("arm").get<std::string>(), json.at("n").get<std::uint64_t>(), read_number(json.at("s")),
         json.at("seed").get<std::uint32_t>()};
 #define CRESCENT_READ(name, Type) read(json.at(#name), to.name);
     const auto frame = [&](RunMetrics& to) { CRESCENT_FRAME_METRICS(CRESCENT_READ) };
@@ -56,10 +43,10 @@ RunMetrics run_of(const Json& json) {
         m.region = name, m.pixels = region.at("pixels").get<std::uint64_t>(), m.tail = tail_of(region);
         const auto metrics = [](const Json& json, RegionMetrics& to) { CRESCENT_REGION_METRICS(CRESCENT_READ) };
         metrics(region, m);
-        if (region.contains("flip")) m.flip = number_of(region.at("flip"));
+        if (region.contains("flip")) m.flip = read_number(region.at("flip"));
         if (region.contains("mse")) {
-            m.mse = number_of(region.at("mse")), m.reference_error = number_of(region.at("reference_error"));
-            m.mse_error = number_of(region.at("mse_error"));
+            m.mse = read_number(region.at("mse")), m.reference_error = read_number(region.at("reference_error"));
+            m.mse_error = read_number(region.at("mse_error"));
         }
         run.regions.push_back(std::move(m));
     }
@@ -71,32 +58,32 @@ FurnaceResult furnace_of(const Json& json) {
     FurnaceResult out;
     out.name = json.at("name").get<std::string>(), out.arm = json.at("arm").get<std::string>();
     out.part = json.at("part").get<std::string>(), out.n = json.at("n").get<std::uint64_t>();
-    out.measured = number_of(json.at("measured")), out.expected = number_of(json.at("expected"));
+    out.measured = read_number(json.at("measured")), out.expected = read_number(json.at("expected"));
     out.tail = tail_of(json);
-    if (!out.tail || !out.tail->heavy()) out.se = number_of(json.at("se"));
-    out.bad = json.at("bad").get<std::uint64_t>(), out.published = optional_of(json.at("published"));
+    if (!out.tail || !out.tail->heavy()) out.se = read_number(json.at("se"));
+    out.bad = json.at("bad").get<std::uint64_t>(), out.published = read_optional(json.at("published"));
     return out;
 }
 
 ReferenceQuality reference_of(const Json& json) {
     ReferenceQuality out;
-    out.s = number_of(json.at("s")), out.region = json.at("region").get<std::string>();
-    out.error_share = number_of(json.at("error_share"));
+    out.s = read_number(json.at("s")), out.region = json.at("region").get<std::string>();
+    out.error_share = read_number(json.at("error_share"));
     if (json.contains("paired_error")) {
-        out.paired_error = number_of(json.at("paired_error"));
+        out.paired_error = read_number(json.at("paired_error"));
         return out;
     }
-    out.rms_difference = optional_of(json.at("rms_difference"));
-    out.rms_standard_error = optional_of(json.at("rms_standard_error"));
-    out.quadrature_error = optional_of(json.at("quadrature_error"));
-    out.max_relative_rmse_change = optional_of(json.at("rmse_unlike"));
+    out.rms_difference = read_optional(json.at("rms_difference"));
+    out.rms_standard_error = read_optional(json.at("rms_standard_error"));
+    out.quadrature_error = read_optional(json.at("quadrature_error"));
+    out.max_relative_rmse_change = read_optional(json.at("rmse_unlike"));
     return out;
 }
 
 AssertionResult assertion_of(const Json& json) {
     AssertionResult out;
     out.name = json.at("name").get<std::string>(), out.pass = json.at("pass").get<bool>();
-    out.measured = number_of(json.at("measured")), out.bound = number_of(json.at("bound"));
+    out.measured = read_number(json.at("measured")), out.bound = read_number(json.at("bound"));
     out.op = json.at("op").get<std::string>(), out.text = json.at("text").get<std::string>();
     out.cannot_fail = json.value("cannot_fail", false), out.skipped = json.value("skipped", "");
     return out;
@@ -104,22 +91,22 @@ AssertionResult assertion_of(const Json& json) {
 
 Evidence evidence_of(const Json& json) {
     Evidence e;
-    e.s = number_of(json.at("s")), e.rho_d = number_of(json.at("rho_d")), e.rho_s = number_of(json.at("rho_s"));
-    e.expected = number_of(json.at("expected")), e.alpha = number_of(json.at("alpha"));
+    e.s = read_number(json.at("s")), e.rho_d = read_number(json.at("rho_d")), e.rho_s = read_number(json.at("rho_s"));
+    e.expected = read_number(json.at("expected")), e.alpha = read_number(json.at("alpha"));
     e.furnace = list_of<FurnaceQuantiles>(json.at("furnace"), [](const Json& q) {
         return FurnaceQuantiles{q.at("arithmetic").get<std::string>(), q.at("u_bits").get<int>(),
-            q.at("n").get<std::uint64_t>(), number_of(q.at("q05")), number_of(q.at("q25")), number_of(q.at("median")),
-            number_of(q.at("q75")), number_of(q.at("q95"))};
+            q.at("n").get<std::uint64_t>(), read_number(q.at("q05")), read_number(q.at("q25")),
+            read_number(q.at("median")), read_number(q.at("q75")), read_number(q.at("q95"))};
     });
     e.caps = list_of<FurnaceCap>(
-        json.at("caps"), [](const Json& c) { return FurnaceCap{c.at("u_bits").get<int>(), number_of(c.at("y"))}; });
+        json.at("caps"), [](const Json& c) { return FurnaceCap{c.at("u_bits").get<int>(), read_number(c.at("y"))}; });
     e.lost = list_of<LostSupport>(json.at("lost"), [](const Json& l) {
-        return LostSupport{number_of(l.at("theta_R_deg")), number_of(l.at("measured")), number_of(l.at("se")),
-            number_of(l.at("theory"))};
+        return LostSupport{read_number(l.at("theta_R_deg")), read_number(l.at("measured")), read_number(l.at("se")),
+            read_number(l.at("theory"))};
     });
     e.rejections = list_of<FalseRejection>(json.at("rejections"), [](const Json& r) {
-        return FalseRejection{number_of(r.at("s")), number_of(r.at("k")), r.at("n").get<std::uint64_t>(),
-            r.at("runs").get<int>(), r.at("rejected").get<int>(), number_of(r.at("low")), number_of(r.at("high"))};
+        return FalseRejection{read_number(r.at("s")), read_number(r.at("k")), r.at("n").get<std::uint64_t>(),
+            r.at("runs").get<int>(), r.at("rejected").get<int>(), read_number(r.at("low")), read_number(r.at("high"))};
     });
     return e;
 }
@@ -159,14 +146,6 @@ Experiment experiment_of(const Provenance& p, const Json& json, const std::strin
     return e;
 }
 
-/// Parses JSON whose values are nested a few deep: what reads or compares them is recursive.
-Json parse_bounded(const std::string& text) {
-    return Json::parse(text, [](int depth, Json::parse_event_t, const Json& value) {
-        if (depth > deepest) throw Json::other_error::create(501, "values that are nested too deep", &value);
-        return true;
-    });
-}
-
 MetricsFile file_of(const Json& json, const std::string& name) {
     if (json.at("format") != "crescent metrics 2")
         throw InputError({name, 0, 0}, "expected the format 'crescent metrics 2'");
@@ -189,11 +168,22 @@ MetricsFile file_of(const Json& json, const std::string& name) {
 
 MetricsFile read_metrics(const std::string& text, const std::string& name) {
     try {
-        return file_of(parse_bounded(text), name);
+        return file_of(parse_json(text), name);
     } catch (const Json::exception& error) {
         throw InputError({name, 0, 0}, fmt::format("expected the metrics.json of a run: {}", error.what()));
     } catch (const std::out_of_range&) {
         throw InputError({name, 0, 0}, "expected the metrics.json of a run: it has no seeds");
+    }
+}
+
+void check_runs(const MetricsFile& file, const std::string& name) {
+    const Experiment& e = file.experiment;
+    for (const RunMetrics& run : file.metrics.runs) {
+        const ArmPlan* arm = e.find_arm(run.key.arm);
+        const bool made = arm && std::ranges::find(arm->n, run.key.n) != arm->n.end() && std::isfinite(run.key.s);
+        if (!made || !std::ranges::equal(run.regions, e.regions, {}, &RegionMetrics::region, &Region::name))
+            throw InputError({name, 0, 0},
+                fmt::format("the run {} is not one of the experiment in it, or has other regions", to_string(run.key)));
     }
 }
 

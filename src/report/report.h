@@ -75,8 +75,11 @@ struct MetricsFile {
     Evidence evidence;
     Provenance provenance;
 };
+inline constexpr std::size_t most_bytes_of_metrics = std::size_t{2} << 30;  // a run of 4,096 seeds has some 500 MB
 /// Throws InputError, with `name` for the file, if the text is something else or was changed.
 MetricsFile read_metrics(const std::string& text, const std::string& name);
+/// Throws InputError if a run is none of the experiment's, or has other regions.
+void check_runs(const MetricsFile& file, const std::string& name);
 std::string metrics_csv(const ReportInputs& in);
 std::string junit_xml(const ReportInputs& in);
 std::string report_html(const ReportInputs& in);

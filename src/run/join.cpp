@@ -29,28 +29,17 @@ struct Part {
     MetricsFile file;
 };
 
-/// A run has the metrics of the experiment's regions, and is one that the experiment makes.
-void check_run(const RunMetrics& run, const Experiment& e, const std::string& name) {
-    const ArmPlan* arm = e.find_arm(run.key.arm);
-    const bool made = arm && std::ranges::find(arm->n, run.key.n) != arm->n.end() && std::isfinite(run.key.s);
-    if (!made || !std::ranges::equal(run.regions, e.regions, {}, &RegionMetrics::region, &Region::name))
-        throw InputError({name, 0, 0},
-            fmt::format("the run {} is not one of the experiment in it, or has other regions", to_string(run.key)));
-}
-
 Part part_of(const std::string& text, const std::string& path) {
     MetricsFile file = read_metrics(text, path);
-    for (const RunMetrics& run : file.metrics.runs) check_run(run, file.experiment, path);
+    check_runs(file, path);
     return {path, Json::parse(text), std::move(file)};
 }
-
-constexpr std::size_t most_bytes_of_part = std::size_t{2} << 30;  // a run of 4,096 seeds has some 500 MB
 
 Part read_part(const std::string& given) {
     std::error_code ignored;
     const bool folder = std::filesystem::is_directory(given, ignored);
     const std::string path = folder ? (std::filesystem::path(given) / "metrics.json").string() : given;
-    return part_of(read_input(path, most_bytes_of_part, "the metrics.json of a run, or the folder of one,"), path);
+    return part_of(read_input(path, most_bytes_of_metrics, "the metrics.json of a run, or the folder of one,"), path);
 }
 
 /// "section.key" -> value, of an experiment's canonical text.

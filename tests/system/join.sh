@@ -58,6 +58,19 @@ same() {
 }
 expect 1 "$CRESCENT" join a b c --out joined
 same whole joined
+
+# The page of a stored run is the page that the run wrote; without its plates it says what is missing.
+expect 0 "$CRESCENT" report b/metrics.json --out again.html
+cmp b/report.html again.html || die "crescent report makes another page"
+expect 0 "$CRESCENT" report a/metrics.json
+grep -q 'a/plates/hero.png: missing' said || die "not said that a plate is missing: $(cat said)"
+[ -s a/report.html ] || die "no page beside metrics.json"
+for bad in '{}' '{"format": "crescent metrics 9"}' '{"format": "another"}' 'no json'; do
+    echo "$bad" >bad.json
+    expect 2 "$CRESCENT" report bad.json --out bad.html
+    grep -q '^bad.json: expected ' said || die "$bad: $(cat said)"
+done
+[ ! -e bad.html ] || die "a page of a file that is no result"
 grep -q wrong printed || die "the assertion that fails is not named: $(cat printed)"
 expect 1 "$CRESCENT" join c/metrics.json whole b --out again
 same whole again

@@ -32,7 +32,7 @@ for command in "run absent$(printf '\033[31m\007').toml" "run $tiny --set a$(pri
     LC_ALL=C grep -q "$(printf '\302[\200-\237]')" said && die "a C1 control character is shown: $(cat -v said)"
 done
 # A file without a name, a folder instead of a file, a missing command: reported by the flag that named it.
-for flag in --json --html --junit --timing; do
+for flag in --json --html --junit; do
     expect 2 "$CRESCENT" check cosine "$flag" ""
     grep -q -- "$flag" said || die "no flag: $(cat said)"
 done

@@ -185,7 +185,6 @@ void test_one_efficiency(
     }
     v.evidence["variance"] = e.variance;
     v.evidence["variance_relative_se"] = e.relative_se;
-    v.timing = {{"nanoseconds", e.nanoseconds}, {"variance_x_cost", e.value()}, {"low", e.low()}, {"high", e.high()}};
     if (e.heavy) {
         v.state = State::inconclusive;
         v.message = "Heavy tail: the variance is not known, so it is not ranked.";

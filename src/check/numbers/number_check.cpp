@@ -317,7 +317,6 @@ private:
         }
         const double ratio = x.variance() / y.variance();
         v.evidence["variance_ratio"] = ratio;
-        v.timing["time_ratio"] = a_.seconds / b_->seconds;
         v.message = fmt::format("Its variance is {:.3g} times that of {}.", ratio, expected_.estimator->name());
         v.timed_message = fmt::format(" A draw takes {:.3g} times as long.", a_.seconds / b_->seconds);
     }

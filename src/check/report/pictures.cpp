@@ -66,6 +66,16 @@ void share_out(
     }
 }
 
+/// Six significant figures are more than a picture shows, and keep stored results short.
+void round_values(std::vector<double>& values) {
+    for (double& v : values) {
+        if (v == 0 || !std::isfinite(v)) continue;
+        const double places = 5 - std::floor(math::log10(std::fabs(v)));
+        const double power = std::round(math::pow(10.0, std::fabs(places)));  // exact up to 1e22
+        v = places > 0 ? std::round(v * power) / power : std::round(v / power) * power;
+    }
+}
+
 /// One leaf in units of draws: observed, expected by p, and the variance of their difference.
 struct LeafDraws {
     ChartRect rect;
@@ -179,6 +189,7 @@ std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& 
                 });
         });
     for (double& v : out.sd) v = std::sqrt(v);
+    for (auto* values : {&out.observed, &out.expected, &out.sd}) round_values(*values);
     if (has_density) return out;
     for (std::size_t i = 0; i < bins; ++i) {
         const std::size_t ring = i / sectors, sector = i % sectors;
@@ -186,6 +197,7 @@ std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& 
         out.observed[i] /= area * c.observations.independent;
         out.full_scale = std::max(out.full_scale, out.observed[i]);
     }
+    round_values(out.observed);
     out.expected.clear(), out.sd.clear();
     return out;
 }
@@ -222,6 +234,7 @@ std::optional<LineHistogram> line_picture(const CheckCase& check_case, const Che
             domain->value_at(d.rect.t0), domain->value_at(d.rect.t1), out.edges, [&](std::size_t bin, double share) {
                 out.observed[bin] += share * d.observed, out.expected[bin] += share * d.expected;
             });
+    for (auto* values : {&out.observed, &out.expected}) round_values(*values);
     if (!has_density) out.expected.clear();
     return out;
 }
@@ -272,6 +285,7 @@ void add_rose(const CheckCase& check_case, WeightHistogram& to) {
     source.f_cos(wi, f);
     for (std::size_t i = 0; i < wi.size(); ++i)
         to.rose_f.push_back((source.channels() == 3 ? luminance(f[i]) : f[i].x) * source.radiance(wi[i]));
+    for (auto* values : {&to.rose_p, &to.rose_f}) round_values(*values);
 }
 
 }  // namespace crescent::check

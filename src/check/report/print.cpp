@@ -1,5 +1,4 @@
-// The table of the terminal shows the worst state over all w_o; JSON and JUnit contain every verdict. Times are only in
-// the timing file, so that a result always has the same bytes.
+// The table of the terminal shows the worst state over all w_o; JUnit contains every verdict.
 #include "check/report/print.h"
 
 #include <array>
@@ -61,27 +60,6 @@ std::string expected_ones(const CheckResult& result) {
     return out;
 }
 
-nlohmann::ordered_json head_of(const char* format, const ResultSource& source) {
-    nlohmann::ordered_json root;
-    root["format"] = format;
-    for (const auto& [key, value] :
-        {std::pair("version", &source.version), {"commit", &source.commit}, {"command", &source.command}})
-        if (!value->empty()) root[key] = *value;
-    return root;
-}
-
-std::string text_of(const nlohmann::ordered_json& root) {
-    return root.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
-
-nlohmann::ordered_json cases_of(const CheckResult& result) {
-    nlohmann::ordered_json out = nlohmann::ordered_json::array();
-    for (const Verdict& v : result.verdicts)
-        if (nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.check_case}}; out.empty() || out.back() != one)
-            out.push_back(std::move(one));
-    return out;
-}
-
 }  // namespace
 
 std::string verdict_table(const CheckResult& result, bool all) {
@@ -100,51 +78,6 @@ std::string verdict_table(const CheckResult& result, bool all) {
         "\n{}; {} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed{}\n",
         word(result.state), result.tests, result.alpha, result.screened, result.confirmed, asked);
     return out;
-}
-
-std::string verdict_json(const CheckResult& result, const ResultSource& source) {
-    nlohmann::ordered_json root = head_of("crescent check 3", source);
-    root["state"] = word(result.state);
-    root["as_expected"] = result.as_expected;
-    root["alpha"] = result.alpha;
-    root["tests"] = result.tests;
-    root["failed_once"] = result.screened;
-    root["failed_twice"] = result.confirmed;
-    if (result.questions > 0) root["questions"] = result.questions;
-    if (!result.unmet.empty()) root["unmet_expectations"] = result.unmet;
-    root["requested"] = cases_of(result);
-    root["left_out"] = nlohmann::ordered_json::array();
-    for (const SkippedCase& l : result.left_out)
-        root["left_out"].push_back({{"arm", l.arm}, {"case", l.check_case}, {"verdicts", l.verdicts}, {"why", l.why}});
-    root["verdicts"] = nlohmann::ordered_json::array();
-    for (const Verdict& v : result.verdicts) {
-        nlohmann::ordered_json one;
-        one["arm"] = v.arm;
-        one["case"] = v.check_case;
-        one["name"] = v.name;
-        one["state"] = word(v.state);
-        one["message"] = v.message;
-        if (!v.cause.empty()) one["cause"] = v.cause;
-        if (const std::string next = next_step_text(v); !next.empty()) one["status"] = next;
-        one["expected"] = v.expected;
-        if (!v.why_expected.empty()) one["why_expected"] = v.why_expected;
-        if (v.waived) one["waived"] = true;
-        one["evidence"] = v.evidence;
-        root["verdicts"].push_back(std::move(one));
-    }
-    return text_of(root);
-}
-
-std::string verdict_timing(const CheckResult& result, const ResultSource& source) {
-    nlohmann::ordered_json root = head_of("crescent check timing 1", source);
-    root["verdicts"] = nlohmann::ordered_json::array();
-    for (const Verdict& v : result.verdicts) {
-        nlohmann::ordered_json one = {{"arm", v.arm}, {"case", v.check_case}, {"name", v.name}, {"seconds", v.seconds}};
-        if (!v.timed_message.empty()) one["message"] = v.timed_message;
-        one.update(v.timing);
-        root["verdicts"].push_back(std::move(one));
-    }
-    return text_of(root);
 }
 
 std::string verdict_junit(const CheckResult& result) {

@@ -1,5 +1,5 @@
-// Output of verdicts: a summary and a table for the terminal, JSON, JUnit for build servers, and one HTML file that
-// contains its pictures.
+// Output of verdicts: a summary and a table for the terminal, JUnit for build servers, and one HTML file that contains
+// its pictures.
 #pragma once
 
 #include <optional>
@@ -7,22 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "check/report/result_json.h"
 #include "check/verdict.h"
 
 namespace crescent {
 
-/// The origin of a result; equal calls have equal ones.
-struct ResultSource {
-    std::string version, commit, command;
-};
-
 /// One line for each finding over all w_o, one line for each arm with its verdicts, then the details; `all`: every
 /// verdict.
 std::string verdict_table(const CheckResult& result, bool all = false);
-/// Format: docs/check.schema.json. Equal calls give equal bytes: values that vary between runs are in verdict_timing.
-std::string verdict_json(const CheckResult& result, const ResultSource& source = {});
-/// Seconds of each verdict, nanoseconds of a sample, variance x time and the resulting ranks.
-std::string verdict_timing(const CheckResult& result, const ResultSource& source = {});
 std::string verdict_junit(const CheckResult& result);
 /// Verdicts that fail or are inconclusive and that the caller does not expect, at the file and line of the sampler
 /// (line 0: unknown), for code hosts.

@@ -1,0 +1,256 @@
+// The members of each picture are listed once, for both directions. JSON has no NaN and no infinity; they are null.
+#include "check/report/result_json.h"
+
+#include <concepts>
+#include <fmt/format.h>
+#include <limits>
+
+#include "base/errors.h"
+#include "check/report/print.h"
+#include "output/format.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr const char* format_name = "crescent check 3";
+
+// ---- Pictures: each visits its members with their keys.
+
+template <class Picture, class Of>
+concept PictureOf = std::same_as<std::remove_const_t<Picture>, Of>;
+
+template <PictureOf<BinHistogram> Picture> void visit_members(Picture& m, const auto& visit) {
+    visit("arm", m.arm);
+    visit("case", m.check_case);
+    visit("coordinates", m.coordinates);
+    visit("rings", m.rings);
+    visit("sectors", m.sectors);
+    visit("observed", m.observed);
+    visit("expected", m.expected);
+    visit("standard_deviation", m.sd);
+    visit("ring_edges", m.edges);
+    visit("sector_edges", m.sector_edges);
+    visit("full_scale", m.full_scale);
+    visit("ring_labels", m.ring_labels);
+    visit("sector_labels", m.sector_labels);
+    visit("ring_axis", m.ring_axis);
+    visit("sector_axis", m.sector_axis);
+}
+
+template <PictureOf<LineHistogram> Picture> void visit_members(Picture& h, const auto& visit) {
+    visit("arm", h.arm);
+    visit("case", h.check_case);
+    visit("axis", h.axis);
+    visit("edges", h.edges);
+    visit("observed", h.observed);
+    visit("expected", h.expected);
+    visit("entries", h.entries);
+}
+
+template <PictureOf<WeightHistogram> Picture> void visit_members(Picture& w, const auto& visit) {
+    visit("arm", w.arm);
+    visit("case", w.check_case);
+    visit("log10_edges", w.log10_edges);
+    visit("counts", w.counts);
+    visit("zeros", w.zeros);
+    visit("k", w.k);
+    visit("exceedances", w.exceedances);
+    visit("threshold", w.threshold);
+    visit("sigma", w.sigma);
+    visit("plane_of_incidence_p", w.rose_p);
+    visit("plane_of_incidence_f", w.rose_f);
+}
+
+/// Whether the lists of a picture that was read have the lengths that its page expects.
+bool is_whole(const BinHistogram& m) {
+    constexpr int most = 4096;
+    if (m.rings < 1 || m.sectors < 1 || m.rings > most || m.sectors > most) return false;
+    const std::size_t bins = static_cast<std::size_t>(m.rings) * static_cast<std::size_t>(m.sectors);
+    const auto fits = [&](const std::vector<double>& list) { return list.empty() || list.size() == bins; };
+    return m.observed.size() == bins && fits(m.expected) && fits(m.sd);
+}
+bool is_whole(const LineHistogram& h) {
+    return !h.observed.empty() && h.edges.size() == h.observed.size() + 1 &&
+        (h.expected.empty() || h.expected.size() == h.observed.size());
+}
+bool is_whole(const WeightHistogram& w) {
+    return w.log10_edges.size() == (w.counts.empty() ? 0 : w.counts.size() + 1) && w.rose_p.size() == w.rose_f.size();
+}
+
+template <class Picture> Json pictures_json(const std::vector<Picture>& pictures) {
+    Json out = Json::array();
+    for (const Picture& picture : pictures) {
+        Json& one = out.emplace_back(Json::object());
+        visit_members(picture, [&](const char* key, const auto& value) {
+            if (value != std::remove_cvref_t<decltype(value)>{}) one[key] = value;
+        });
+    }
+    return out;
+}
+
+// ---- Reading. Json::exception says what is missing or of another type.
+
+[[noreturn]] void refuse(const std::string& what, const Json& json) {
+    throw Json::other_error::create(501, what, &json);
+}
+
+void read_value(const Json& json, double& to) {
+    to = json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+void read_value(const Json& json, std::vector<double>& to) {
+    to.clear();
+    for (const Json& value : json) read_value(value, to.emplace_back());
+}
+void read_value(const Json& json, auto& to) { json.get_to(to); }
+
+/// Leaves `to` as it is if the object has no such member.
+void read_member(const Json& object, const char* key, auto& to) {
+    if (const auto found = object.find(key); found != object.end()) read_value(*found, to);
+}
+
+template <class Picture> std::vector<Picture> read_pictures(const Json& list) {
+    std::vector<Picture> out;
+    for (const Json& one : list) {
+        visit_members(out.emplace_back(), [&](const char* key, auto& value) { read_member(one, key, value); });
+        if (!is_whole(out.back())) refuse("lists of a picture have other lengths than its bins", one);
+    }
+    return out;
+}
+
+State state_named(const Json& json) {
+    const auto name = json.get<std::string>();
+    for (const State s : {State::right, State::wrong, State::inconclusive, State::skipped, State::error})
+        if (name == word(s)) return s;
+    refuse("expected a state", json);
+}
+
+/// The rings of the density that draws imply.
+std::optional<ImpliedDensity> implied_in(const Json& evidence) {
+    if (!evidence.contains("implied_rings")) return {};
+    ImpliedDensity out;
+    for (const Json& row : evidence.at("implied_rings").at("rows"))
+        out.rings.push_back(
+            {row.at(0).get<double>(), row.at(1).get<double>(), row.at(2).get<double>(), row.at(3).get<double>()});
+    const Json& peak = evidence.at("implied_peak");
+    out.peak = peak.at("pdf").get<double>();
+    out.peak_error = peak.at("standard_error").get<double>();
+    return out;
+}
+
+Verdict read_verdict(const Json& json) {
+    Verdict v;
+    json.at("arm").get_to(v.arm);
+    json.at("case").get_to(v.check_case);
+    json.at("name").get_to(v.name);
+    v.state = state_named(json.at("state"));
+    json.at("message").get_to(v.message);
+    json.at("expected").get_to(v.expected);
+    v.evidence = json.at("evidence");
+    read_member(json, "cause", v.cause);
+    read_member(json, "status", v.next_step);
+    read_member(json, "why_expected", v.why_expected);
+    read_member(json, "waived", v.waived);
+    read_member(json, "size", v.size);
+    read_member(json, "no_sample", v.nothing);
+    read_member(json, "below_with_pdf", v.outside);
+    read_member(json, "place", v.place);
+    read_member(json, "first_failure", v.first_failure);
+    if (json.contains("w_o")) v.wo = json.at("w_o").get<std::pair<double, double>>();
+    if (json.contains("integral")) v.integral = json.at("integral").get<double>();
+    if (const auto sizes = v.evidence.find("would_have_found"); sizes != v.evidence.end())
+        for (const auto& [kind, size] : sizes->items()) read_value(size, v.hidden[kind]);
+    v.implied = implied_in(v.evidence);
+    return v;
+}
+
+StoredResult stored_result(const Json& json) {
+    if (json.at("format") != format_name) refuse(std::string("expected the format '") + format_name + "'", json);
+    StoredResult out;
+    read_member(json, "version", out.source.version);
+    read_member(json, "commit", out.source.commit);
+    read_member(json, "command", out.source.command);
+    CheckResult& result = out.result;
+    result.state = state_named(json.at("state"));
+    json.at("as_expected").get_to(result.as_expected);
+    json.at("alpha").get_to(result.alpha);
+    json.at("tests").get_to(result.tests);
+    json.at("failed_once").get_to(result.screened);
+    json.at("failed_twice").get_to(result.confirmed);
+    read_member(json, "questions", result.questions);
+    read_member(json, "unmet_expectations", result.unmet);
+    for (const Json& l : json.at("left_out"))
+        result.left_out.push_back({l.at("arm").get<std::string>(), l.at("case").get<std::string>(),
+            l.at("verdicts").get<std::vector<std::string>>(), l.at("why").get<std::string>()});
+    for (const Json& verdict : json.at("verdicts")) result.verdicts.push_back(read_verdict(verdict));
+    result.maps = read_pictures<BinHistogram>(json.at("maps"));
+    result.lines = read_pictures<LineHistogram>(json.at("lines"));
+    result.weights = read_pictures<WeightHistogram>(json.at("weights"));
+    return out;
+}
+
+// ---- Writing.
+
+Json cases_of(const CheckResult& result) {
+    Json out = Json::array();
+    for (const Verdict& v : result.verdicts)
+        if (Json one = {{"arm", v.arm}, {"case", v.check_case}}; out.empty() || out.back() != one)
+            out.push_back(std::move(one));
+    return out;
+}
+
+Json verdict_as_json(const Verdict& v) {
+    Json out = {
+        {"arm", v.arm}, {"case", v.check_case}, {"name", v.name}, {"state", word(v.state)}, {"message", v.message}};
+    if (!v.cause.empty()) out["cause"] = v.cause;
+    if (const std::string next = next_step_text(v); !next.empty()) out["status"] = next;
+    out["expected"] = v.expected;
+    if (!v.why_expected.empty()) out["why_expected"] = v.why_expected;
+    if (v.waived) out["waived"] = true;
+    if (v.wo) out["w_o"] = *v.wo;
+    if (v.size != 0) out["size"] = v.size;
+    if (v.nothing != 0) out["no_sample"] = v.nothing;
+    if (v.outside != 0) out["below_with_pdf"] = v.outside;
+    if (!v.place.empty()) out["place"] = v.place;
+    if (v.first_failure) out["first_failure"] = true;
+    if (v.integral) out["integral"] = *v.integral;
+    out["evidence"] = v.evidence;
+    return out;
+}
+
+}  // namespace
+
+std::string verdict_json(const CheckResult& result, const ResultSource& source) {
+    Json root = {{"format", format_name}};
+    for (const auto& [key, value] :
+        {std::pair("version", &source.version), {"commit", &source.commit}, {"command", &source.command}})
+        if (!value->empty()) root[key] = *value;
+    root["state"] = word(result.state);
+    root["as_expected"] = result.as_expected;
+    root["alpha"] = result.alpha;
+    root["tests"] = result.tests;
+    root["failed_once"] = result.screened;
+    root["failed_twice"] = result.confirmed;
+    if (result.questions > 0) root["questions"] = result.questions;
+    if (!result.unmet.empty()) root["unmet_expectations"] = result.unmet;
+    root["requested"] = cases_of(result);
+    root["left_out"] = Json::array();
+    for (const SkippedCase& l : result.left_out)
+        root["left_out"].push_back({{"arm", l.arm}, {"case", l.check_case}, {"verdicts", l.verdicts}, {"why", l.why}});
+    root["verdicts"] = Json::array();
+    for (const Verdict& v : result.verdicts) root["verdicts"].push_back(verdict_as_json(v));
+    root["maps"] = pictures_json(result.maps);
+    root["lines"] = pictures_json(result.lines);
+    root["weights"] = pictures_json(result.weights);
+    return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+StoredResult read_verdict_json(const std::string& text, const std::string& name) {
+    try {
+        return stored_result(parse_json(text));
+    } catch (const Json::exception& error) {
+        throw InputError({name, 0, 0}, fmt::format("expected what crescent check --json writes: {}", error.what()));
+    }
+}
+
+}  // namespace crescent

@@ -1,0 +1,50 @@
+// Plates may be many and large, but not larger than the pages that embed them.
+#include "run/stored_run.h"
+
+#include <filesystem>
+#include <string_view>
+
+#include "base/errors.h"
+#include "base/input.h"
+#include "experiment/experiment.h"
+#include "report/report.h"
+
+namespace crescent {
+
+namespace {
+
+constexpr std::size_t most_bytes_of_plate = std::size_t{256} << 20;
+
+std::vector<unsigned char> read_plate(const std::string& path) {
+    constexpr std::string_view signature = "\x89PNG\r\n\x1a\n";
+    const std::string bytes = read_input(path, most_bytes_of_plate, "a plate");
+    if (!bytes.starts_with(signature)) throw InputError({path, 0, 0}, "expected a PNG image");
+    return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+StoredRun open_run(const std::string& text, const std::string& path) {
+    MetricsFile file = read_metrics(text, path);
+    check_runs(file, path);
+    StoredRun out;
+    Measured& m = out.measured;
+    m.experiment = std::move(file.experiment);
+    m.metrics = std::move(file.metrics);
+    m.evidence = std::move(file.evidence);
+    m.provenance = std::move(file.provenance);
+    m.metrics.series = seeds_of(parse(m.provenance.experiment_text, path));
+    const std::vector<AssertionResult> assertions = m.metrics.assertions;  // some are of plates
+    add_spreads(m);
+    m.metrics.assertions = assertions;
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path() / "plates";
+    for (const PlatePlan& plan : m.experiment.plates) {
+        const std::string plate = (folder / (plan.name + ".png")).string();
+        std::error_code ignored;
+        if (std::filesystem::exists(plate, ignored)) m.plates[plan.name] = read_plate(plate);
+        else out.missing.push_back(plate);
+    }
+    return out;
+}
+
+}  // namespace crescent

@@ -1,0 +1,19 @@
+// A run that was written earlier: its metrics.json, and the plates beside it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "run/collect.h"
+
+namespace crescent {
+
+struct StoredRun {
+    Measured measured;                 // without films
+    std::vector<std::string> missing;  // plates of the experiment that are not in plates/
+};
+
+/// `text`: the content of `path`, a metrics.json. Throws InputError if it is something else, or a plate is no PNG.
+StoredRun open_run(const std::string& text, const std::string& path);
+
+}  // namespace crescent
