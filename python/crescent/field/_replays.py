@@ -38,7 +38,7 @@ def replayed(faults: Iterable[Fault]) -> Iterator[Replay]:
             fault.source,
             fault.says,
             list(result.broken()),
-            first.say if first else "",
+            first.message if first else "",
             first.cause if first else "",
             fault.checked(fixed=True).state,
         )

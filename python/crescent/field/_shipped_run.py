@@ -56,14 +56,14 @@ def _findings(it: Shipped, result: crescent.CheckResult, shown: set[str]) -> Ite
         finding = Finding(
             list(dict.fromkeys(v.name for v in verdicts)),
             ", ".join(dict.fromkeys(v.case for v in verdicts)),
-            first.say,
+            first.message,
             first.cause,
             note.kind if note else "open",
             note.because if note else "",
         )
         own = note.script if note else ""
         if key not in shown and (own or (it.kind == "bsdf" and first.name != "identity")):
-            corner = _corner(first.say) if first.name == "valid" else None
+            corner = _corner(first.message) if first.name == "valid" else None
             finding.script = own or script_for(it, first.name, _wo_of(first.case), corner)
             finding.output = output_of(finding.script)
         shown.add(key)
