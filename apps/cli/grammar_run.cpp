@@ -27,8 +27,8 @@ instrument; seeds that two of them have must agree bit for bit. Written under
 DIR: metrics.json, metrics.csv and junit.xml, as of one run with all seeds.
 Assertions that need seeds which are in no part are skipped.)";
 
-constexpr const char* report_footer = R"(Of a run the page is report.html, with the plates that are in plates/ beside
-FILE; of check.json it is check.html.)";
+constexpr const char* report_footer = R"(Of a run or a comparison the page is report.html, with the plates that are in
+plates/ beside FILE; of check.json it is check.html.)";
 
 constexpr const char* film_footer = R"(The film of an experiment: every picture, curve and number comes from the run
 that it is made with. Written under DIR as one: crescent.mp4, captions
@@ -119,7 +119,7 @@ void add_report(CLI::App& app, Work& work) {
     std::shared_ptr<ReportFlags> f;
     CLI::App* c = command(app, work, "report", "Make the page of a stored result.", report, f);
     c->footer(report_footer);
-    c->add_option("FILE", f->file, "the metrics.json of a run, or what check --json wrote")
+    c->add_option("FILE", f->file, "the metrics.json of a run or a comparison, or what check --json wrote")
         ->required()
         ->type_name("")
         ->check(not_empty);

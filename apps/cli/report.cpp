@@ -1,33 +1,26 @@
 // crescent report: the page of a result that was stored as JSON.
+#include <array>
 #include <filesystem>
 #include <fmt/format.h>
-#include <vector>
 
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/input.h"
-#include "base/text.h"
 #include "check/report/print.h"
 #include "commands.h"
+#include "compare/outputs.h"
 #include "output/format.h"
+#include "progress.h"
 #include "report/report.h"
 #include "run/stored_run.h"
 #include "run/write.h"
-#include "progress.h"
 #include "terminal.h"
 
 namespace crescent::cli {
 
 namespace {
 
-std::string format_of(const std::string& text, const std::string& file) {
-    try {
-        return parse_json(text).at("format").get<std::string>();
-    } catch (const Json::exception& error) {
-        throw InputError({file, 0, 0},
-            fmt::format("expected the metrics.json of a run or what check --json writes: {}", error.what()));
-    }
-}
+constexpr std::string_view what_is_read = "the metrics.json of a run or of a comparison, or what check --json writes";
 
 std::string page_of_run(const std::string& text, const std::string& file) {
     const StoredRun run = open_run(text, file);
@@ -42,23 +35,42 @@ std::string page_of_check(const std::string& text, const std::string& file) {
     return verdict_html(stored.result, stored.source);
 }
 
+std::string page_of_comparison(const std::string& text, const std::string& file) {
+    return compare_html(parse_json(text), read_plates(std::filesystem::path(file).parent_path() / "plates"));
+}
+
+/// A stored result by the begin of its format, with the page that it is made into.
+struct Kind {
+    std::string_view format;
+    std::string (*page)(const std::string& text, const std::string& file);
+    const char* name;  // of the page beside the file; null: the file's own
+};
+constexpr std::array stored_kinds = {Kind{"crescent metrics ", page_of_run, "report.html"},
+    Kind{"crescent comparison ", page_of_comparison, "report.html"}, Kind{"crescent check ", page_of_check, nullptr}};
+
+const Kind& kind_of(const std::string& text, const std::string& file) {
+    const auto format = parse_json(text).at("format").get<std::string>();
+    for (const Kind& kind : stored_kinds)
+        if (format.starts_with(kind.format)) return kind;
+    throw InputError({file, 0, 0}, fmt::format("expected {}, not the format '{}'", what_is_read, format));
+}
+
 }  // namespace
 
 int report(const ReportFlags& flags) {
-    const std::string text =
-        read_input(flags.file, most_bytes_of_metrics, "the metrics.json of a run or what check --json writes,");
-    const std::string format = format_of(text, flags.file);
-    const bool is_run = format.starts_with("crescent metrics ");
-    if (!is_run && !format.starts_with("crescent check "))
-        throw InputError({flags.file, 0, 0},
-            fmt::format("expected the metrics.json of a run or what check --json writes, not the format '{}'", format));
-    const std::filesystem::path beside = flags.file;
-    std::string out = flags.out;
-    if (out.empty())
-        out = (is_run ? beside.parent_path() / "report.html" : std::filesystem::path(beside).replace_extension(".html"))
-                  .string();
-    write_whole(out, is_run ? page_of_run(text, flags.file) : page_of_check(text, flags.file));
-    print(out + "\n");
+    const std::string text = read_input(flags.file, most_bytes_of_metrics, fmt::format("{},", what_is_read));
+    try {
+        const Kind& kind = kind_of(text, flags.file);
+        std::filesystem::path out = flags.out;
+        if (flags.out.empty()) {
+            out = std::filesystem::path(flags.file).replace_extension(".html");
+            if (kind.name) out.replace_filename(kind.name);
+        }
+        write_whole(out.string(), kind.page(text, flags.file));
+        print(out.string() + "\n");
+    } catch (const Json::exception& error) {
+        throw InputError({flags.file, 0, 0}, fmt::format("expected {}: {}", what_is_read, error.what()));
+    }
     return passed;
 }
 

@@ -13,16 +13,23 @@ namespace crescent {
 
 namespace {
 
-constexpr std::size_t most_bytes_of_plate = std::size_t{256} << 20;
-
-std::vector<unsigned char> read_plate(const std::string& path) {
+std::vector<unsigned char> read_plate(const std::filesystem::path& path) {
+    constexpr std::size_t most_bytes = std::size_t{256} << 20;
     constexpr std::string_view signature = "\x89PNG\r\n\x1a\n";
-    const std::string bytes = read_input(path, most_bytes_of_plate, "a plate");
-    if (!bytes.starts_with(signature)) throw InputError({path, 0, 0}, "expected a PNG image");
+    const std::string bytes = read_input(path.string(), most_bytes, "a plate");
+    if (!bytes.starts_with(signature)) throw InputError({path.string(), 0, 0}, "expected a PNG image");
     return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace
+
+Plates read_plates(const std::filesystem::path& folder) {
+    Plates out;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+        if (entry.path().extension() == ".png") out[entry.path().stem().string()] = read_plate(entry.path());
+    return out;
+}
 
 StoredRun open_run(const std::string& text, const std::string& path) {
     MetricsFile file = read_metrics(text, path);
@@ -38,12 +45,9 @@ StoredRun open_run(const std::string& text, const std::string& path) {
     add_spreads(m);
     m.metrics.assertions = assertions;
     const std::filesystem::path folder = std::filesystem::path(path).parent_path() / "plates";
-    for (const PlatePlan& plan : m.experiment.plates) {
-        const std::string plate = (folder / (plan.name + ".png")).string();
-        std::error_code ignored;
-        if (std::filesystem::exists(plate, ignored)) m.plates[plan.name] = read_plate(plate);
-        else out.missing.push_back(plate);
-    }
+    m.plates = read_plates(folder);
+    for (const PlatePlan& plan : m.experiment.plates)
+        if (!m.plates.contains(plan.name)) out.missing.push_back((folder / (plan.name + ".png")).string());
     return out;
 }
 

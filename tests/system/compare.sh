@@ -37,6 +37,8 @@ expect 4 "$CRESCENT" compare "${arms[@]}" --expect same --out few --quiet
 printf 'title = "From a file"\n[arms.u]\nfiles = "s[789]/films/uniform.exr"\nlayer = "n=16"\n' >plan.toml
 expect 0 "$CRESCENT" compare plan.toml --out from-file --quiet
 grep -q 'From a file' from-file/report.html || die "the title is not in the report"
+expect 0 "$CRESCENT" report from-file/metrics.json --out again.html
+cmp from-file/report.html again.html || die "crescent report makes another page of a comparison"
 mkdir elsewhere  # paths of a file are relative to it, those of flags to the current folder
 {
     printf 'reference = "../s7/films/reference.exr"\nreference_layer = "quadrature s=32"\n'
