@@ -96,7 +96,7 @@ void add_import(CLI::App& app, Work& work) {
     std::shared_ptr<ImportFlags> f;
     CLI::App* c = command(app, work, "import",
         "Make an experiment or a .mesh file of a model of another program, or an .image file of an image.", import, f);
-    c->add_option("FILE", f->file, "a model: .obj, .ply, .glb, .gltf or .stl; or an image: .exr")
+    c->add_option("FILE", f->file, "a model: .obj, .ply, .glb, .gltf or .stl; or an image: .exr or .hdr")
         ->type_name("")
         ->required()
         ->check(not_empty);
@@ -129,7 +129,7 @@ void add_import(CLI::App& app, Work& work) {
     c->footer(R"(Prints what was found, and the tables [camera] and [meshes.NAME] of an experiment
 in which the whole model is seen. The importer is a process of its own; a model
 that it cannot read, or dies of, is an error of the input (exit code 2). Exit code
-3: this build has no importer. An OpenEXR image becomes a pack of the same texels,
+3: this build has no importer. An image becomes a pack of the same texels,
 which skies and textures can name in its place: a page reads packs only.)");
 }
 

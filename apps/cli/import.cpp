@@ -151,7 +151,7 @@ std::string left_out_lines(const Json& description) {
 
 namespace {
 
-/// Packs an OpenEXR image, for a sky or a texture.
+/// Packs an image, for a sky or a texture.
 int import_image(const ImportFlags& flags) {
     if (!flags.out.ends_with(".image")) refuse(flags.out, "expected a name that ends with .image (--out)");
     can_write(flags.out);
@@ -166,9 +166,10 @@ int import_image(const ImportFlags& flags) {
 int import(const ImportFlags& flags) {
     const std::string extension = lower(std::filesystem::path(flags.file).extension().string());
     const std::vector<std::string> known = {".obj", ".ply", ".glb", ".gltf", ".stl"};
-    if (extension == ".exr") return import_image(flags);
+    if (extension == ".exr" || extension == ".hdr") return import_image(flags);
     if (std::ranges::find(known, extension) == known.end())
-        refuse(flags.file, "expected a model with the extension .obj, .ply, .glb, .gltf or .stl, or an image .exr");
+        refuse(flags.file,
+            "expected a model with the extension .obj, .ply, .glb, .gltf or .stl, or an image .exr or .hdr");
     if (std::error_code unknown; !std::filesystem::is_regular_file(flags.file, unknown))
         refuse(flags.file, "expected a file that can be read");
     if (!flags.out.ends_with(".mesh")) return import_folder(flags);

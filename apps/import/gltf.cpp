@@ -1,5 +1,6 @@
 // glTF 2.0 and GLB (Khronos Group 2021, "glTF 2.0 Specification"): the triangles of the scene, placed by its nodes.
 // Every offset, size and index is checked before it is used. Integers as positions are KHR_mesh_quantization.
+// Draco: draco.h.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "draco.h"
 #include "model.h"
 
 namespace crescent::importer {
@@ -234,7 +236,8 @@ private:
         };
         const auto is_read = [](const std::string& name) {
             return name == "KHR_mesh_quantization" || name == "KHR_texture_transform" ||
-                name == "KHR_materials_emissive_strength" || name == "KHR_materials_pbrSpecularGlossiness";
+                name == "KHR_materials_emissive_strength" || name == "KHR_materials_pbrSpecularGlossiness" ||
+                (name == "KHR_draco_mesh_compression" && can_read_draco());
         };
         const auto shapes_nothing = [](const std::string& name) {
             return name.starts_with("KHR_materials_") || name == "KHR_lights_punctual" ||
@@ -620,7 +623,7 @@ private:
         constexpr std::size_t list = 4, strip = 5, fan = 6;
         if (!from.is_object() || !from.contains("attributes") || !from["attributes"].is_object())
             fail(place, "expected 'attributes'");
-        const std::size_t mode = whole(from, "mode", place).value_or(list);
+        std::size_t mode = whole(from, "mode", place).value_or(list);
         if (mode > fan) fail(member_place(place, "mode"), fmt::format("expected a number from 0 to 6, not {}", mode));
         const Json& attributes = from["attributes"];
         if (mode < list || !attributes.contains("POSITION")) {
@@ -633,8 +636,10 @@ private:
         const std::string uv = uv_name(part.material);
         for (const auto& [name, index] : attributes.items())
             if (name != "POSITION" && name != "NORMAL" && name != uv) ++attributes_[name];
-        const std::size_t count = add_vertices(attributes, transform, member_place(place, "attributes"), part);
-        const std::vector<std::uint32_t> corners = corners_of(from, place, count);
+        const std::optional<DracoMesh> packed = unpacked(from, place);
+        if (packed) mode = list;
+        const std::size_t count = add_vertices(attributes, transform, member_place(place, "attributes"), packed, part);
+        const std::vector<std::uint32_t> corners = packed ? packed->corners : corners_of(from, place, count);
         if (mode == list && corners.size() % 3 != 0)
             fail(place, fmt::format("expected three indices for each triangle, found {}", corners.size()));
         const bool mirrored = transform.determinant() < 0;
@@ -660,11 +665,33 @@ private:
         return fmt::format("TEXCOORD_{}", material < uv_uses_.size() ? uv_uses_[material].set : 0);
     }
 
+    /// Returns a compressed primitive; nothing if it is not compressed.
+    std::optional<DracoMesh> unpacked(const Json& primitive, const std::string& place) {
+        const Json* from = extension(primitive, "KHR_draco_mesh_compression");
+        if (!from || !can_read_draco()) return std::nullopt;
+        const std::string inner = member_place(place, "extensions.KHR_draco_mesh_compression");
+        std::map<std::string, std::size_t> ids;
+        if (const Json* attributes = object(*from, "attributes"))
+            for (const auto& [name, id] : attributes->items())
+                if (id.is_number_unsigned()) ids[name] = id.get<std::size_t>();
+        if (!ids.contains("POSITION")) fail(inner, "expected 'attributes' with POSITION");
+        try {
+            return read_draco(view(needed(*from, "bufferView", inner), 0, inner).first, ids);
+        } catch (const ModelError& error) { fail(inner, error.what()); }
+    }
+
     /// Returns the number of vertices.
-    std::size_t add_vertices(const Json& attributes, const Transform& transform, const std::string& place, Part& to) {
+    std::size_t add_vertices(const Json& attributes, const Transform& transform, const std::string& place,
+        const std::optional<DracoMesh>& packed, Part& to) {
         const auto read = [&](const char* name, std::string_view type) -> std::optional<std::vector<double>> {
             const std::optional<std::size_t> index = whole(attributes, name, place);
             if (!index) return std::nullopt;
+            if (packed && packed->values.contains(name)) {
+                const std::size_t components = type == "VEC3" ? 3 : 2;
+                if (packed->values.at(name).size() != components * packed->count)
+                    fail(member_place(place, name), fmt::format("expected {} numbers a vertex", components));
+                return packed->values.at(name);
+            }
             const Array array = this->array(*index, member_place(place, name), type);
             if (!to.positions.empty() && array.count != to.positions.size())
                 fail(member_place(place, name),

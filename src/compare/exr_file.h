@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "compare/open_file.h"
+#include "images/open_file.h"
 
 namespace crescent {
 

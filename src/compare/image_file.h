@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "compare/open_file.h"
+#include "images/open_file.h"
 
 namespace crescent {
 

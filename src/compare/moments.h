@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/open_file.h"
+#include "images/open_file.h"
 #include "experiment/experiment.h"
 
 namespace crescent {

@@ -14,7 +14,7 @@
 
 #include "base/errors.h"
 #include "base/npy.h"
-#include "compare/open_file.h"
+#include "images/open_file.h"
 #include "compare/passes.h"
 #include "compare/plan.h"
 #include "output/tone_map.h"

@@ -17,7 +17,7 @@
 #include "base/progress.h"
 #include "compare/exr_file.h"
 #include "compare/image_file.h"
-#include "compare/open_file.h"
+#include "images/open_file.h"
 #include "compare/outliers.h"
 #include "compare/plan.h"
 #include "metrics/metrics.h"

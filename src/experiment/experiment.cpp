@@ -79,8 +79,8 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
                 experiment.surface_name(k), albedo));
     }
     if (experiment.sky && experiment.sky->raised > 0)
-        out.push_back(fmt::format("sky: {} numbers below 0 by less than {:g} of the largest count as 0",
-            experiment.sky->raised, rounding_below_zero));
+        out.push_back(fmt::format("sky: {} numbers below 0, at most {:g} % of its energy, count as 0",
+            experiment.sky->raised, 100 * negative_share));
     if (const std::string why = why_no_evidence(experiment); experiment.note_evidence && !why.empty())
         out.push_back("note_evidence measures nothing: " + why);
     return out;

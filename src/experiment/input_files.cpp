@@ -20,7 +20,7 @@ void load_sky(SkyLight& sky) {
     sky.raised = 0;
     if (std::ranges::any_of(image->rgb, [](float x) { return x < 0; })) {
         const auto raised = std::make_shared<RgbImage>(*image);
-        sky.raised = raise_to_zero(raised->rgb);
+        sky.raised = raise_to_zero(*raised);
         image = raised;
     }
     if (const std::string why = why_no_sky(*image, sky.scale); !why.empty()) throw InputError({sky.file, 0, 0}, why);

@@ -16,7 +16,9 @@
 #include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/openexr.h>
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
@@ -25,6 +27,8 @@
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/parallel.h"
+#include "images/open_file.h"
+#include "images/stored_image.h"
 #include "scene/texture.h"
 
 namespace crescent {
@@ -224,6 +228,32 @@ std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_n
     return out;
 }
 
+/// Whether the primaries of a header are those of Rec.709, or Radiance's own, which its programs write for them.
+bool are_near_rec709(const std::array<double, 8>& primaries) {
+    constexpr std::array rec709 = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
+    constexpr double distance = 0.021;  // Radiance has the white point (1/3, 1/3)
+    return std::ranges::equal(primaries, rec709, [](double a, double b) { return std::fabs(a - b) < distance; });
+}
+
+std::shared_ptr<const RgbImage> read_hdr(const std::string& path, WhyNot why_not) {
+    const OpenFile file(path);
+    const HdrHeader header = hdr_header(file, [](const std::array<double, 8>&) { return true; });
+    if (header.primaries && !are_near_rec709(*header.primaries))
+        file.fail("expected colours in Rec.709, found other PRIMARIES in the header");
+    const StoredImage stored = decoded(file);
+    const ImageHead& head = stored.head;
+    if (const std::string why = why_not(head.width, head.height); !why.empty()) throw InputError({path, 0, 0}, why);
+    auto out = std::make_shared<RgbImage>();
+    out->width = static_cast<int>(head.width), out->height = static_cast<int>(head.height);
+    out->rgb.resize(3 * out->texels());
+    for (std::size_t k = 0; k < out->rgb.size(); ++k) {
+        const std::size_t channel = head.channels < 3 ? 0 : k % 3;
+        out->rgb[k] = static_cast<float>(stored.sample(k / 3 * head.channels + channel) * header.unit[k % 3]);
+    }
+    out->hash = hash_of_texels(out->width, out->height, out->rgb);
+    return out;
+}
+
 std::shared_ptr<const RgbImage> read_pack(const std::string& path, std::string_view head, WhyNot why_not) {
     std::error_code error;
     (void)read_image_size(head, std::filesystem::file_size(path, error), path);  // before its memory is taken
@@ -245,6 +275,7 @@ std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
     std::string head(image_header_size, '\0');
     file.read(head.data(), static_cast<std::streamsize>(head.size()));
     if (is_image_file(head)) return read_pack(path, head, why_not);
+    if (head.starts_with("#?")) return read_hdr(path, why_not);
     try {
         return read_parts(path, why_not);
     } catch (const InputError&) { throw; } catch (const std::exception& why) {

@@ -29,7 +29,7 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
 void write_texture(const std::string& path, const RgbImage& image);
 
 // ---- Reads the image of a sky or of a texture: from an OpenEXR file, R, G and B, or Y alone, of its first part, in
-// half, float or integers; or from a pack (scene/texture.h).
+// half, float or integers; from Radiance HDR; or from a pack (scene/texture.h).
 
 /// Throws InputError with the file's name if it cannot be read, is no image of this kind, or is larger than a sky or a
 /// texture may be; the size is checked before memory is taken for it.

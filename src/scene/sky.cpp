@@ -57,30 +57,65 @@ std::size_t entry_of(double x, std::size_t entries) {
 constexpr double darkest_sky =
     1e-9;  // W/(sr m^2), of its brightest texel, as of every radiance of a file that is not 0
 
-std::size_t raise_to_zero(std::vector<float>& rgb) {
-    float largest = 0;
-    for (const float x : rgb)
-        if (std::isfinite(x)) largest = std::max(largest, x);
-    std::size_t count = 0;
-    for (float& x : rgb) {
-        if (!(x < 0 && x >= -rounding_below_zero * largest)) continue;
-        x = 0;
-        ++count;
+namespace {
+
+/// The numbers below 0 of an image.
+struct Negative {
+    std::size_t count = 0, lowest = 0;  // lowest: the index of the least number
+    double share = 0;                   // of the energy: their sum over that of the others, by solid angle
+};
+
+Negative negative_numbers(const RgbImage& image) {
+    Negative out;
+    double below = 0, above = 0;
+    const std::size_t row_size = 3 * static_cast<std::size_t>(image.width);
+    for (std::size_t row = 0; row * row_size < image.rgb.size(); ++row) {
+        double row_below = 0, row_above = 0;
+        for (std::size_t k = row * row_size; k < (row + 1) * row_size; ++k) {
+            const float x = image.rgb[k];
+            if (x > 0) row_above += static_cast<double>(x);
+            if (!(x < 0)) continue;
+            row_below -= static_cast<double>(x);
+            if (out.count++ == 0 || x < image.rgb[out.lowest]) out.lowest = k;
+        }
+        const double weight = math::sin(pi * (static_cast<double>(row) + 0.5) / image.height);
+        below += weight * row_below;
+        above += weight * row_above;
     }
-    return count;
+    out.share = below > 0 ? below / above : 0;
+    return out;
+}
+
+}  // namespace
+
+std::size_t raise_to_zero(RgbImage& image) {
+    const Negative negative = negative_numbers(image);
+    if (!(negative.share <= negative_share)) return 0;
+    for (float& x : image.rgb)
+        if (x < 0) x = 0;
+    return negative.count;
 }
 
 std::string why_no_sky(const RgbImage& image, double scale) {
     if (const std::string why = why_no_sky_of(image.width, image.height); !why.empty()) return why;
+    const auto at_texel = [&](std::size_t k) {
+        const std::size_t texel = k / 3, width = static_cast<std::size_t>(image.width);
+        return fmt::format("texel ({}, {}), counted from the top-left: expected a radiance from 0 to {:g}, found {}",
+            texel % width, texel / width, brightest_sky, scale * double(image.rgb[k]));
+    };
     double largest = 0;
+    std::optional<std::size_t> below;
     for (std::size_t k = 0; k < image.rgb.size(); ++k) {
         const float x = image.rgb[k];
         const double scaled = scale * double(x);
         largest = std::max(largest, scaled);
-        if (x >= 0 && scaled <= brightest_sky) continue;
-        const std::size_t texel = k / 3, width = static_cast<std::size_t>(image.width);
-        return fmt::format("texel ({}, {}), counted from the top-left: expected a radiance from 0 to {:g}, found {}",
-            texel % width, texel / width, brightest_sky, scaled);
+        if (x < 0 && std::isfinite(x)) below = k;
+        else if (!(x >= 0 && scaled <= brightest_sky)) return at_texel(k);
+    }
+    if (below) {
+        const Negative negative = negative_numbers(image);
+        return fmt::format("{}; the {} numbers below 0 are {:.3g} % of the energy, more than {:g} %",
+            at_texel(negative.lowest), negative.count, 100 * negative.share, 100 * negative_share);
     }
     if (largest <= 0) return "every texel is 0: expected a sky with light";
     if (largest >= darkest_sky) return "";

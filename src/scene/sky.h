@@ -38,9 +38,11 @@ struct SkyLight {
     std::size_t raised = 0;                   // numbers of the file that raise_to_zero() set to 0
 };
 
-inline constexpr float rounding_below_zero = 1e-4f;  // of the largest number of an image: resampling leaves such texels
-/// Sets the numbers that are below 0 by less than that to 0, and returns how many there were.
-std::size_t raise_to_zero(std::vector<float>& rgb);
+/// Filters and compression leave numbers below 0. An image is a sky if they are at most this share of its energy.
+inline constexpr double negative_share = 1e-3;
+/// Sets the numbers below 0 of a latitude-longitude image to 0 and returns how many there were; 0 if there are too many
+/// or some is infinite, which why_no_sky() states.
+std::size_t raise_to_zero(RgbImage& image);
 
 /// Where an image cannot be a sky: the texel and what is wrong there; "" if it can.
 std::string why_no_sky(const RgbImage& image, double scale);

@@ -39,9 +39,12 @@ ImageHeader image_header_of(std::string_view head) {
 
 std::string why_no_sky_of(std::int64_t width, std::int64_t height) {
     if (width >= 2 && width <= widest_sky && width == 2 * height) return "";
+    const bool is_cross =
+        3 * width == 4 * height || 4 * width == 3 * height || width == 6 * height || 6 * width == height;
     return fmt::format(
-        "expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found {} x {}", widest_sky,
-        highest_sky, width, height);
+        "expected a latitude-longitude image, twice as wide as high, at most {} x {} texels, found {} x {}{}",
+        widest_sky, highest_sky, width, height,
+        is_cross ? ", the shape of the six sides of a cube: a cube map must be converted first" : "");
 }
 
 std::string content_hash(const RgbImage& image) { return fmt::format("{:016x}", image.hash); }

@@ -243,7 +243,6 @@ reads("sparse.gltf", 12, (0, 0, 0), (1, 1, 1))
 for name, change, words in (
     ("names", put(["extensionsRequired"], "ACME_magic"), ("extensionsRequired",)),
     ("unknown", put(["extensionsRequired"], ["ACME_magic"]), ("ACME_magic",)),
-    ("draco", put(["extensionsRequired"], ["KHR_draco_mesh_compression"]), ("KHR_draco_mesh_compression",)),
     ("meshopt", put(["extensionsRequired"], ["EXT_meshopt_compression"]), ("EXT_meshopt_compression",)),
     ("long", put(["accessors", 0, "count"], 9), ("accessors[0]", "9 elements")),
     ("huge", put(["accessors", 1, "count"], 2**62), ("accessors[1]",)),

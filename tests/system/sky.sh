@@ -46,6 +46,37 @@ code=$?
 [ $code -eq 3 ] || { [ $code -eq 2 ] && grep -q '^sky.toml:[0-9]*:.* no image skies: expected --instrument cpu' said; } ||
     die "a sky by GL: exit $code: $(cat said)"
 
+image cross.exr 8 '(1, 1, 1)' 6
+refuses 'cross.exr.*8 x 6.*cube' cross.exr
+
+# Numbers just below 0 count as 0 and are counted; more than a thousandth of the energy is refused with its share.
+image little.exr 8 '(1, -0.04 if (x, y) == (5, 2) else 1, 1)'
+experiment little.exr
+run 0 --only metrics --out little
+cat printed said | grep -q 'sky: 1 numbers below 0' || die "no count of numbers below 0: $(cat printed said)"
+refuses 'negative.exr.*numbers below 0 are .* %' negative.exr
+
+# Radiance HDR gives the numbers of the same texels in OpenEXR; its exposure divides.
+radiance() { # FILE HEADER: 8 x 4 texels of 1
+    { printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n%b\n-Y 4 +X 8\n' "$2" && printf '\x80\x80\x80\x81%.0s' {1..32}; } >"$1"
+}
+image one.exr 8 '(1, 1, 1)'
+image half.exr 8 '(0.5, 0.5, 0.5)'
+radiance one.hdr ''
+radiance half.hdr 'EXPOSURE=2\n'
+for name in one half; do
+    for end in exr hdr; do
+        experiment $name.$end
+        run 0 --only metrics --out $name-$end
+    done
+    cmp $name-exr/metrics.csv $name-hdr/metrics.csv || die "$name.hdr gives other numbers than $name.exr"
+done
+radiance wide.hdr 'PRIMARIES=0.71 0.29 0.17 0.8 0.13 0.05 0.31 0.33\n'
+refuses 'wide.hdr.*PRIMARIES' wide.hdr
+head -c 60 one.hdr >cut.hdr
+refuses 'cut.hdr.*cut off' cut.hdr
+experiment sunset.exr 'rotation = 30'
+
 # The same bytes on every instruction set and any threads; the sampler of the sky is unbiased: its mean is the reference's.
 run 0 --isa scalar --out scalar
 run 0 --threads 1 --out best

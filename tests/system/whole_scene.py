@@ -118,3 +118,22 @@ has(command("import", "cube.obj", "--out", "round.mesh", "--smooth", "100"), "no
 has(command("import", "cube.obj", "--out", "cube"), "1 meshes", "12 triangles", "the whole model")
 has(pathlib.Path("cube/experiment.toml").read_text(), "[meshes.red]", "rho_d = [0.8, 0.1, 0.1]", "rho_s = [0.2, 0.5, 0.5]", "alpha = 0.1414")
 command("import", "cube.obj", "--out", "cube.text", code=2)
+
+# Draco, as its own encoder writes it: a rectangle of 1 by 2 with texture coordinates.
+packed = bytes.fromhex(
+    "445241434f02020101000000040201020000011fff0111ff011102ff0000000000010009030000000103090200010000000000000000000000"
+    "00000000803f00000040000000000000000000000040000000000000803f000000000000000000000000000000000000803f0000803f000000"
+    "000000803f0000803f00000000")
+for data, code in ((packed, 0), (packed[:60], 2)):
+    g = Glb()
+    attributes = {"POSITION": 0, "TEXCOORD_0": 1}
+    part = {"attributes": attributes, "indices": 2, "extensions": {"KHR_draco_mesh_compression": {"bufferView": g.view(data), "attributes": attributes}}}
+    g.accessors = [{"componentType": 5126, "count": 4, "type": "VEC3"}, {"componentType": 5126, "count": 4, "type": "VEC2"},
+                   {"componentType": 5123, "count": 6, "type": "SCALAR"}]
+    names = ["KHR_draco_mesh_compression"]
+    g.write("draco.glb", {"extensionsUsed": names, "extensionsRequired": names, "meshes": [{"primitives": [part]}], "nodes": [{"mesh": 0}]})
+    done = subprocess.run([crescent, "import", "draco.glb", "--out", "draco.mesh"], capture_output=True, text=True)
+    if "not supported" in done.stderr:
+        break  # a build without Draco's library
+    assert done.returncode == code, done.stdout + done.stderr
+    has(done.stdout + done.stderr, *(("2 triangles, 4 vertices", "box [0, 0, 0] to [1, 2, 0]", "one set") if code == 0 else ("draco.glb: ", "Draco")))

@@ -11,7 +11,7 @@
 #include <xxhash.h>
 
 #include "base/files.h"
-#include "compare/open_file.h"
+#include "images/open_file.h"
 
 namespace crescent {
 

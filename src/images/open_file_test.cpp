@@ -1,5 +1,5 @@
 // Files that are read by offset, their text headers, and rectangles of pixels.
-#include "compare/open_file.h"
+#include "images/open_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // stb_image (github.com/nothings/stb) over pread(). Calls no other code of crescent, so that it is also part of a small
 // program.
-#include "compare/image_host.h"
+#include "images/image_host.h"
 
 #include <sys/resource.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // POSIX files: stat() before open(), then pread().
-#include "compare/open_file.h"
+#include "images/open_file.h"
 
 #include <algorithm>
 #include <cerrno>
