@@ -26,7 +26,7 @@ constexpr std::uint32_t draws_for_lobes = 1u << 16, few_draws_for_lobes = 1u << 
 constexpr double fits_at = 1e-3;            // p-value of the remaining misfit
 constexpr double known_share = 0.02;        // of x, relative
 constexpr double known_probability = 0.05;  // half an interval
-constexpr double left_out = 0.1;            // least x of a lobe that p has: others may have some density where it draws
+constexpr double left_out = 0.1;            // an x that is 0 is known to this: a lobe that p does not have
 
 bool has_direction(const Draw& d) { return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z); }
 
@@ -220,21 +220,25 @@ bool explains(const Shares& s) {
     return chi_squared_tail(degrees, s.misfit) > fits_at || s.misfit - degrees < 0.02 * (s.before - degrees);
 }
 
-std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
+/// `where`: " at w_o 60 deg", or "".
+std::string lobe_sentence(const LobeChooser& by, const Shares& s, const std::string& where) {
     std::vector<std::size_t> off;
     std::vector<std::string> drawn, claimed;
-    bool known = true;  // whether every probability of p is known as one in [0, 1]
+    bool known = true;  // whether the probabilities of p are known, each in [0, 1] and all together 1
+    double sum = 0, sum_half = 0;
     for (std::size_t k = 0; k < s.x.size(); ++k) {
         const double share = by.lobes[k].share(), of_p = s.x[k] * share, half = 1.96 * s.errors[k] * share;
         known = known && of_p - half >= 0 && of_p + half <= 1 && half < known_probability;
+        sum += of_p, sum_half += half;
         drawn.push_back(fmt::format("{:.3g}", share));
         claimed.push_back(with_error(of_p, half));
         if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) off.push_back(k);
     }
+    known = known && std::fabs(sum - 1) < sum_half + known_share;
     for (std::size_t k : off)
-        if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], left_out))
-            return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}.",
-                by.number + 1, by.lobes[k].from, by.lobes[k].to);
+        if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], known_share) && 3 * s.errors[k] < left_out)
+            return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}{}.",
+                by.number + 1, by.lobes[k].from, by.lobes[k].to, where);
     if (off.size() == 1) {
         const LobeInterval& lobe = by.lobes[off[0]];
         const double x = s.x[off[0]];
@@ -242,15 +246,15 @@ std::string lobe_sentence(const LobeChooser& by, const Shares& s) {
             std::fabs(x * lobe.share() - 1) < std::max(3 * s.errors[off[0]] * lobe.share(), known_share);
         return fmt::format(
             "Of the lobes that u{} chooses, the one from {:.4g} to {:.4g} has {:.3g} +- {:.1g} times what "
-            "it draws in p, the others are right: {}.",
-            by.number + 1, lobe.from, lobe.to, x, 1.96 * s.errors[off[0]],
+            "it draws in p{}, the others are right: {}.",
+            by.number + 1, lobe.from, lobe.to, x, 1.96 * s.errors[off[0]], where,
             no_chooser ? "the chooser's probability of that one lobe is left out"
                        : "the chooser's probability of that one lobe, or a constant of its own, is off");
     }
     return fmt::format(
-        "The lobes that u{} chooses are drawn with {}; p has them with {}: the chooser's probability "
+        "The lobes that u{} chooses are drawn with {}{}; p has them with {}: the chooser's probability "
         "differs.",
-        by.number + 1, fmt::join(drawn, ", "),
+        by.number + 1, fmt::join(drawn, ", "), where,
         known ? fmt::format("{}", fmt::join(claimed, ", ")) : "other probabilities");
 }
 
@@ -287,7 +291,7 @@ std::optional<Cause> lobe_cause(std::span<const Place> places) {
         if (!shares || !explains(*shares)) continue;
         const auto [least, most] = std::ranges::minmax_element(shares->x);
         if (*most - *least < known_share) continue;  // a constant
-        return Cause{"chooser", 0, 0, lobe_sentence(*by, *shares)};
+        return Cause{"chooser", 0, 0, lobe_sentence(*by, *shares, place.where())};
     }
     return {};
 }
