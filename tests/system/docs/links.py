@@ -1,9 +1,4 @@
-"""Prose and links of Markdown pages.
-
-    prose.py text FOLDER PAGE...   writes the prose of each page into FOLDER, without code and link targets. A paragraph
-                                   is one line, at the line on which it starts.
-    prose.py links PAGE...         prints links to files and headings that do not exist. Exit 1: there is one.
-"""
+"""links.py PAGE... prints links of Markdown pages to files and headings that do not exist. Exit 1: there is one."""
 
 from __future__ import annotations
 
@@ -16,7 +11,6 @@ INLINE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.DOTALL)
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 LINK = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\])*\]\(([^()\s]+)\)")
 HEADING = re.compile(r"^#{1,6} +(.*?) *#*$")
-STARTS = re.compile(r"\s*$|\s*([-*|#>]|\d+\.) ?")
 
 
 def blank(match: re.Match[str]) -> str:
@@ -28,19 +22,6 @@ def without_code(text: str) -> str:
     for pattern in (FENCE, COMMENT, INLINE):
         text = pattern.sub(blank, text)
     return text
-
-
-def prose(text: str) -> str:
-    lines = re.sub(r"\]\([^()\s]+\)", blank, without_code(text)).split("\n")
-    out = list(lines)
-    first = 0
-    for n in range(1, len(lines)):
-        if STARTS.match(lines[n]) or not lines[first].strip() or lines[first].startswith(("#", "|")):
-            first = n
-        else:
-            out[first] += " " + lines[n].strip()
-            out[n] = ""
-    return "\n".join(re.sub(r" +", " ", line).rstrip() for line in out)
 
 
 def anchors(page: Path) -> set[str]:
@@ -73,16 +54,9 @@ def broken_links(page: Path) -> list[str]:
 
 
 def main() -> int:
-    mode, *args = sys.argv[1:]
-    if mode == "links":
-        found = [line for page in args for line in broken_links(Path(page))]
-        print(*found, sep="\n", end="\n" if found else "")
-        return 1 if found else 0
-    folder, *pages = map(Path, args)
-    for page in pages:
-        (folder / page).parent.mkdir(parents=True, exist_ok=True)
-        (folder / page).write_text(prose(page.read_text(encoding="utf-8")), encoding="utf-8")
-    return 0
+    found = [line for page in sys.argv[1:] for line in broken_links(Path(page))]
+    print(*found, sep="\n", end="\n" if found else "")
+    return 1 if found else 0
 
 
 if __name__ == "__main__":
