@@ -52,7 +52,7 @@ class Costs:
         elif against == "rays":
             rays: dict[str, list[float]] = {}
             for row in r.records():
-                if "rays" in row.values() and row["s"] == s and row["value"]:
+                if row["metric"] == "rays" and row["s"] == s and row["value"]:
                     rays.setdefault(row["arm"], []).append(row["value"])
             self._of = {arm: float(np.median(each)) for arm, each in rays.items()}
 

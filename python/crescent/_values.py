@@ -65,7 +65,7 @@ def heavy_arms(r: Measured, region: str, s: float | None) -> set[str]:
     return {
         row["arm"]
         for row in r.records()
-        if "tail_k" in row.values() and row["region"] == region and row["s"] == at and (row["value"] or 0) >= 0.5
+        if row["metric"] == "tail_k" and row["region"] == region and row["s"] == at and (row["value"] or 0) >= 0.5
     }
 
 
