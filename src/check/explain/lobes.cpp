@@ -279,6 +279,7 @@ std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key) {
 
 std::optional<Cause> lobe_cause(std::span<const Place> places) {
     for (const Place& place : places) {
+        if (place.traits.domain && place.traits.domain->is_discrete()) continue;  // every entry is a lobe of its own
         Source source = place.source();
         const StreamKey key = place.key(13, Purpose::pairs, 2);
         const std::optional<LobeChooser> by = chooser_of(source, key);
