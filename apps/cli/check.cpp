@@ -129,7 +129,7 @@ TestSettings test_settings_of(const CheckFlags& flags) {
     if (!(flags.alpha > 0 && flags.alpha < 1)) throw InputError({"--alpha", 0, 0}, "is between 0 and 1");
     r.alpha = flags.alpha;
     r.seed = flags.seed;
-    r.pictures = !flags.html.empty();
+    r.pictures = !flags.html.empty() || !flags.json.empty();
     r.accept_few = flags.accept_few;
     return r;
 }

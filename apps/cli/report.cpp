@@ -3,17 +3,9 @@
 #include <filesystem>
 #include <fmt/format.h>
 
-#include "base/errors.h"
-#include "base/files.h"
-#include "base/input.h"
-#include "check/report/print.h"
 #include "commands.h"
-#include "compare/outputs.h"
-#include "output/format.h"
+#include "crescent/crescent.h"
 #include "progress.h"
-#include "report/report.h"
-#include "run/stored_run.h"
-#include "run/write.h"
 #include "terminal.h"
 
 namespace crescent::cli {

@@ -12,6 +12,7 @@
 //                     the steps of a run, each alone and in memory: an Experiment -> jobs -> films and metrics -> every
 //                     number -> a folder; a stop is returned as a value, see run/execute.h
 //   join              runs of parts of an experiment's seeds -> the metrics of all of them
+//   open_run          a metrics.json and the plates beside it -> the run, for its page
 //   measure_in_memory an Experiment -> films, metrics and article checks, nothing written
 //   compare           renders of other programs -> metrics, bias tests, plates and report under one folder
 //   run               an Experiment -> films, metrics, plates and report under one folder
@@ -22,6 +23,7 @@
 
 #include "base/errors.h"
 #include "base/files.h"
+#include "base/input.h"
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "base/process.h"
@@ -72,6 +74,7 @@
 #include "run/collect.h"
 #include "run/execute.h"
 #include "run/run.h"
+#include "run/stored_run.h"
 #include "run/version.h"
 #include "run/write.h"
 #include "samplers/all.h"

@@ -24,7 +24,7 @@ struct TestSettings {
     bool full = false;    // more w_o, more draws
     double alpha = 1e-3;  // family-wise, for all tests of one call
     std::uint32_t seed = 1;
-    bool pictures = false;                   // store maps and weights for the HTML page
+    bool pictures = false;                   // store maps and weights, for the page and the JSON
     std::size_t questions = 500000;          // queries to a sampler behind a pipe, plugin or Python at one w_o, at most
     std::size_t questions_in_all = 3600000;  // queries at all w_o of the grid together, at most
     std::size_t further_in_all = 8000000;    // evaluations by which w_o that are not decided go on, in all

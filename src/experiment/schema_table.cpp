@@ -178,7 +178,8 @@ Section sky() {
         "An image sky: light from infinitely far away where nothing hides it, see docs/conventions.md.",
         in<&Experiment::sky, Experiment>,
         {{"file", Type::text, none, "", required, "",
-             "A latitude-longitude image, OpenEXR, Radiance HDR or packed (.image), relative to this file; twice as wide "
+             "A latitude-longitude image, OpenEXR, Radiance HDR or packed (.image), relative to this file; twice as "
+             "wide "
              "as high, at most 8192 x 4096.",
              to<&SkyLight::file>},
             {"rotation", Type::number, {-360, 360}, "degrees", defaulted, "0",

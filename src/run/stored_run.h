@@ -9,6 +9,7 @@
 
 namespace crescent {
 
+/// What can be read of it.
 struct StoredRun {
     Measured measured;                 // without films
     std::vector<std::string> missing;  // plates of the experiment that are not in plates/

@@ -58,19 +58,6 @@ same() {
 }
 expect 1 "$CRESCENT" join a b c --out joined
 same whole joined
-
-# The page of a stored run is the page that the run wrote; without its plates it says what is missing.
-expect 0 "$CRESCENT" report b/metrics.json --out again.html
-cmp b/report.html again.html || die "crescent report makes another page"
-expect 0 "$CRESCENT" report a/metrics.json
-grep -q 'a/plates/hero.png: missing' said || die "not said that a plate is missing: $(cat said)"
-[ -s a/report.html ] || die "no page beside metrics.json"
-for bad in '{}' '{"format": "crescent metrics 9"}' '{"format": "another"}' 'no json'; do
-    echo "$bad" >bad.json
-    expect 2 "$CRESCENT" report bad.json --out bad.html
-    grep -q '^bad.json: expected ' said || die "$bad: $(cat said)"
-done
-[ ! -e bad.html ] || die "a page of a file that is no result"
 grep -q wrong printed || die "the assertion that fails is not named: $(cat printed)"
 expect 1 "$CRESCENT" join c/metrics.json whole b --out again
 same whole again
@@ -104,6 +91,19 @@ run 0 3:7 late-whole --only metrics
 same late late-whole
 expect 1 "$CRESCENT" join gap late --out again
 same whole again
+
+# The page of a stored run is the page that the run wrote; without its plates it says what is missing.
+expect 0 "$CRESCENT" report b/metrics.json --out again.html
+cmp b/report.html again.html || die "crescent report makes another page"
+expect 0 "$CRESCENT" report a/metrics.json
+grep -q 'a/plates/hero.png: missing' said || die "not said that a plate is missing: $(cat said)"
+[ -s a/report.html ] || die "no page beside metrics.json"
+for bad in '{}' '{"format": "crescent metrics 9"}' '{"format": "another"}' 'no json'; do
+    echo "$bad" >bad.json
+    expect 2 "$CRESCENT" report bad.json --out bad.html
+    grep -q '^bad.json: expected ' said || die "$bad: $(cat said)"
+done
+[ ! -e bad.html ] || die "a page of a file that is no result"
 
 # Parts that do not belong together.
 expect 0 "$CRESCENT" run all.toml --quiet --set ball.s=31 --seeds 7 --seed-range 1:2 --only metrics --out other
