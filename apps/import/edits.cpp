@@ -65,7 +65,7 @@ void smooth_part(Part& part, double least_cosine) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3d at = place(3 * t + k);
             const Vec3d a = unit(place(3 * t + (k + 1) % 3) - at), b = unit(place(3 * t + (k + 2) % 3) - at);
-            weighted.push_back(std::acos(std::clamp(dot(a, b), -1.0, 1.0)) * normals.back());
+            weighted.push_back(math::acos(std::clamp(dot(a, b), -1.0, 1.0)) * normals.back());
         }
     }
     std::vector<std::size_t> order(count);
@@ -104,7 +104,7 @@ void smooth_part(Part& part, double least_cosine) {
 
 void smooth(Model& model, double degrees) {
     for (Part& part : model.parts)
-        if (part.normals.empty()) smooth_part(part, std::cos(degrees * pi / 180));
+        if (part.normals.empty()) smooth_part(part, math::cos(degrees * pi / 180));
 }
 
 }  // namespace crescent::importer

@@ -711,7 +711,7 @@ private:
         }
         if (const auto uv = read(uv_name(to.material).c_str(), "VEC2")) {
             const UvUse use = to.material < uv_uses_.size() ? uv_uses_[to.material] : UvUse{};
-            const double c = std::cos(use.rotation), s = std::sin(use.rotation);
+            const double c = math::cos(use.rotation), s = math::sin(use.rotation);
             for (std::size_t k = 0; k < uv->size(); k += 2) {
                 const double u = use.scale[0] * (*uv)[k], v = use.scale[1] * (*uv)[k + 1];
                 // v of glTF goes down the image.
