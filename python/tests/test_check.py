@@ -329,6 +329,6 @@ def test_callables_beside_a_sampler_are_not_dropped_and_numbers_that_are_missing
 
 def test_every_keyword_of_check_is_told_by_its_signature():
     told = inspect.signature(crescent.check).parameters
-    known = {at.name for at in dataclasses.fields(crescent.Sampler)} - {"sample", "pdf", "f"}
+    known = {at.name for at in dataclasses.fields(crescent.Sampler)} - {"sample", "pdf", "f", "n"}
     assert known | {"wo_deg", "alpha", "seed", "full", "against", "progress"} <= set(told)
     assert all(p.kind != p.VAR_KEYWORD for p in told.values())

@@ -29,7 +29,7 @@ def expect(holds, what):
 right, power, kinds, hard, pipe, torn = map(read, ("right", "power", "kinds", "hard", "pipe", "torn"))
 expect(len(right) + len(power) + len(kinds) + len(hard) + len(pipe) == 60, "60 checks are run")
 for r in right + hard + pipe:
-    expect(r["state"] in ("right", "inconclusive"), f"{r['family']}, right, is reported {r['state']}: {r['say']}")
+    expect(r["state"] in ("right", "inconclusive"), f"{r['family']}, right, is reported {r['state']}: {r['message']}")
 expect(sum(r["state"] == "right" for r in right) >= 20, "most right samplers are reported right")
 for r in power:
     expect(r["size"] < 0.1 or r["state"] == "wrong", f"missed: {r['kind']} {r['size']} in {r['family']}")

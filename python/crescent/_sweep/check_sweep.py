@@ -281,7 +281,7 @@ def summary_of_checks(out: str | PathLike[str]) -> str:
         lines.append(f"{kind}: {len(of)} of {len(points)}")
         verdict = _first(of[0], kind)
         if verdict is not None:
-            lines.append(f"  {label(of[0]['values'])}, {verdict['case']}, {verdict['verdict']}: {verdict['say']}")
+            lines.append(f"  {label(of[0]['values'])}, {verdict['case']}, {verdict['verdict']}: {verdict['message']}")
     lines += [f"failed: {place}: {error}" for place, error in state.get("failed", {}).items()]
     return "\n".join(lines)
 

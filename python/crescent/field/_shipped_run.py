@@ -85,7 +85,7 @@ def shipped(only: list[str]) -> Iterator[Result]:
         yield Result(
             "Mitsuba 3",
             it.title(),
-            mi.__version__,
+            str(mi.__version__),
             "mitsuba-renderer/mitsuba3",
             f"src/{'bsdfs' if it.kind == 'bsdf' else 'emitters'}/{it.plugin['type']}",
             "Python",
