@@ -9,6 +9,7 @@
 
 namespace crescent {
 
+/// Whether it is a pipe with a name; false for one that a shell opened.
 bool is_named_pipe(const std::string& path);
 
 /// Opens a file for reading. Throws InputError: "expected {what} that can be read: ...".
