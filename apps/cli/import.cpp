@@ -13,7 +13,6 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "commands.h"
@@ -22,8 +21,6 @@
 namespace crescent::cli {
 
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr const char* importer_name = "crescent-import";
 constexpr std::size_t longest_description = std::size_t{16} << 20;  // bytes

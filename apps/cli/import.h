@@ -3,8 +3,6 @@
 
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "commands.h"
 
 namespace crescent::cli {
@@ -12,7 +10,7 @@ namespace crescent::cli {
 /// What the importer found.
 struct Imported {
     std::string files;  // bytes of a mesh, or of all meshes and images, at the places that the description states
-    nlohmann::json description;
+    Json description;
 };
 
 /// Starts the importer. Throws InputError with the place of a mistake.
@@ -26,9 +24,9 @@ int import_folder(const ImportFlags& flags);
 // ---- Comment lines of what is printed; "" if there is nothing to state.
 
 /// How the model was moved and scaled.
-std::string moved_line(const nlohmann::json& description);
+std::string moved_line(const Json& description);
 /// What is not taken along, a line each.
-std::string left_out_lines(const nlohmann::json& description);
+std::string left_out_lines(const Json& description);
 /// "[1, 2, 3]", six digits each.
 std::string point_text(Vec3d v);
 

@@ -18,8 +18,6 @@ namespace crescent::cli {
 
 namespace {
 
-using Json = nlohmann::json;
-
 /// Below it, a lobe is narrower than the error of single precision (budget).
 constexpr double least_roughness = 1e-3;
 

@@ -14,34 +14,34 @@ namespace {
 
 constexpr std::string_view what_is_read = "the metrics.json of a run or of a comparison, or what check --json writes";
 
-std::string page_of_run(const std::string& text, const std::string& file) {
-    const StoredRun run = open_run(text, file);
+std::string page_of_run(const Json& json, const std::string& file) {
+    const StoredRun run = open_run(json, file);
     Progress monitor(Progress::fitting());
     for (const std::string& plate : run.missing)
         monitor.log(fmt::format("{}: missing, so the page is without it", plate));
     return report_html(report_inputs(run.measured));
 }
 
-std::string page_of_check(const std::string& text, const std::string& file) {
-    const StoredResult stored = read_verdict_json(text, file);
+std::string page_of_check(const Json& json, const std::string& file) {
+    const StoredResult stored = result_from_json(json, file);
     return verdict_html(stored.result, stored.source);
 }
 
-std::string page_of_comparison(const std::string& text, const std::string& file) {
-    return compare_html(parse_json(text), read_plates(std::filesystem::path(file).parent_path() / "plates"));
+std::string page_of_comparison(const Json& json, const std::string& file) {
+    return compare_html(json, read_plates(std::filesystem::path(file).parent_path() / "plates"));
 }
 
 /// A stored result by the begin of its format, with the page that it is made into.
 struct Kind {
     std::string_view format;
-    std::string (*page)(const std::string& text, const std::string& file);
+    std::string (*page)(const Json& json, const std::string& file);
     const char* name;  // of the page beside the file; null: the file's own
 };
 constexpr std::array stored_kinds = {Kind{"crescent metrics ", page_of_run, "report.html"},
     Kind{"crescent comparison ", page_of_comparison, "report.html"}, Kind{"crescent check ", page_of_check, nullptr}};
 
-const Kind& kind_of(const std::string& text, const std::string& file) {
-    const auto format = parse_json(text).at("format").get<std::string>();
+const Kind& kind_of(const Json& json, const std::string& file) {
+    const auto format = json.at("format").get<std::string>();
     for (const Kind& kind : stored_kinds)
         if (format.starts_with(kind.format)) return kind;
     throw InputError({file, 0, 0}, fmt::format("expected {}, not the format '{}'", what_is_read, format));
@@ -50,15 +50,16 @@ const Kind& kind_of(const std::string& text, const std::string& file) {
 }  // namespace
 
 int report(const ReportFlags& flags) {
-    const std::string text = read_input(flags.file, most_bytes_of_metrics, fmt::format("{},", what_is_read));
+    const Json json = parse_json(
+        read_input(flags.file, most_bytes_of_metrics, fmt::format("{},", what_is_read)), flags.file, what_is_read);
     try {
-        const Kind& kind = kind_of(text, flags.file);
+        const Kind& kind = kind_of(json, flags.file);
         std::filesystem::path out = flags.out;
         if (flags.out.empty()) {
             out = std::filesystem::path(flags.file).replace_extension(".html");
             if (kind.name) out.replace_filename(kind.name);
         }
-        write_whole(out.string(), kind.page(text, flags.file));
+        write_whole(out.string(), kind.page(json, flags.file));
         print(out.string() + "\n");
     } catch (const Json::exception& error) {
         throw InputError({flags.file, 0, 0}, fmt::format("expected {}: {}", what_is_read, error.what()));

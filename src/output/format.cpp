@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <fmt/format.h>
 
+#include "base/errors.h"
 #include "base/text.h"
 #include "math/functions.h"
 
@@ -160,6 +161,14 @@ Json parse_json(const std::string& text) {
         if (depth > deepest) throw Json::other_error::create(501, "values that are nested too deep", &value);
         return true;
     });
+}
+
+Json parse_json(const std::string& text, const std::string& name, std::string_view what) {
+    try {
+        return parse_json(text);
+    } catch (const Json::exception& error) {
+        throw InputError({name, 0, 0}, fmt::format("expected {}: {}", what, error.what()));
+    }
 }
 
 std::string text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }

@@ -82,6 +82,8 @@ Json separated(std::vector<Json> objects);
 /// Parses at most 64 levels of arrays and objects, since what reads or compares them is recursive. Throws
 /// Json::exception.
 Json parse_json(const std::string& text);
+/// The same of a file. Throws InputError with its `name`: "expected {what}: ...".
+Json parse_json(const std::string& text, const std::string& name, std::string_view what);
 
 /// Indents by two blanks and ends with a newline; invalid UTF-8 in a name becomes U+FFFD.
 std::string text(const Json& json);

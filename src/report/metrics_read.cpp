@@ -167,8 +167,12 @@ MetricsFile file_of(const Json& json, const std::string& name) {
 }  // namespace
 
 MetricsFile read_metrics(const std::string& text, const std::string& name) {
+    return metrics_from_json(parse_json(text, name, "the metrics.json of a run"), name);
+}
+
+MetricsFile metrics_from_json(const Json& json, const std::string& name) {
     try {
-        return file_of(parse_json(text), name);
+        return file_of(json, name);
     } catch (const Json::exception& error) {
         throw InputError({name, 0, 0}, fmt::format("expected the metrics.json of a run: {}", error.what()));
     } catch (const std::out_of_range&) {

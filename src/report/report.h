@@ -78,6 +78,8 @@ struct MetricsFile {
 inline constexpr std::size_t most_bytes_of_metrics = std::size_t{2} << 30;  // a run of 4,096 seeds has some 500 MB
 /// Throws InputError, with `name` for the file, if the text is something else or was changed.
 MetricsFile read_metrics(const std::string& text, const std::string& name);
+/// The same of a text that is parsed.
+MetricsFile metrics_from_json(const Json& json, const std::string& name);
 /// Throws InputError if a run is none of the experiment's, or has other regions.
 void check_runs(const MetricsFile& file, const std::string& name);
 std::string metrics_csv(const ReportInputs& in);

@@ -30,9 +30,10 @@ struct Part {
 };
 
 Part part_of(const std::string& text, const std::string& path) {
-    MetricsFile file = read_metrics(text, path);
+    Json json = parse_json(text, path, "the metrics.json of a run");
+    MetricsFile file = metrics_from_json(json, path);
     check_runs(file, path);
-    return {path, Json::parse(text), std::move(file)};
+    return {path, std::move(json), std::move(file)};
 }
 
 Part read_part(const std::string& given) {

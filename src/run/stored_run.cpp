@@ -31,8 +31,8 @@ Plates read_plates(const std::filesystem::path& folder) {
     return out;
 }
 
-StoredRun open_run(const std::string& text, const std::string& path) {
-    MetricsFile file = read_metrics(text, path);
+StoredRun open_run(const Json& json, const std::string& path) {
+    MetricsFile file = metrics_from_json(json, path);
     check_runs(file, path);
     StoredRun out;
     Measured& m = out.measured;

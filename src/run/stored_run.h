@@ -18,7 +18,7 @@ struct StoredRun {
 /// The PNG files of a folder by their names without .png. Throws InputError if one is something else.
 Plates read_plates(const std::filesystem::path& folder);
 
-/// `text`: the content of `path`, a metrics.json. Throws InputError if it is something else, or a plate is no PNG.
-StoredRun open_run(const std::string& text, const std::string& path);
+/// `json`: the content of `path`, a metrics.json. Throws InputError if it is something else, or a plate is no PNG.
+StoredRun open_run(const Json& json, const std::string& path);
 
 }  // namespace crescent

@@ -14,6 +14,7 @@ namespace crescent {
 namespace {
 
 constexpr const char* format_name = "crescent check 3";
+constexpr const char* what_is_read = "what crescent check --json writes";
 
 // ---- Pictures: each visits its members with their keys.
 
@@ -64,8 +65,8 @@ template <PictureOf<WeightHistogram> Picture> void visit_members(Picture& w, con
 
 /// Whether the lists of a picture that was read have the lengths that its page expects.
 bool is_whole(const BinHistogram& m) {
-    constexpr int most = 4096;
-    if (m.rings < 1 || m.sectors < 1 || m.rings > most || m.sectors > most) return false;
+    constexpr int largest_side = 4096;
+    if (m.rings < 1 || m.sectors < 1 || m.rings > largest_side || m.sectors > largest_side) return false;
     const std::size_t bins = static_cast<std::size_t>(m.rings) * static_cast<std::size_t>(m.sectors);
     const auto fits = [&](const std::vector<double>& list) { return list.empty() || list.size() == bins; };
     return m.observed.size() == bins && fits(m.expected) && fits(m.sd);
@@ -246,10 +247,14 @@ std::string verdict_json(const CheckResult& result, const ResultSource& source) 
 }
 
 StoredResult read_verdict_json(const std::string& text, const std::string& name) {
+    return result_from_json(parse_json(text, name, what_is_read), name);
+}
+
+StoredResult result_from_json(const Json& json, const std::string& name) {
     try {
-        return stored_result(parse_json(text));
+        return stored_result(json);
     } catch (const Json::exception& error) {
-        throw InputError({name, 0, 0}, fmt::format("expected what crescent check --json writes: {}", error.what()));
+        throw InputError({name, 0, 0}, fmt::format("expected {}: {}", what_is_read, error.what()));
     }
 }
 

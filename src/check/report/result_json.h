@@ -22,5 +22,7 @@ struct StoredResult {
 };
 /// Throws InputError, with `name` for the file, if the text is something else.
 StoredResult read_verdict_json(const std::string& text, const std::string& name);
+/// The same of a text that is parsed.
+StoredResult result_from_json(const nlohmann::ordered_json& json, const std::string& name);
 
 }  // namespace crescent
