@@ -60,10 +60,10 @@ NoiseResult compare_noise(const ComparePlan& plan, const RenderStats& all, std::
 /// Ranks the arms by variance at equal time or at equal samples, in each region.
 std::vector<Ranking> rank(const CompareResult& result);
 
-/// The metric of a ladder in a region and its name: the RMSE; without a reference, the standard deviation. Both fall as
-/// N^-0.5 with independent samples.
-MetricValue ladder_metric(const RegionResult& region);
-const char* ladder_metric_name(const RegionResult& region);
+/// The metric of a ladder, of those of one arm in a region, and its name: the RMSE; without a reference, the standard
+/// deviation. Both fall as N^-0.5 with independent samples.
+MetricValue ladder_metric(const MetricValue& rmse, const MetricValue& var);
+const char* ladder_metric_name(const MetricValue& rmse);
 /// Finds arms that are one sampler at several samples per pixel, by their names: "path-16" at 16, "path-64" at 64.
 std::vector<SppLadder> ladders_of(const CompareResult& result);
 

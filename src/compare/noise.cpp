@@ -289,19 +289,16 @@ MetricValue slope_of(const CompareResult& result, const SppLadder& ladder, std::
 
 }  // namespace
 
-MetricValue ladder_metric(const RegionResult& region) {
-    const MetricValue& rmse = region.metric("rmse");
+MetricValue ladder_metric(const MetricValue& rmse, const MetricValue& var) {
     if (rmse.value) return rmse;
-    MetricValue out = region.metric("var");
+    MetricValue out = var;
     const auto root = [](double v) { return std::sqrt(std::max(0.0, v)); };
     if (out.value) out.value = root(*out.value);
     if (out.interval) out.interval = {root(out.interval->first), root(out.interval->second)};
     return out;
 }
 
-const char* ladder_metric_name(const RegionResult& region) {
-    return region.metric("rmse").value ? "RMSE" : "standard deviation";
-}
+const char* ladder_metric_name(const MetricValue& rmse) { return rmse.value ? "RMSE" : "standard deviation"; }
 
 std::vector<SppLadder> ladders_of(const CompareResult& result) {
     std::vector<SppLadder> out;

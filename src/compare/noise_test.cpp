@@ -148,7 +148,8 @@ TEST(SppLadders, WithoutAReferenceAreOfTheStandardDeviation) {
     for (const auto& [spp, var] : {std::pair(16, 4.0), {64, 1.0}})
         result.arms.push_back(measured("path" + std::to_string(spp), "var", var, 1.21, spp));
     EXPECT_NEAR(*ladders_of(result).at(0).slopes[0].second.value, -0.5, 1e-12);
-    const MetricValue deviation = ladder_metric(result.arms[0].regions[0]);
+    const RegionResult& region = result.arms[0].regions[0];
+    const MetricValue deviation = ladder_metric(region.metric("rmse"), region.metric("var"));
     EXPECT_DOUBLE_EQ(*deviation.value, 2);
     EXPECT_DOUBLE_EQ(deviation.interval->second, 2.2);
 }

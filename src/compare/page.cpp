@@ -16,26 +16,19 @@ namespace {
 
 // ---- Metrics with their intervals.
 
-/// A metric's value with its interval, as compare_result_json() writes them.
-struct Metric {
-    std::optional<double> value;
-    std::optional<std::pair<double, double>> interval;
-    std::string why;
-};
-
-Metric metric_of(const Json& json) {
-    Metric out{read_optional(json.at("value")), {}, json.value("why", "")};
+MetricValue metric_of(const Json& json) {
+    MetricValue out{read_optional(json.at("value")), {}, json.value("why", "")};
     if (const Json& ends = json.at("interval"); !ends.is_null())
         out.interval = {read_number(ends.at(0)), read_number(ends.at(1))};
     return out;
 }
 
-Json interval_of(const Metric& m) {
+Json interval_of(const MetricValue& m) {
     if (!m.interval) return false;
     return {{"low", with_minus(figures(m.interval->first, 3))}, {"high", with_minus(figures(m.interval->second, 3))}};
 }
 
-Json cell_of(const Metric& m) {
+Json cell_of(const MetricValue& m) {
     return {{"value", m.value ? with_minus(figures(*m.value)) : ""}, {"why", m.why},
         {"interval", m.value ? interval_of(m) : Json(false)},
         {"is_heavy", m.value && !m.interval && m.why == heavy_tail}};
@@ -91,6 +84,7 @@ Json region_of(const std::string& region, const Json& all, std::vector<Json>& no
 std::vector<std::string> region_names(const Json& result) {
     std::vector<std::string> out;
     for (const auto& [name, region] : result.at("arms").at(0).at("regions").items()) out.push_back(name);
+    if (out.empty()) throw Json::other_error::create(501, "expected a region", &result);
     return out;
 }
 
@@ -138,9 +132,9 @@ Json rows_of(const Json& pair) {
 }
 
 /// The number of places that differ, by the quantity that differs the most in each; false if none does.
-Json most_in(const Json& by) {
+Json most_in(const Json& counts) {
     std::vector<Json> out;
-    for (const auto& [quantity, count] : by.items())
+    for (const auto& [quantity, count] : counts.items())
         if (count.get<std::uint64_t>()) out.push_back({{"quantity", quantity}, {"count", count}});
     return out.empty() ? Json(false) : Json{{"quantities", separated(std::move(out))}};
 }
@@ -268,23 +262,11 @@ Json spectra_of(const Json& result) {
 
 // ---- Ladders, assertions, files.
 
-/// The metric of a ladder: the RMSE; without a reference, the standard deviation.
-Metric ladder_metric_in(const Json& region) {
-    const Json& metrics = region.at("metrics");
-    Metric out = metric_of(metrics.at("rmse"));
-    if (out.value) return out;
-    out = metric_of(metrics.at("var"));
-    const auto root = [](double v) { return std::sqrt(std::max(0.0, v)); };
-    if (out.value) out.value = root(*out.value);
-    if (out.interval) out.interval = {root(out.interval->first), root(out.interval->second)};
-    return out;
-}
-
 /// The points of one ladder in one region.
 struct LadderLine {
     std::string name;
     std::vector<double> spp;
-    std::vector<Metric> metrics;
+    std::vector<MetricValue> metrics;
 };
 
 std::vector<LadderLine> ladder_lines(const Json& result, const std::string& region) {
@@ -297,7 +279,8 @@ std::vector<LadderLine> ladder_lines(const Json& result, const std::string& regi
                 result.at("arms"), [&](const Json& each) { return each.at("arm") == ladder.at("arms").at(k); });
             if (arm == result.at("arms").end()) continue;
             line.spp.push_back(read_number(ladder.at("spp").at(k)));
-            line.metrics.push_back(ladder_metric_in(arm->at("regions").at(region)));
+            const Json& metrics = arm->at("regions").at(region).at("metrics");
+            line.metrics.push_back(ladder_metric(metric_of(metrics.at("rmse")), metric_of(metrics.at("var"))));
         }
     }
     return out;
@@ -305,13 +288,12 @@ std::vector<LadderLine> ladder_lines(const Json& result, const std::string& regi
 
 Json ladder_chart(const Json& result, const std::string& region) {
     const std::vector<LadderLine> lines = ladder_lines(result, region);
-    const bool referred =
-        metric_of(result.at("arms").at(0).at("regions").at(region).at("metrics").at("rmse")).value.has_value();
-    const char* what = referred ? "RMSE" : "standard deviation";
+    const Json& metrics = result.at("arms").at(0).at("regions").at(region).at("metrics");
+    const char* what = ladder_metric_name(metric_of(metrics.at("rmse")));
     std::vector<double> xs, ys;
     for (const LadderLine& line : lines)
         for (std::size_t k = 0; k < line.spp.size(); ++k) {
-            const Metric& m = line.metrics[k];
+            const MetricValue& m = line.metrics[k];
             xs.push_back(line.spp[k]);
             if (m.value) ys.push_back(*m.value);
             if (m.interval) ys.push_back(m.interval->first), ys.push_back(m.interval->second);
@@ -322,14 +304,14 @@ Json ladder_chart(const Json& result, const std::string& region) {
         const std::string colour = fmt::format("c{}", l % 6);
         std::vector<Point> points;
         for (std::size_t k = 0; k < lines[l].spp.size(); ++k) {
-            const Metric& m = lines[l].metrics[k];
+            const MetricValue& m = lines[l].metrics[k];
             if (!m.value) continue;
             points.push_back({lines[l].spp[k], *m.value});
             if (m.interval) chart.bar(lines[l].spp[k], m.interval->first, m.interval->second, colour);
         }
         if (points.empty()) continue;
         chart.line(points, colour), chart.dots(points, colour), chart.name(points.back(), lines[l].name, colour);
-        const Metric slope = metric_of(result.at("ladders").at(l).at("slopes").at(region));
+        const MetricValue slope = metric_of(result.at("ladders").at(l).at("slopes").at(region));
         if (slope.value)
             slopes.push_back({{"arm", lines[l].name}, {"slope", with_minus(figures(*slope.value, 3))},
                 {"interval", interval_of(slope)}});

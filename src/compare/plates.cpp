@@ -262,10 +262,11 @@ LadderCurve curve_of(const CompareResult& result, std::size_t ladder, std::size_
     LadderCurve out;
     out.name = escaped(l.name), out.ink = series[ladder % series_count];
     for (const std::size_t a : l.arms) {
-        const MetricValue sample_count = ladder_metric(result.arms[a].regions[region]);
-        out.n.push_back(*result.arms[a].spp), out.value.push_back(sample_count.value.value_or(nan));
-        out.interval.push_back(sample_count.interval.value_or(std::pair(nan, nan)));
-        out.heavy |= result.arms[a].regions[region].heavy();
+        const RegionResult& measured = result.arms[a].regions[region];
+        const MetricValue metric = ladder_metric(measured.metric("rmse"), measured.metric("var"));
+        out.n.push_back(*result.arms[a].spp), out.value.push_back(metric.value.value_or(nan));
+        out.interval.push_back(metric.interval.value_or(std::pair(nan, nan)));
+        out.heavy |= measured.heavy();
     }
     const MetricValue& slope = l.slopes[region].second;
     out.slope = slope.value.value_or(nan);
@@ -281,7 +282,7 @@ std::vector<std::size_t> columns_of(const CompareResult& result) {
 }
 
 void draw_plate(Canvas& c, const CompareResult& result) {
-    const char* what = ladder_metric_name(result.arms[0].regions[0]);
+    const char* what = ladder_metric_name(result.arms[0].regions[0].metric("rmse"));
     header(c, true, fmt::format("{} of one render over its samples a pixel", what));
     const std::vector<std::size_t> columns = columns_of(result);
     const std::size_t shown = std::min(most_curves, result.ladders.size());
