@@ -100,14 +100,14 @@ void read_variable(TextHeader& in, std::string_view line, const ArePrimaries& ar
         if (format == "32-bit_rle_xyze") in.fail("expected FORMAT=32-bit_rle_rgbe, found XYZE, which is not read");
         if (format != "32-bit_rle_rgbe") in.fail("expected FORMAT=32-bit_rle_rgbe");
     } else if (key == "EXPOSURE") {
-        const double by = numbers_of<1>(in, value, "EXPOSURE= and a number above 0")[0];
-        if (!(by > 0)) in.fail("expected EXPOSURE= and a number above 0");
-        for (double& unit : out.unit) unit /= by;
+        const double exposure = numbers_of<1>(in, value, "EXPOSURE= and a number above 0")[0];
+        if (!(exposure > 0)) in.fail("expected EXPOSURE= and a number above 0");
+        for (double& unit : out.unit) unit /= exposure;
     } else if (key == "COLORCORR") {
-        const auto by = numbers_of<3>(in, value, "COLORCORR= and three numbers above 0");
+        const auto factors = numbers_of<3>(in, value, "COLORCORR= and three numbers above 0");
         for (std::size_t c = 0; c < 3; ++c) {
-            if (!(by[c] > 0)) in.fail("expected COLORCORR= and three numbers above 0");
-            out.unit[c] /= by[c];
+            if (!(factors[c] > 0)) in.fail("expected COLORCORR= and three numbers above 0");
+            out.unit[c] /= factors[c];
         }
     } else if (key == "PRIMARIES") {
         const auto p = numbers_of<8>(in, value, "PRIMARIES= and eight numbers");
@@ -124,15 +124,14 @@ HdrHeader hdr_header(const OpenFile& file, const ArePrimaries& are_primaries) {
     for (std::string_view line = in.line(); !split_words(line).empty(); line = in.line())
         read_variable(in, line, are_primaries, out);
     const std::vector<std::string_view> size = split_words(in.line());
-    int width = 0, height = 0;
-    const bool known = size.size() == 4 && size[0] == "-Y" && size[2] == "+X" && parse_number(size[1], height) &&
-        parse_number(size[3], width);
+    const bool known = size.size() == 4 && size[0] == "-Y" && size[2] == "+X" && parse_number(size[1], out.height) &&
+        parse_number(size[3], out.width);
     if (!known) in.fail("expected a resolution with rows from the top, such as '-Y 540 +X 960'");
-    in.check_size(width, height);
+    in.check_size(out.width, out.height);
     for (const double unit : out.unit)
         if (!(unit > 0 && std::isfinite(unit))) in.fail("expected an EXPOSURE and a COLORCORR that a float can hold");
-    file.expect_bytes(in.end(), std::uint64_t{4} * static_cast<std::uint64_t>(height),
-        fmt::format("the header promises {} scanlines", height));
+    file.expect_bytes(in.end(), std::uint64_t{4} * static_cast<std::uint64_t>(out.height),
+        fmt::format("the header promises {} scanlines", out.height));
     return out;
 }
 

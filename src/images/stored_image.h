@@ -41,6 +41,7 @@ StoredImage decoded(const OpenFile& file);
 
 /// What the header of Radiance HDR states besides the pixels.
 struct HdrHeader {
+    int width = 0, height = 0;
     Rgb unit{1, 1, 1};                               // factor of a stored value
     std::optional<std::array<double, 8>> primaries;  // x and y of red, green, blue and white
 };

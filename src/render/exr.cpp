@@ -240,9 +240,9 @@ std::shared_ptr<const RgbImage> read_hdr(const std::string& path, WhyNot why_not
     const HdrHeader header = hdr_header(file, [](const std::array<double, 8>&) { return true; });
     if (header.primaries && !are_near_rec709(*header.primaries))
         file.fail("expected colours in Rec.709, found other PRIMARIES in the header");
+    if (const std::string why = why_not(header.width, header.height); !why.empty()) file.fail(why);
     const StoredImage stored = decoded(file);
     const ImageHead& head = stored.head;
-    if (const std::string why = why_not(head.width, head.height); !why.empty()) throw InputError({path, 0, 0}, why);
     auto out = std::make_shared<RgbImage>();
     out->width = static_cast<int>(head.width), out->height = static_cast<int>(head.height);
     out->rgb.resize(3 * out->texels());
