@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -184,6 +185,10 @@ def page(
         inner = sheet.width - 2 * _MARGIN_MM
         y = _MARGIN_MM
         charts = [name for name in show if name in ("ladder", "bars")]
+        charts_at = partial(
+            _charts, sheet, r=r, metric=metric, region=region, s=s, order=order, compared=compared, labels=labels,
+            colours=colours, log=log, n=n, budget=budget,
+        )  # fmt: skip
         beside = columns == 2 and bool(charts)
         if "picture" in show:
             w = inner * (0.44 if beside else 1.0)
@@ -194,24 +199,7 @@ def page(
                 _mark(ax, box, height, k, chr(ord("a") + k) if len(boxes) > 1 else "")
         if beside:
             left = _MARGIN_MM + (inner * 0.44 if "picture" in show else 0)
-            _charts(
-                sheet,
-                left,
-                y,
-                _MARGIN_MM + inner - left,
-                charts,
-                r,
-                metric,
-                region,
-                s,
-                order,
-                compared,
-                labels,
-                colours,
-                log,
-                n,
-                budget,
-            )
+            charts_at(left, y, _MARGIN_MM + inner - left, charts)
         y = sheet.height + 1.6
         if "grid" in show:
             _grid(
@@ -220,24 +208,7 @@ def page(
             y = sheet.height + 1.6
         if charts and not beside:
             for name in charts:
-                _charts(
-                    sheet,
-                    _MARGIN_MM,
-                    y,
-                    inner,
-                    [name],
-                    r,
-                    metric,
-                    region,
-                    s,
-                    order,
-                    compared,
-                    labels,
-                    colours,
-                    log,
-                    n,
-                    budget,
-                )
+                charts_at(_MARGIN_MM, y, inner, [name])
                 y = sheet.height + 1.6
         return sheet.finished()
 
@@ -301,9 +272,7 @@ def _grid(
     y = top
     unit = UNITS.get(metric, "")
     caption = NAMES.get(metric, metric) + (f", region {region}" if region else "") + (f" [{unit}]" if unit else "")
-    caption += (
-        f", {compared.where()}" if compared.costs.against == "n" else f", in {compared.costs.text(compared.cost)}"
-    )
+    caption += f", {compared.where()}"
     for first in range(0, len(methods), each):
         band = methods[first : first + each]
         names = []

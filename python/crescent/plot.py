@@ -462,6 +462,21 @@ def _tiles(plane: NDArray[Any], tile: int) -> NDArray[Any]:
     return cut.transpose(0, 2, 1, 3).reshape(height // tile, width // tile, tile * tile)
 
 
+def _noise_map(
+    r: Measured, a: str, b: str, n: int, values: NDArray[Any], limit: float, what: str, ax: Axes | None,
+    labels: Mapping[str, str] | None,
+) -> Axes:  # fmt: skip
+    """Values of tiles from -limit to limit, blue where `b` has less noise, grey where one of the two has no variance.
+    `what`: the label of the scale, with places for the names of `b` and of `a`."""
+    first, second = (_look(r, arm, labels).label for arm in (a, b))
+    with style():
+        ax = _axes(ax)
+        drawn = _picture(ax, values, f"{second} against {first}, N = {n}", cmap="RdBu_r", vmin=-limit, vmax=limit)
+        ax.set_facecolor("#bfbfbf")
+        _scale(ax, drawn, what.format(second, first), "both")
+    return ax
+
+
 def where_noise_moved(
     r: Measured,
     a: str,
@@ -491,13 +506,7 @@ def where_noise_moved(
     limit = (limit or 1.0) if top is None else top
     if significant:
         ratio = np.where(differ(of_b - of_a) | ~np.isfinite(ratio), ratio, 0.0)
-    first, second = (_look(r, arm, labels).label for arm in (a, b))
-    with style():
-        ax = _axes(ax)
-        drawn = _picture(ax, ratio, f"{second} against {first}, N = {n}", cmap="RdBu_r", vmin=-limit, vmax=limit)
-        ax.set_facecolor("#bfbfbf")  # of tiles without variance
-        _scale(ax, drawn, f"log$_2$ variance of {second} / {first}", "both")
-    return ax
+    return _noise_map(r, a, b, n, ratio, limit, "log$_2$ variance of {} / {}", ax, labels)
 
 
 def significance(
@@ -516,13 +525,7 @@ def significance(
     """How significant the difference of two variances is: Student's t of the paired variances of the pixels of each tile,
     blue where `b` has less. Beyond 2 in size a single tile differs at about 5 %."""
     apart = _tiles(_cut((_film(r, b, n, s).var.astype(float) - _film(r, a, n, s).var), box), tile)
-    first, second = (_look(r, arm, labels).label for arm in (a, b))
-    with style():
-        ax = _axes(ax)
-        drawn = _picture(ax, t_of(apart), f"{second} against {first}, N = {n}", cmap="RdBu_r", vmin=-top, vmax=top)
-        ax.set_facecolor("#bfbfbf")  # of tiles without variance
-        _scale(ax, drawn, f"t of the variance of {second} - {first}", "both")
-    return ax
+    return _noise_map(r, a, b, n, t_of(apart), top, "t of the variance of {} - {}", ax, labels)
 
 
 def crops(
