@@ -146,8 +146,8 @@ Model read_by_assimp(const std::filesystem::path& file, const ReadingScope& scop
     std::map<std::string, std::size_t> known;
     for (Material& material : out.materials) {
         if (!scope.whole_scene || material.texture.empty()) continue;
-        const auto [at, is_new] = known.try_emplace(material.texture, out.pictures.size());
-        material.colours = at->second;
+        const auto [picture, is_new] = known.try_emplace(material.texture, out.pictures.size());
+        material.colours = picture->second;
         if (is_new) out.pictures.push_back({material.texture, files->picture(material.texture)});
     }
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) {

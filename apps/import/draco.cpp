@@ -31,8 +31,8 @@ DracoMesh read_draco(std::string_view bytes, const std::map<std::string, std::si
         std::vector<double>& to = out.values[name];
         std::vector<double> row(static_cast<std::size_t>(components));
         for (std::uint32_t k = 0; k < mesh.num_points(); ++k) {
-            const draco::AttributeValueIndex at = attribute->mapped_index(draco::PointIndex(k));
-            if (!attribute->ConvertValue<double>(at, components, row.data()))
+            const draco::AttributeValueIndex index = attribute->mapped_index(draco::PointIndex(k));
+            if (!attribute->ConvertValue<double>(index, components, row.data()))
                 throw ModelError(fmt::format("Draco: expected numbers for {}", name));
             to.insert(to.end(), row.begin(), row.end());
         }

@@ -31,16 +31,16 @@ void select(Model& model, const std::string& name) {
         words.empty() ? "no --select, because none has a name" : words));
 }
 
-void turn_and_scale(Model& model, bool z_is_up, double by) {
-    if (!z_is_up && by == 1) return;
+void turn_and_scale(Model& model, bool z_is_up, double scale) {
+    if (!z_is_up && scale == 1) return;
     Transform to;
     if (z_is_up) to.columns[1] = {0, 0, -1}, to.columns[2] = {0, 1, 0};
-    for (Vec3d& column : to.columns) column = by * column;
+    for (Vec3d& column : to.columns) column = scale * column;
     for (Part& part : model.parts) {
         for (Transform& placement : part.placements) placement = to.then(placement);
         if (!part.placements.empty()) continue;
         for (Vec3d& position : part.positions) position = to.placed(position);
-        for (Vec3f& normal : part.normals) normal = narrow((1 / by) * to.turned(widen(normal)));
+        for (Vec3f& normal : part.normals) normal = narrow((1 / scale) * to.turned(widen(normal)));
     }
     if (!model.camera) return;
     ModelCamera& camera = *model.camera;
@@ -63,8 +63,9 @@ void smooth_part(Part& part, double least_cosine) {
     for (std::size_t t = 0; t < part.triangles.size(); ++t) {
         normals.push_back(unit(cross(place(3 * t + 1) - place(3 * t), place(3 * t + 2) - place(3 * t))));
         for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3d at = place(3 * t + k);
-            const Vec3d a = unit(place(3 * t + (k + 1) % 3) - at), b = unit(place(3 * t + (k + 2) % 3) - at);
+            const Vec3d corner = place(3 * t + k);
+            const Vec3d a = unit(place(3 * t + (k + 1) % 3) - corner);
+            const Vec3d b = unit(place(3 * t + (k + 2) % 3) - corner);
             weighted.push_back(math::acos(std::clamp(dot(a, b), -1.0, 1.0)) * normals.back());
         }
     }

@@ -12,7 +12,7 @@ namespace crescent::importer {
 void select(Model& model, const std::string& name);
 
 /// Turns a model whose z axis is up, and scales it about the origin.
-void turn_and_scale(Model& model, bool z_is_up, double by);
+void turn_and_scale(Model& model, bool z_is_up, double scale);
 
 /// Gives a part without normals those of its surface: at a corner of a triangle, the mean of the normals of the
 /// triangles that have a corner at this place and whose normal is within so many degrees, by their angles there

@@ -32,23 +32,23 @@ std::string element_place(std::string_view list, std::size_t index) { return fmt
     throw ModelError(fmt::format("{}: {}", place, message));
 }
 
-std::optional<std::size_t> whole(const Json& of, const char* key, const std::string& place) {
-    const auto found = of.find(key);
-    if (found == of.end()) return std::nullopt;
+std::optional<std::size_t> whole(const Json& json, const char* key, const std::string& place) {
+    const auto found = json.find(key);
+    if (found == json.end()) return std::nullopt;
     if (!found->is_number_unsigned()) fail(member_place(place, key), "expected a whole number");
     return found->get<std::size_t>();
 }
 
-std::size_t needed(const Json& of, const char* key, const std::string& place) {
-    const std::optional<std::size_t> value = whole(of, key, place);
+std::size_t needed(const Json& json, const char* key, const std::string& place) {
+    const std::optional<std::size_t> value = whole(json, key, place);
     if (!value) fail(place, fmt::format("expected '{}'", key));
     return *value;
 }
 
 template <std::size_t n>
-std::optional<std::array<double, n>> numbers(const Json& of, const char* key, const std::string& place) {
-    const auto found = of.find(key);
-    if (found == of.end()) return std::nullopt;
+std::optional<std::array<double, n>> numbers(const Json& json, const char* key, const std::string& place) {
+    const auto found = json.find(key);
+    if (found == json.end()) return std::nullopt;
     std::array<double, n> out{};
     if (!found->is_array() || found->size() != n) fail(member_place(place, key), fmt::format("expected {} numbers", n));
     for (std::size_t k = 0; k < n; ++k) {
@@ -58,9 +58,9 @@ std::optional<std::array<double, n>> numbers(const Json& of, const char* key, co
     return out;
 }
 
-std::string text(const Json& of, const char* key) {
-    const auto found = of.find(key);
-    return found != of.end() && found->is_string() ? found->get<std::string>() : "";
+std::string text(const Json& json, const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
 /// Replaces %XX by the character with this code (RFC 3986).
@@ -291,10 +291,10 @@ private:
         if (const Json* texture = object(*found, "baseColorTexture"))
             add_colours(*texture, member_place(inner, "baseColorTexture"), to);
         if (const Json* texture = object(*found, "metallicRoughnessTexture")) {
-            const std::string at = member_place(inner, "metallicRoughnessTexture");
-            const UvUse use = uv_use(*texture, at);
+            const std::string texture_place = member_place(inner, "metallicRoughnessTexture");
+            const UvUse use = uv_use(*texture, texture_place);
             if (!to.colours) uv_uses_.back() = use;
-            if (use == uv_uses_.back()) to.surface = picture(*texture, at);
+            if (use == uv_uses_.back()) to.surface = picture(*texture, texture_place);
             else ++dropped_["images of roughness, placed otherwise than the colours"];
         }
     }
@@ -316,17 +316,17 @@ private:
         to.colours = picture(texture, place);
     }
 
-    static const Json* object(const Json& of, const char* key) {
-        const auto found = of.find(key);
-        return found != of.end() && found->is_object() ? &*found : nullptr;
+    static const Json* object(const Json& json, const char* key) {
+        const auto found = json.find(key);
+        return found != json.end() && found->is_object() ? &*found : nullptr;
     }
-    static const Json* extension(const Json& of, const char* name) {
-        const Json* all = object(of, "extensions");
+    static const Json* extension(const Json& json, const char* name) {
+        const Json* all = object(json, "extensions");
         return all ? object(*all, name) : nullptr;
     }
-    static double number(const Json& of, const char* key, double otherwise) {
-        const auto found = of.find(key);
-        return found != of.end() && found->is_number() ? found->get<double>() : otherwise;
+    static double number(const Json& json, const char* key, double otherwise) {
+        const auto found = json.find(key);
+        return found != json.end() && found->is_number() ? found->get<double>() : otherwise;
     }
 
     UvUse uv_use(const Json& texture, const std::string& place) {
@@ -343,12 +343,12 @@ private:
 
     /// The image of a texture; nothing if it has none, or if images are not read.
     const Json* image_of(const Json& from, const std::string& place, std::size_t& index) const {
-        const std::size_t of = needed(from, "index", place);
-        const Json& texture = element("textures", of, member_place(place, "index"));
-        const std::optional<std::size_t> source = whole(texture, "source", element_place("textures", of));
+        const std::size_t texture_index = needed(from, "index", place);
+        const Json& texture = element("textures", texture_index, member_place(place, "index"));
+        const std::optional<std::size_t> source = whole(texture, "source", element_place("textures", texture_index));
         if (!source) return nullptr;
         index = *source;
-        return &element("images", *source, member_place(element_place("textures", of), "source"));
+        return &element("images", *source, member_place(element_place("textures", texture_index), "source"));
     }
     std::string texture(const Json& from, const std::string& place) const {
         std::size_t index = 0;
@@ -364,14 +364,14 @@ private:
         if (!image || !scope_.whole_scene) return std::nullopt;
         const auto [known, is_new] = picture_of_image_.try_emplace(index, model.pictures.size());
         if (!is_new) return known->second;
-        const std::string at = element_place("images", index), uri = text(*image, "uri");
+        const std::string image_place = element_place("images", index), uri = text(*image, "uri");
         Picture out{text(*image, "name"), {}};
-        if (const std::optional<std::size_t> view = whole(*image, "bufferView", at))
-            out.bytes = this->view(*view, 0, member_place(at, "bufferView")).first;
+        if (const std::optional<std::size_t> view = whole(*image, "bufferView", image_place))
+            out.bytes = this->view(*view, 0, member_place(image_place, "bufferView")).first;
         else if (uri.starts_with("data:")) {
             const std::size_t comma = uri.find(";base64,");
             auto bytes = comma == uri.npos ? std::nullopt : base64_decoded(std::string_view(uri).substr(comma + 8));
-            if (!bytes) fail(member_place(at, "uri"), "expected base64");
+            if (!bytes) fail(member_place(image_place, "uri"), "expected base64");
             out.bytes = std::move(*bytes);
         } else if (const std::filesystem::path path = folder_ / percent_decoded(uri); is_inside(folder_, path)) {
             out.name = path.filename().string();
@@ -519,12 +519,12 @@ private:
         return out;
     }
 
-    std::vector<std::size_t> children(const Json& of, const char* key, const std::string& place) const {
+    std::vector<std::size_t> children(const Json& json, const char* key, const std::string& place) const {
         std::vector<std::size_t> out;
-        if (!of.contains(key)) return out;
+        if (!json.contains(key)) return out;
         const std::string list = member_place(place, key);
-        if (!of[key].is_array()) fail(list, "expected an array");
-        for (const Json& one : of[key]) {
+        if (!json[key].is_array()) fail(list, "expected an array");
+        for (const Json& one : json[key]) {
             if (!one.is_number_unsigned()) fail(list, "expected whole numbers");
             out.push_back(one.get<std::size_t>());
         }

@@ -100,7 +100,8 @@ struct LobeDraws {
     std::vector<double> sum, square;
     double drawn = 0;
 };
-LobeDraws draws_of(Source& source, const Place& place, const LobeChooser& by, std::size_t lobe, std::uint32_t count) {
+LobeDraws draws_of(
+    Source& source, const Place& place, const LobeChooser& chooser, std::size_t lobe, std::uint32_t count) {
     LobeDraws out;
     const Plan& plan = *place.at->plan;
     out.sum.resize(plan.tree.leaves().size()), out.square.resize(out.sum.size());
@@ -110,7 +111,7 @@ LobeDraws draws_of(Source& source, const Place& place, const LobeChooser& by, st
         std::vector<PrimarySample> u(std::min(batch_size, count - from));
         for (std::uint32_t i = 0; i < u.size(); ++i) {
             u[i] = numbers_at(key, from + i, source.numbers(), source.resolution());
-            u[i][by.number] = by.lobes[lobe].from + by.lobes[lobe].share() * u[i][by.number];
+            u[i][chooser.number] = chooser.lobes[lobe].from + chooser.lobes[lobe].share() * u[i][chooser.number];
         }
         std::vector<Draw> draws(u.size());
         source.draw(u, draws);
@@ -138,7 +139,7 @@ struct LobeCell {
 };
 
 /// Neighbouring leaves in the order of the tree are joined until a cell has enough draws.
-std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& by, const std::vector<LobeDraws>& all) {
+std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& chooser, const std::vector<LobeDraws>& all) {
     std::vector<LobeCell> out;
     LobeCell cell;
     const auto clear = [&] {
@@ -150,7 +151,7 @@ std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& by, const 
         const Estimate& claim = place.at->integrals.leaves[l].bridge;
         cell.claimed += claim.value, cell.variance += claim.variance;
         for (std::size_t k = 0; k < all.size(); ++k) {
-            const double share = by.lobes[k].share() / all[k].drawn;
+            const double share = chooser.lobes[k].share() / all[k].drawn;
             cell.mean[k] += share * all[k].sum[l], cell.mean_variance[k] += share * share * all[k].square[l];
             cell.draws += 2 * all[k].sum[l];
         }
@@ -221,13 +222,13 @@ bool explains(const Shares& s) {
 }
 
 /// `where`: " at w_o 60 deg", or "".
-std::string lobe_sentence(const LobeChooser& by, const Shares& s, const std::string& where) {
+std::string lobe_sentence(const LobeChooser& chooser, const Shares& s, const std::string& where) {
     std::vector<std::size_t> off;
     std::vector<std::string> drawn, claimed;
     bool known = true;  // whether the probabilities of p are known, each in [0, 1] and all together 1
     double sum = 0, sum_half = 0;
     for (std::size_t k = 0; k < s.x.size(); ++k) {
-        const double share = by.lobes[k].share(), of_p = s.x[k] * share, half = 1.96 * s.errors[k] * share;
+        const double share = chooser.lobes[k].share(), of_p = s.x[k] * share, half = 1.96 * s.errors[k] * share;
         known = known && of_p - half >= 0 && of_p + half <= 1 && half < known_probability;
         sum += of_p, sum_half += half;
         drawn.push_back(fmt::format("{:.3g}", share));
@@ -238,23 +239,23 @@ std::string lobe_sentence(const LobeChooser& by, const Shares& s, const std::str
     for (std::size_t k : off)
         if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], known_share) && 3 * s.errors[k] < left_out)
             return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}{}.",
-                by.number + 1, by.lobes[k].from, by.lobes[k].to, where);
+                chooser.number + 1, chooser.lobes[k].from, chooser.lobes[k].to, where);
     if (off.size() == 1) {
-        const LobeInterval& lobe = by.lobes[off[0]];
+        const LobeInterval& lobe = chooser.lobes[off[0]];
         const double x = s.x[off[0]];
         const bool no_chooser =
             std::fabs(x * lobe.share() - 1) < std::max(3 * s.errors[off[0]] * lobe.share(), known_share);
         return fmt::format(
             "Of the lobes that u{} chooses, the one from {:.4g} to {:.4g} has {:.3g} +- {:.1g} times what "
             "it draws in p{}, the others are right: {}.",
-            by.number + 1, lobe.from, lobe.to, x, 1.96 * s.errors[off[0]], where,
+            chooser.number + 1, lobe.from, lobe.to, x, 1.96 * s.errors[off[0]], where,
             no_chooser ? "the chooser's probability of that one lobe is left out"
                        : "the chooser's probability of that one lobe, or a constant of its own, is off");
     }
     return fmt::format(
         "The lobes that u{} chooses are drawn with {}{}; p has them with {}: the chooser's probability "
         "differs.",
-        by.number + 1, fmt::join(drawn, ", "), where,
+        chooser.number + 1, fmt::join(drawn, ", "), where,
         known ? fmt::format("{}", fmt::join(claimed, ", ")) : "other probabilities");
 }
 
@@ -282,17 +283,18 @@ std::optional<Cause> lobe_cause(std::span<const Place> places) {
         if (place.traits.domain && place.traits.domain->is_discrete()) continue;  // every entry is a lobe of its own
         Source source = place.source();
         const StreamKey key = place.key(13, Purpose::pairs, 2);
-        const std::optional<LobeChooser> by = chooser_of(source, key);
-        if (!by) continue;
+        const std::optional<LobeChooser> chooser = chooser_of(source, key);
+        if (!chooser) continue;
         const std::uint32_t count = source.adapter.serial() ? few_draws_for_lobes : draws_for_lobes;
         std::vector<LobeDraws> draws;
-        for (std::size_t k = 0; k < by->lobes.size(); ++k)
-            draws.push_back(draws_of(source, place, *by, k, count / static_cast<std::uint32_t>(by->lobes.size())));
-        const auto shares = shares_of(cells_of(place, *by, draws), by->lobes.size());
+        for (std::size_t k = 0; k < chooser->lobes.size(); ++k)
+            draws.push_back(
+                draws_of(source, place, *chooser, k, count / static_cast<std::uint32_t>(chooser->lobes.size())));
+        const auto shares = shares_of(cells_of(place, *chooser, draws), chooser->lobes.size());
         if (!shares || !explains(*shares)) continue;
         const auto [least, most] = std::ranges::minmax_element(shares->x);
         if (*most - *least < known_share) continue;  // a constant
-        return Cause{"chooser", 0, 0, lobe_sentence(*by, *shares, place.where())};
+        return Cause{"chooser", 0, 0, lobe_sentence(*chooser, *shares, place.where())};
     }
     return {};
 }
