@@ -143,7 +143,10 @@ std::vector<Ray> rays_of(const Mesh& mesh, int kind, std::size_t count, unsigned
         const Vec3f a = mesh.corner(t, 0), e1 = mesh.corner(t, 1) - a, e2 = mesh.corner(t, 2) - a;
         const Vec3f n = as<float>(normalize(widen(cross(e1, e2))));
         float u = number(random), v = number(random);
-        if (u + v > 1) u = 1 - u, v = 1 - v;
+        if (u + v > 1) {
+            u = 1 - u;
+            v = 1 - v;
+        }
         const Vec3f x = a + u * e1 + v * e2;
         Vec3f d = unit_vector(random);
         if (kind == 0) {
@@ -180,7 +183,10 @@ public:
         rtcReleaseGeometry(geometry);
         rtcCommitScene(scene_);
     }
-    ~Embree() { rtcReleaseScene(scene_), rtcReleaseDevice(device_); }
+    ~Embree() {
+        rtcReleaseScene(scene_);
+        rtcReleaseDevice(device_);
+    }
     Embree(const Embree&) = delete;
     Embree& operator=(const Embree&) = delete;
 
@@ -204,9 +210,14 @@ public:
 private:
     static RTCRay plain(const Ray& r) {
         RTCRay ray{};
-        ray.org_x = r.o.x, ray.org_y = r.o.y, ray.org_z = r.o.z;
-        ray.dir_x = r.d.x, ray.dir_y = r.d.y, ray.dir_z = r.d.z;
-        ray.tfar = r.t_max, ray.mask = 0xffffffff;
+        ray.org_x = r.o.x;
+        ray.org_y = r.o.y;
+        ray.org_z = r.o.z;
+        ray.dir_x = r.d.x;
+        ray.dir_y = r.d.y;
+        ray.dir_z = r.d.z;
+        ray.tfar = r.t_max;
+        ray.mask = 0xffffffff;
         return ray;
     }
     RTCDevice device_;

@@ -204,7 +204,8 @@ std::shared_ptr<const ProgramSampler> program_of(const CheckFlags& flags, const 
 /// An estimator of a number, which has no w_o.
 CheckCase number_case(const std::shared_ptr<const SamplerAdapter>& estimator) {
     CheckCase out;
-    out.arm = estimator->name(), out.adapter = estimator;
+    out.arm = estimator->name();
+    out.adapter = estimator;
     return out;
 }
 
@@ -423,7 +424,8 @@ void log_cost(std::span<const CheckCase> check_cases, const TestSettings& settin
     std::size_t checked = 0;
     bool program = false, light = false;
     for (const CheckCase& t : check_cases) {
-        checked += !t.baseline, program = program || t.adapter->limited();
+        checked += !t.baseline;
+        program = program || t.adapter->limited();
         light = light || t.adapter->traits().wo == Traits::WoDomain::none;
     }
     if (!program || !settings.full) return;
@@ -445,7 +447,10 @@ int describe_draws(const CheckFlags& flags, std::span<const CheckCase> check_cas
         if (t.adapter->traits().domain) throw InputError({"--describe", 0, 0}, "is for samplers of directions");
     check::DescribeSettings settings;
     settings.seed = flags.seed;
-    if (flags.full) settings.draws *= 16, settings.draws_of_limited *= 16;
+    if (flags.full) {
+        settings.draws *= 16;
+        settings.draws_of_limited *= 16;
+    }
     const std::vector<check::Description> all = check::describe(check_cases, settings, monitor);
     monitor.clear();
     std::string text;

@@ -113,9 +113,14 @@ std::string command_of(const CompareFlags& f) {
     const auto all = [&](const char* flag, const std::vector<std::string>& values) {
         for (const std::string& value : values) out += fmt::format(" {} {}", flag, shell_word(value));
     };
-    all("--arm", f.arms), all("--reference", f.reference), all("--region", f.regions), all("--mask", f.masks),
-        all("--layer", f.layers);
-    all("--spp", f.spp), all("--seconds", f.seconds), all("--assert", f.assertions);
+    all("--arm", f.arms);
+    all("--reference", f.reference);
+    all("--region", f.regions);
+    all("--mask", f.masks);
+    all("--layer", f.layers);
+    all("--spp", f.spp);
+    all("--seconds", f.seconds);
+    all("--assert", f.assertions);
     if (f.pair) out += " --pair";
     if (f.crop) out += " --crop";
     const std::pair<const char*, std::string> rest[] = {{"--align", f.align}, {"--expect", f.expect},
@@ -143,7 +148,9 @@ int compare_arms(const CompareFlags& flags, const std::string& out) {
     const ComparePlan plan = plan_of(flags_of(flags), flags.file);
     if (!flags.sarif.empty()) can_write(flags.sarif);
     Provenance provenance;
-    provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(),
+    provenance.version = crescent::version();
+    provenance.commit = commit();
+    provenance.compiler = compiler();
     provenance.command = command_of(flags);
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);

@@ -58,7 +58,8 @@ SuiteResult make_renders_of(const CompareFlags& flags, Suite& suite, Progress& p
     if (!flags.render.empty()) sides.extension = extension_for(suite);
     RenderLimits limits;
     limits.jobs = flags.jobs;
-    limits.layer = suite.options.layer, limits.reading = suite.options.reading();
+    limits.layer = suite.options.layer;
+    limits.reading = suite.options.reading();
     if (!flags.timeout.empty()) limits.timeout = seconds_of("--timeout", flags.timeout);
     UntilOptions options;
     const double budget = seconds_of("--budget", flags.budget.empty() ? "10min" : flags.budget);

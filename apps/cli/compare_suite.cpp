@@ -19,12 +19,15 @@ SuiteFlags suite_flags(const CompareFlags& f) {
             throw InputError({fmt::format("{} {}", flag, folder), 0, 0},
                 "expected a folder, found an address: mount it, and give the folder where it is mounted");
     SuiteFlags out;
-    out.baseline = f.baseline, out.candidate = f.candidate,
+    out.baseline = f.baseline;
+    out.candidate = f.candidate;
     out.baseline_only = f.plan || (f.accept && !f.views.empty()) || !f.render.empty();
     const auto add = [&](const char* key, const std::string& text, bool toml) {
         if (!text.empty()) out.keys.push_back({{"suite", key}, text, toml, fmt::format("--{} {}", key, text)});
     };
-    add("alpha", f.alpha, true), add("exposure", f.exposure, true), add("brightest", f.brightest, true);
+    add("alpha", f.alpha, true);
+    add("exposure", f.exposure, true);
+    add("brightest", f.brightest, true);
     add("store", f.store, false);
     for (const auto& [key, text] : reading_keys(f)) add(key, text, false);
     if (!f.smallest.empty()) {
@@ -124,7 +127,9 @@ Suite suite_for(const CompareFlags& flags) {
 int test_suite(const CompareFlags& flags) {
     Suite suite = suite_for(flags);
     Provenance provenance;
-    provenance.version = crescent::version(), provenance.commit = commit(), provenance.compiler = compiler(),
+    provenance.version = crescent::version();
+    provenance.commit = commit();
+    provenance.compiler = compiler();
     provenance.command = suite_command(flags);
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);

@@ -66,7 +66,11 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
     c.add_option("--store", f->store, "with --accept: renders, or moments (mean and variance of each pixel)")
         ->type_name("renders|moments");
     c.add_option_function<std::string>(
-         "--json", [f](const std::string& path) { f->json = path, f->schema_as_json = true; },
+         "--json",
+         [f](const std::string& path) {
+             f->json = path;
+             f->schema_as_json = true;
+         },
          "of a suite: every number; with --schema: as a JSON Schema")
         ->type_name("[FILE]")
         ->expected(0, 1);

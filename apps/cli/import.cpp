@@ -78,7 +78,9 @@ Imported import_model(const ImportFlags& flags, bool folder) {
     if (!mesh) throw OutputError("cannot create a temporary file for the mesh");
     ProcessPlan plan{.argv = {importer_name, flags.file, std::to_string(flags.memory_mib),
                          fmt::format("{}", std::ceil(flags.timeout)), options_of(flags, folder).dump()}};
-    plan.file = importer(), plan.stdin_file = plan.stderr_file = "/dev/null", plan.shared = ::fileno(mesh.get());
+    plan.file = importer();
+    plan.stdin_file = plan.stderr_file = "/dev/null";
+    plan.shared = ::fileno(mesh.get());
     Process process(plan);
     const auto begin = std::chrono::steady_clock::now();
     const auto left_ms = [&] {

@@ -33,7 +33,8 @@ Rgb albedo(Rgb c) {
 RgbImage shrunk(RgbImage image) {
     while (std::max(image.width, image.height) > widest_texture) {
         RgbImage half;
-        half.width = std::max(image.width / 2, 1), half.height = std::max(image.height / 2, 1);
+        half.width = std::max(image.width / 2, 1);
+        half.height = std::max(image.height / 2, 1);
         half.rgb.resize(3 * half.texels());
         for (int y = 0; y < half.height; ++y)
             for (int x = 0; x < half.width; ++x)
@@ -247,7 +248,8 @@ private:
             const Render render = read_render(
                 file, {}, {.encoding = linear ? ImageEncoding::linear : ImageEncoding::automatic, .channel = {}});
             RgbImage out;
-            out.width = render.width, out.height = render.height;
+            out.width = render.width;
+            out.height = render.height;
             out.rgb.resize(3 * out.texels());
             const std::vector<float>* planes[] = {&render.r, &render.g, &render.b};
             const auto width = static_cast<std::size_t>(out.width), height = static_cast<std::size_t>(out.height);

@@ -276,19 +276,25 @@ private:
         for (const Draw& d : draw(numbers()))
             if (d.pdf > 0 && (!hemisphere_ || d.wi.z > 0)) {
                 const auto [i, j] = part_of(d.wi);
-                drawn[i][j] += 1, draws += 1;
+                drawn[i][j] += 1;
+                draws += 1;
             }
         for (std::size_t k = 0; k < w.size(); ++k) {
             const auto [i, j] = part_of(w[k]);
-            claimed[i][j] += p[k], square[i][j] += p[k] * p[k], all += p[k];
+            claimed[i][j] += p[k];
+            square[i][j] += p[k] * p[k];
+            all += p[k];
         }
         if (!(draws > 0 && all > 0)) return {};
         ShownFault best{.kind = Kind::cell};
         const auto look = [&](std::size_t i0, std::size_t i1, std::size_t j0, std::size_t j1) {
             double s = 0, q = 0, variance = 0;
             for (std::size_t i = i0; i < i1; ++i)
-                for (std::size_t j = j0; j < j1; ++j)
-                    s += drawn[i][j] / draws, q += claimed[i][j] / all, variance += square[i][j] / (all * all);
+                for (std::size_t j = j0; j < j1; ++j) {
+                    s += drawn[i][j] / draws;
+                    q += claimed[i][j] / all;
+                    variance += square[i][j] / (all * all);
+                }
             const double error = std::sqrt(std::max(s, 1 / draws) / draws + variance);
             if (!differ(s, q, error) || std::fabs(s - q) <= best.size) return;
             const auto cosine = [&](std::size_t i) {
@@ -330,7 +336,10 @@ private:
         const std::vector<Vec3d> w = directions();
         std::vector<Pair> there, back;
         for (std::size_t i = 0; i + 1 < w.size(); i += 2)
-            if (w[i].z > 0.05 && w[i + 1].z > 0.05) there.push_back({w[i], w[i + 1]}), back.push_back({w[i + 1], w[i]});
+            if (w[i].z > 0.05 && w[i + 1].z > 0.05) {
+                there.push_back({w[i], w[i + 1]});
+                back.push_back({w[i + 1], w[i]});
+            }
         const std::vector<Vec3d> one = f(there), other = f(back);
         std::optional<ShownFault> best;
         for (std::size_t i = 0; i < there.size(); ++i)
@@ -354,7 +363,8 @@ private:
             if (std::fabs(x - y) < kept_size * best->size * std::max(std::fabs(x), std::fabs(y)) || a.theta >= 90 ||
                 b.theta >= 90 || x == y)
                 continue;
-            best->a = a, best->b = b;
+            best->a = a;
+            best->b = b;
             break;
         }
         return best;
@@ -595,7 +605,8 @@ std::optional<std::string> repro_script(
         for (const Angles& round : rounder(wo)) {
             const auto here = Bench(sampler, reach->hemisphere, round.direction()).find(finding.name);
             if (!here || here->size < kept_size * found->size) continue;
-            wo = round, shown = *here;
+            wo = round;
+            shown = *here;
             break;
         }
         const std::string script = lines_of(shown, *reach, traits.numbers);

@@ -55,10 +55,11 @@ std::string webvtt(const Timeline& timeline, const Part& part) {
 std::string subrip(const Timeline& timeline, const Part& part) {
     std::string text;
     int number = 0;
-    for (const Caption& c : within(timeline, part))
+    for (const Caption& c : within(timeline, part)) {
         text += fmt::format("{}{}\n{} --> {}\n{}\n", number > 0 ? "\n" : "", number + 1, stamp(c.from, ','),
-            stamp(c.to, ','), c.words.plain()),
-            ++number;
+            stamp(c.to, ','), c.words.plain());
+        ++number;
+    }
     return text;
 }
 

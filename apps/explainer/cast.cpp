@@ -78,7 +78,8 @@ Cast cast_of(Experiment& e) {
     c.highlight = e.regions.front().name;
     const auto area = [](const Region& r) { return r.box.width() * r.box.height(); };
     c.surround = std::ranges::max_element(e.regions.begin() + 1, e.regions.end(), {}, area)->name;
-    c.s = e.s(), c.seed = e.seed;
+    c.s = e.s();
+    c.seed = e.seed;
     c.n = std::ranges::find(c.sample_counts, e.n) != c.sample_counts.end()
         ? e.n
         : c.sample_counts[c.sample_counts.size() / 2];

@@ -69,13 +69,15 @@ plates::Colour Data::ink(const std::string& arm) const {
 
 plates::Block photograph_of(const Data& data, const plates::View& view, const Box& box) {
     plates::Fit fit;
-    fit.in_w = fit.out_w = box.width(), fit.in_h = fit.out_h = box.height();
+    fit.in_w = fit.out_w = box.width();
+    fit.in_h = fit.out_h = box.height();
     return plates::photograph_block(view, box, fit, data.experiment.exposure);
 }
 
 Box around(const Data& data, const Box& of, int w, int h) {
     const Image& image = data.experiment.image;
-    w = std::min(w, image.width), h = std::min(h, image.height);
+    w = std::min(w, image.width);
+    h = std::min(h, image.height);
     const int x0 = std::clamp((of.x0 + of.x1 + 1 - w) / 2, 0, image.width - w);
     const int y0 = std::clamp((of.y0 + of.y1 + 1 - h) / 2, 0, image.height - h);
     return {x0, y0, x0 + w - 1, y0 + h - 1};

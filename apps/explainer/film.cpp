@@ -103,8 +103,10 @@ private:
 
     std::vector<std::uint64_t> encode(const Part& part) {
         EncoderInputs in;
-        in.width = options_.height * 16 / 9, in.height = options_.height;
-        in.captions = staging_.path("crescent.srt"), in.mp4 = staging_.path("crescent.mp4");
+        in.width = options_.height * 16 / 9;
+        in.height = options_.height;
+        in.captions = staging_.path("crescent.srt");
+        in.mp4 = staging_.path("crescent.mp4");
         in.chapters = scratch("chapters.txt", chapters(timeline_, part, data_.experiment.title));
         painter_.draw(std::clamp(timeline_.still(0), part.first, part.last - 1));
         const std::vector<unsigned char> png = encode_png(painter_.canvas().picture(), attributes_of(data_));
@@ -162,7 +164,10 @@ std::string make(const Experiment& experiment, const ExplainerOptions& options, 
     if (!pictures) require_ffmpeg(staging.scratch(), monitor);
 
     RunOptions run;
-    run.out = options.out, run.threads = options.threads, run.isa = options.isa, run.command = options.command;
+    run.out = options.out;
+    run.threads = options.threads;
+    run.isa = options.isa;
+    run.command = options.command;
     run.timeout_s = options.timeout_s;
     Data data = collect(experiment, run, monitor);
     const Timeline timeline(shots_of(data));

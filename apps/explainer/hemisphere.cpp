@@ -26,7 +26,10 @@ Hemisphere::Hemisphere(Point centre, double radius, double elevation_deg, Vec3d 
       up_(math::sin(elevation_deg * degree)),
       away_(math::cos(elevation_deg * degree)) {
     const double across = math::hypot(right.x, right.y);
-    if (across > 1e-9) cos_ = right.x / across, sin_ = right.y / across;
+    if (across > 1e-9) {
+        cos_ = right.x / across;
+        sin_ = right.y / across;
+    }
 }
 
 Vec3d Hemisphere::turned(Vec3d w) const { return {cos_ * w.x + sin_ * w.y, cos_ * w.y - sin_ * w.x, w.z}; }

@@ -27,11 +27,21 @@ LogPlot plot_of(const Data& data) {
     for (const std::string& arm : {data.cast.cosine, data.cast.phong}) {
         const Ladder& ladder = ladder_of(data, arm);
         for (const double v : ladder.rmse)
-            if (v > 0) plot.y0 = std::min(plot.y0, v), plot.y1 = std::max(plot.y1, v);
-        plot.x0 = std::min(plot.x0, double(ladder.n.front())), plot.x1 = std::max(plot.x1, double(ladder.n.back()));
+            if (v > 0) {
+                plot.y0 = std::min(plot.y0, v);
+                plot.y1 = std::max(plot.y1, v);
+            }
+        plot.x0 = std::min(plot.x0, double(ladder.n.front()));
+        plot.x1 = std::max(plot.x1, double(ladder.n.back()));
     }
-    if (!(plot.y1 > plot.y0)) plot.y0 = 0.5, plot.y1 = 2;
-    plot.y0 /= 1.4, plot.y1 *= 1.4, plot.x0 /= 1.35, plot.x1 *= 1.35;
+    if (!(plot.y1 > plot.y0)) {
+        plot.y0 = 0.5;
+        plot.y1 = 2;
+    }
+    plot.y0 /= 1.4;
+    plot.y1 *= 1.4;
+    plot.x0 /= 1.35;
+    plot.x1 *= 1.35;
     return plot;
 }
 

@@ -34,7 +34,10 @@ void select(Model& model, const std::string& name) {
 void turn_and_scale(Model& model, bool z_is_up, double scale) {
     if (!z_is_up && scale == 1) return;
     Transform to;
-    if (z_is_up) to.columns[1] = {0, 0, -1}, to.columns[2] = {0, 1, 0};
+    if (z_is_up) {
+        to.columns[1] = {0, 0, -1};
+        to.columns[2] = {0, 1, 0};
+    }
     for (Vec3d& column : to.columns) column = scale * column;
     for (Part& part : model.parts) {
         for (Transform& placement : part.placements) placement = to.then(placement);
@@ -77,7 +80,9 @@ void smooth_part(Part& part, double least_cosine) {
     };
     std::ranges::sort(order, {}, key);
     Part out;  // three corners of each triangle in turn, because each has a normal of its own
-    out.material = part.material, out.names = part.names, out.placements = part.placements;
+    out.material = part.material;
+    out.names = part.names;
+    out.placements = part.placements;
     out.positions.resize(count);
     out.normals.resize(count);
     if (!part.uv.empty()) out.uv.resize(count);

@@ -167,7 +167,10 @@ Found which_is_right(const ordered_json& query) {
         std::string first;
         for (const auto& v : checked.at("cases").at(0).at("verdicts"))
             if (first.empty() && state_of(v) == "wrong") first = message_of(v);
-        if (first.empty()) out.answer = option, ++right;
+        if (first.empty()) {
+            out.answer = option;
+            ++right;
+        }
         out.lines.push_back(
             fmt::format("sampler {}, {}: {}", option, name, first.empty() ? "no verdict is wrong" : first));
     }

@@ -13,7 +13,10 @@ class Disk {
 public:
     explicit Disk(Vec3d mirror) {
         const double length = std::sqrt(mirror.x * mirror.x + mirror.y * mirror.y);
-        if (length > 1e-9) c_ = mirror.x / length, s_ = mirror.y / length;
+        if (length > 1e-9) {
+            c_ = mirror.x / length;
+            s_ = mirror.y / length;
+        }
     }
     /// Returns the point of a direction of the upper half in the unit disk.
     ordered_json place(Vec3d w) const {

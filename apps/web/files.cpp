@@ -73,7 +73,10 @@ CRESCENT_EXPORT(keep_file)()->void {
 }
 
 /// Forgets all files.
-CRESCENT_EXPORT(forget_files)()->void { meshes.clear(), images.clear(); }
+CRESCENT_EXPORT(forget_files)()->void {
+    meshes.clear();
+    images.clear();
+}
 
 /// Returns the text of an experiment for the files that are kept; throws InputError if there is no mesh.
 CRESCENT_EXPORT(experiment_of_files)()->void {

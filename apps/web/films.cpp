@@ -102,9 +102,11 @@ CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
     const auto samples = static_cast<std::uint64_t>(n);
     const bool whole = std::ranges::all_of(s.film.planes(), [&](auto plane) { return plane.size() == 4 * b.pixels(); });
     if (!whole) s.film = Film(b.experiment.image.width, b.experiment.image.height, samples);
-    s.film.n = samples, s.film.invalid = 0;
+    s.film.n = samples;
+    s.film.invalid = 0;
     const SampleCost cost = cost_of_sample(sampler_of(plan));
-    s.film.directions = cost.directions, s.film.evaluations = cost.f;
+    s.film.directions = cost.directions;
+    s.film.evaluations = cost.f;
     s.key = {plan.name, samples, b.scene.s(), b.experiment.seed};
 }
 
@@ -116,7 +118,9 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
     const std::byte* from = scratch<std::byte>().data();
     put_planes(film, box, from);
     const std::byte* rest = from + pixels_of(box) * 4 * film.planes().size();
-    b.shapes.width = film.width, b.shapes.height = film.height, b.shapes.shape.resize(b.pixels(), -1);
+    b.shapes.width = film.width;
+    b.shapes.height = film.height;
+    b.shapes.shape.resize(b.pixels(), -1);
     for (int j = y0; j < y1; ++j)
         for (int i = x0; i < x1; ++i, rest += 4) {
             std::int32_t shape = 0;

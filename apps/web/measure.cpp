@@ -87,7 +87,11 @@ struct Largest {
         const auto at = static_cast<int>(std::ranges::max_element(film.largest) - film.largest.begin());
         const int here_i = part.x0 + at % film.width, here_j = part.y0 + at / film.width;
         const float here = film.largest[static_cast<std::size_t>(at)];
-        if (here > x || (here == x && std::pair(here_j, here_i) < std::pair(j, i))) x = here, i = here_i, j = here_j;
+        if (here > x || (here == x && std::pair(here_j, here_i) < std::pair(j, i))) {
+            x = here;
+            i = here_i;
+            j = here_j;
+        }
     }
     void send(const std::string& sampler, std::uint64_t n) const {
         if (!(x > 0))

@@ -103,9 +103,15 @@ CRESCENT_EXPORT(ladder_chart)()->void {
     const ordered_json query = request();
     std::vector<double> ns, values;
     for (const auto& series : query.at("series"))
-        for (const auto& p : series.at("points")) ns.push_back(p.at(0)), values.push_back(p.at(1));
+        for (const auto& p : series.at("points")) {
+            ns.push_back(p.at(0));
+            values.push_back(p.at(1));
+        }
     for (const auto& series : query.at("series"))
-        for (const auto& b : series.at("band")) values.push_back(b.at(1)), values.push_back(b.at(2));
+        for (const auto& b : series.at("band")) {
+            values.push_back(b.at(1));
+            values.push_back(b.at(2));
+        }
     Axis x = log_axis("N, samples per pixel", ns);
     x.ticks = ns;
     std::ranges::sort(x.ticks);
@@ -123,7 +129,11 @@ CRESCENT_EXPORT(ladder_chart)()->void {
         if (points.empty()) continue;
         const auto arm = series.at("arm").get<std::string>();
         std::vector<double> at, low, high;
-        for (const auto& b : series.at("band")) at.push_back(b.at(0)), low.push_back(b.at(1)), high.push_back(b.at(2));
+        for (const auto& b : series.at("band")) {
+            at.push_back(b.at(0));
+            low.push_back(b.at(1));
+            high.push_back(b.at(2));
+        }
         if (at.size() > 1) chart.band(at, low, high, "band " + class_of(arm));
         const Point first = points.front();
         if (first.y > 0) chart.line({first, {last, first.y * std::sqrt(first.x / last)}}, "dashed " + class_of(arm));

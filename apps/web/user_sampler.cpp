@@ -197,7 +197,8 @@ CRESCENT_EXPORT(user_checked)()->void {
             {"hidden", ordered_json::object()}};
         for (const auto& [fault, size] : worst->hidden) one["hidden"][fault] = json_number(size);
         const auto at = worst->wo.value_or(std::pair(cases[0].theta_deg, cases[0].azimuth_deg));
-        one["theta"] = at.first, one["azimuth"] = at.second;
+        one["theta"] = at.first;
+        one["azimuth"] = at.second;
         out["verdicts"].push_back(std::move(one));
     }
     out["state"] = word(all);

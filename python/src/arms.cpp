@@ -77,7 +77,9 @@ nb::typed<nb::tuple, Out, Out> sample(const ListedArm& arm, const In& wo, const 
             const PrimarySample numbers(u(i, 0), u(i, 1));
             Draw d;
             adapter.sample(0, row(wo, i), {&numbers, 1}, {&d, 1});
-            wi[3 * i] = d.wi.x, wi[3 * i + 1] = d.wi.y, wi[3 * i + 2] = d.wi.z;
+            wi[3 * i] = d.wi.x;
+            wi[3 * i + 1] = d.wi.y;
+            wi[3 * i + 2] = d.wi.z;
             pdf[i] = d.pdf;
         });
     }

@@ -37,7 +37,8 @@ public:
         std::int64_t stride = static_cast<std::int64_t>(rows_ * columns_);
         for (const std::size_t k : of_row_) {
             stride /= static_cast<std::int64_t>(std::max<std::size_t>(1, k));
-            shape.push_back(k), strides.push_back(stride);
+            shape.push_back(k);
+            strides.push_back(stride);
         }
         double* data = data_.release();
         const nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
@@ -162,7 +163,10 @@ void CallableArm::draw(const ExternalBatch& batch, const ExternalDraws& out) con
         const Column pdf = nb::cast<Column>(answer[1]);
         if (wi.shape(0) != rows || wi.shape(1) != 3 || pdf.shape(0) != rows) throw nb::value_error(another_shape);
         const Unlocked free;
-        for (std::size_t i = 0; i < rows; ++i) out.wi[i] = {wi(i, 0), wi(i, 1), wi(i, 2)}, out.pdf[i] = pdf(i);
+        for (std::size_t i = 0; i < rows; ++i) {
+            out.wi[i] = {wi(i, 0), wi(i, 1), wi(i, 2)};
+            out.pdf[i] = pdf(i);
+        }
     });
 }
 

@@ -72,7 +72,10 @@ void CallableSampler::sample(int, Vec3d wo, std::span<const PrimarySample> u, st
                                                  : Vec3d{weight(i, 0), weight(i, 0), weight(i, 0)};
                 d.weight = weight.shape(1) == 3 ? luminance(d.weights) : d.weights.x;
             }
-            if (delta.is_valid() && delta(i) > 0) d.delta = delta(i), d.pdf = 0;
+            if (delta.is_valid() && delta(i) > 0) {
+                d.delta = delta(i);
+                d.pdf = 0;
+            }
             if (!c_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
             if (c_.upper_only && d.wi.z <= 0) {
                 d.pdf = 0;

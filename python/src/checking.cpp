@@ -57,7 +57,8 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     const auto adapter = std::make_shared<CallableSampler>(std::move(c));
     if (!number) return {make_user_cases(adapter, full, grid), adapter};
     CheckCase only;
-    only.arm = adapter->name(), only.adapter = adapter;
+    only.arm = adapter->name();
+    only.adapter = adapter;
     return {{std::move(only)}, adapter};
 }
 
@@ -65,7 +66,10 @@ CheckCases of_experiment(const Experiment& experiment, const std::string& sample
     const CallableArms& callables, const Grid& grid, const std::string& keyword) {
     CheckCases out;
     ExternalSamplers samplers;
-    for (const auto& [name, arm] : samplers_of(callables)) samplers[name] = arm, out.arms.push_back(arm);
+    for (const auto& [name, arm] : samplers_of(callables)) {
+        samplers[name] = arm;
+        out.arms.push_back(arm);
+    }
     const Work here;
     out.all = arm_cases(experiment, sampler, open_external(with_arms_of(experiment, {sampler}), 0, std::move(samplers)),
         {pixels, full, grid, "--" + keyword});
@@ -150,7 +154,10 @@ std::pair<std::string, std::string> described(
     CheckCases& check_cases, std::uint32_t seed, bool full, int threads, const nb::object& progress) {
     check::DescribeSettings settings;
     settings.seed = seed;
-    if (full) settings.draws *= 16, settings.draws_of_limited *= 16;
+    if (full) {
+        settings.draws *= 16;
+        settings.draws_of_limited *= 16;
+    }
     PolledMonitor monitor;
     Raised raised(monitor);
     std::vector<check::Description> all;

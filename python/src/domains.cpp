@@ -41,7 +41,9 @@ std::pair<Made, Made> directions(const DomainChart& chart, const Rows& points, c
         }
         const Vec3d direction = chart.direction(point, {spread.data() + i * spreads, spreads});
         factor[i] = chart.point(direction, image);
-        w[3 * i] = direction.x, w[3 * i + 1] = direction.y, w[3 * i + 2] = direction.z;
+        w[3 * i] = direction.x;
+        w[3 * i + 1] = direction.y;
+        w[3 * i + 2] = direction.z;
     }
     return {owned(std::move(w), n, 3), owned(std::move(factor), n, 0)};
 }

@@ -160,7 +160,8 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
         monitor.check();
         Measured all = collect(
             run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", studies});
-        run.results.clear(), run.prepared.reset();
+        run.results.clear();
+        run.prepared.reset();
         out = result_of(std::move(all));
         complete = true;
     };

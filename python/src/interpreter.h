@@ -70,7 +70,8 @@ Callbacks& callbacks();
 /// Calls callable(arguments...) with the lock held. If Python ends this thread inside the callable, the thread sleeps
 /// instead.
 template <class... Arguments> nb::object call_python(const nb::object& callable, Arguments&&... arguments) {
-    ++callbacks().inside, ++callbacks().entered;
+    ++callbacks().inside;
+    ++callbacks().entered;
     try {
         nb::object out = callable(std::forward<Arguments>(arguments)...);
         --callbacks().inside;

@@ -25,7 +25,8 @@ References references(const Experiment& experiment, int threads, const std::stri
     References out;
     watched(monitor, raised, progress, false, [&] {
         RunPlan what = plan(experiment, {1, 1});
-        what.experiment.arms.clear(), what.experiment.exponent.reset();  // opens no sampler
+        what.experiment.arms.clear();
+        what.experiment.exponent.reset();  // opens no sampler
         Prepared prepared = prepare(what, settled({.threads = threads, .isa = isa}), monitor);
         monitor.check();
         out = {std::move(prepared.quadrature), std::move(prepared.monte_carlo), std::move(prepared.paired)};
@@ -54,7 +55,12 @@ void add_tails(const RunPlan& what, const Scene& scene, const std::string& isa, 
 void leave_out_files(const RunPlan& what, Provenance& provenance) {
     Experiment plain = what.whole;
     for (ArmPlan& arm : plain.arms)
-        if (arm.is_external()) arm.sampler = "uniform", arm.exec.reset(), arm.plugin.reset(), arm.python.reset();
+        if (arm.is_external()) {
+            arm.sampler = "uniform";
+            arm.exec.reset();
+            arm.plugin.reset();
+            arm.python.reset();
+        }
     provenance.experiment_text = canonical_text(plain);
     provenance.experiment_hash = fmt::format("{:016x}", hash(plain));
 }
@@ -77,7 +83,8 @@ RunResult run_part(const Experiment& experiment, int first, int last, const Name
         if (seen.exponent && other(seen.exponent->arm)) seen.exponent.reset();
         const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         Prepared prepared = look(what, engine);
-        prepared.quadrature = given.quadrature, prepared.monte_carlo = given.monte_carlo;
+        prepared.quadrature = given.quadrature;
+        prepared.monte_carlo = given.monte_carlo;
         prepared.paired = given.paired;
         const Scene scene = prepared.scene;
         std::vector<Job> jobs;
@@ -109,7 +116,8 @@ RunResult studies(const Experiment& experiment, int threads, const std::string& 
     watched(monitor, raised, progress, serial, [&] {
         RunPlan what = plan(experiment, {1, 1});
         what.jobs.clear();  // no rows, so no tails of regions and no assertions
-        what.experiment.regions.clear(), what.experiment.assertions.clear();
+        what.experiment.regions.clear();
+        what.experiment.assertions.clear();
         const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         Measured all = collect(what, look(what, engine), {}, engine, monitor, {"crescent sweep", true});
         monitor.check();
@@ -139,8 +147,10 @@ RunResult assemble(
     out.experiment = what.experiment;
     Metrics& metrics = out.metrics;
     MetricsFile once = read_metrics(measured_once, "the studies of the sweep");
-    out.evidence = std::move(once.evidence), metrics.furnaces = std::move(once.metrics.furnaces);
-    metrics.geometry_pixels = once.metrics.geometry_pixels, metrics.shape_pixels = once.metrics.shape_pixels;
+    out.evidence = std::move(once.evidence);
+    metrics.furnaces = std::move(once.metrics.furnaces);
+    metrics.geometry_pixels = once.metrics.geometry_pixels;
+    metrics.shape_pixels = once.metrics.shape_pixels;
     std::map<std::tuple<std::string, std::uint64_t, double, std::uint32_t>, RunMetrics> rows;
     const auto key_of = [](const RunKey& key) { return std::tuple(key.arm, key.n, key.s, key.seed); };
     for (const std::string& text : parts) {

@@ -31,7 +31,8 @@ template <class T, class F>
 void restore_plane(const nb::dict& planes, const char* name, std::vector<T> F::* values, F& film) {
     using Plane = nb::ndarray<const T, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
     const Plane from = nb::cast<Plane>(planes[name]);
-    film.height = static_cast<int>(from.shape(0)), film.width = static_cast<int>(from.shape(1));
+    film.height = static_cast<int>(from.shape(0));
+    film.width = static_cast<int>(from.shape(1));
     (film.*values).assign(from.data(), from.data() + from.size());
 }
 

@@ -63,7 +63,10 @@ std::string nearest(std::string_view word, const std::vector<std::string>& valid
     std::size_t best_distance = std::min(std::max<std::size_t>(2, word.size() / 3) + 1, word.size());
     for (const std::string& candidate : valid) {
         const std::size_t d = edit_distance(word, candidate);
-        if (d < best_distance) best_distance = d, best = candidate;
+        if (d < best_distance) {
+            best_distance = d;
+            best = candidate;
+        }
     }
     return best;
 }

@@ -271,7 +271,8 @@ bool Staging::take_lock() {
     if (file < 0 && errno == ENOENT) return false;
     if (file < 0) fail("cannot write in", shown_, std::strerror(errno));
     struct flock whole{};
-    whole.l_type = F_WRLCK, whole.l_whence = SEEK_SET;
+    whole.l_type = F_WRLCK;
+    whole.l_whence = SEEK_SET;
     const bool taken = fcntl(file, F_SETLK, &whole) == 0 || (errno != EACCES && errno != EAGAIN);
     struct stat now{};
     if (!taken || fstat(file, &now) != 0 || now.st_ino != inode(path)) {
@@ -417,10 +418,13 @@ void Staging::finish() {
         Names ours = names_in(before / list);
         ours.push_back(list);
         clear(before, "", ours, others_lists(out_, list));
-        remove_entry(before / list), remove_entry(before);
+        remove_entry(before / list);
+        remove_entry(before);
     }
-    if (!is_there(fresh_outputs) && !is_there(old)) remove_entry(work_ / "one-by-one"), remove_entry(work_ / "moving");
-    else messages_.push_back(fmt::format("not all of the earlier outputs could be removed: see {}", work_.string()));
+    if (!is_there(fresh_outputs) && !is_there(old)) {
+        remove_entry(work_ / "one-by-one");
+        remove_entry(work_ / "moving");
+    } else messages_.push_back(fmt::format("not all of the earlier outputs could be removed: see {}", work_.string()));
 }
 
 /// Makes new/ the folder OUT by one rename or exchange, else by two; returns false if OUT is unchanged.
@@ -467,9 +471,10 @@ void Staging::clear(const Path& old, const Path& below, const Names& ours, const
     for (const std::string& leaf : entries(old / below)) {
         const fs::path name = below / leaf, from = old / name, to = out_ / name;
         if (name == ours.back()) continue;
-        if (is_folder(from) && (is_folder(to) || any_below(ours, name)))
-            clear(old, name, ours, others), remove_entry(from);
-        else if (contains(ours, name) || (!is_folder(from) && same_file(from, to))) remove_entry(from);
+        if (is_folder(from) && (is_folder(to) || any_below(ours, name))) {
+            clear(old, name, ours, others);
+            remove_entry(from);
+        } else if (contains(ours, name) || (!is_folder(from) && same_file(from, to))) remove_entry(from);
         else if (!is_there(to)) static_cast<void>(make_folders(to.parent_path()) && move_to(from, to));
         else if (contains(others, name)) remove_entry(from);
         else keep_aside(from, name);

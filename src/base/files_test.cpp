@@ -41,7 +41,8 @@ protected:
     fs::path out_ = top_ / "out", before_ = fs::current_path();
     ProgressMonitor monitor_;
     void SetUp() override {
-        fs::remove_all(top_), fs::create_directories(top_);
+        fs::remove_all(top_);
+        fs::create_directories(top_);
         publishing_faults() = {nullptr, way() == Way::two_renames, way() == Way::one_by_one};
     }
     void TearDown() override {
@@ -67,7 +68,8 @@ protected:
     }
     void start_over(const Files& run) {
         fs::current_path(before_);
-        fs::remove_all(out_), fs::remove_all(top_ / ".out.crescent");
+        fs::remove_all(out_);
+        fs::remove_all(top_ / ".out.crescent");
         for (const auto& [name, text] : users) put(out_ / name, text);
         if (way() == Way::current_folder) fs::current_path(out_);
         publish(run);
@@ -265,7 +267,8 @@ TEST_F(Publishing, IsForOneRunAtATimeAndNoChildKeepsTheLock) {
         first.commit(monitor_);
     }
     EXPECT_NO_THROW(publish(new_run)) << "while a child of the first run lives";
-    close(pipe_ends[1]), close(pipe_ends[0]);
+    close(pipe_ends[1]);
+    close(pipe_ends[0]);
     waitpid(child, nullptr, 0);
 }
 
@@ -287,7 +290,8 @@ TEST_F(Publishing, IsForOneProcessAtATime) {
         EXPECT_EQ(::write(pipe_ends[1], "x", 1), 1);
         waitpid(child, &status, 0);
     }
-    close(pipe_ends[0]), close(pipe_ends[1]);
+    close(pipe_ends[0]);
+    close(pipe_ends[1]);
     EXPECT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 0) << "1: the second process got the lock";
 }

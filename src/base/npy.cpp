@@ -105,7 +105,8 @@ NpyHeader read_npy_header(const std::string& path, std::string_view first_bytes)
     if (first_bytes.size() < begin + length)
         fail(fmt::format("byte 9: expected an NPY header of {} bytes, found {}", length, first_bytes.size() - begin));
     const Dictionary in(path, first_bytes.substr(begin, length));
-    read_type(in, out), read_shape(in, out);
+    read_type(in, out);
+    read_shape(in, out);
     out.by_column = in.value("fortran_order").starts_with("True");
     out.end = begin + length;
     return out;

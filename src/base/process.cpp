@@ -54,7 +54,10 @@ void close_one(int& fd) {
 struct Stream {
     int ours = -1, theirs = -1;
     Stream() = default;
-    ~Stream() { close_one(ours), close_one(theirs); }
+    ~Stream() {
+        close_one(ours);
+        close_one(theirs);
+    }
     Stream(const Stream&) = delete;
     Stream& operator=(const Stream&) = delete;
 
@@ -76,7 +79,8 @@ struct Stream {
             if (made) ::fcntl(end, F_SETFD, FD_CLOEXEC);
 #endif
         if (!made) throw OutputError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
-        theirs = ends[they_read ? 0 : 1], ours = ends[they_read ? 1 : 0];
+        theirs = ends[they_read ? 0 : 1];
+        ours = ends[they_read ? 1 : 0];
     }
 };
 
@@ -164,7 +168,9 @@ struct Start {
     for (int* fd : {&start.in, &start.out, &start.err, &start.shared, &start.failure})
         if (*fd >= 0 && *fd < 4) *fd = ::fcntl(*fd, F_DUPFD_CLOEXEC, 4);
     close_at_exec_from(3);
-    ::dup2(start.in, 0), ::dup2(start.out, 1), ::dup2(start.err, 2);
+    ::dup2(start.in, 0);
+    ::dup2(start.out, 1);
+    ::dup2(start.err, 2);
     if (start.shared >= 0) ::dup2(start.shared, 3);
     reset_signals();
     ::execvp(start.file, start.argv);
@@ -237,7 +243,9 @@ Process::Process(const ProcessPlan& plan) : label_(printable(plan.label, 60)), o
         end(0);
         throw OutputError(fmt::format("cannot start {}: {}", printable(file), std::strerror(why)));
     }
-    in_ = std::exchange(in.ours, -1), out_ = std::exchange(out.ours, -1), err_ = std::exchange(err.ours, -1);
+    in_ = std::exchange(in.ours, -1);
+    out_ = std::exchange(out.ours, -1);
+    err_ = std::exchange(err.ours, -1);
     for (const int fd : {in_, out_, err_}) make_nonblocking(fd);
 }
 
@@ -290,7 +298,8 @@ ProcessEnd Process::wait(const ProgressMonitor& monitor) {
 }
 
 void Process::end(int milliseconds) {
-    close_one(in_), close_one(out_);
+    close_one(in_);
+    close_one(out_);
     if (pid_ > 0 && ::getpid() == owner_) {
         if (milliseconds > 0) ended(milliseconds);
         for (const pid_t which : {-pid_, pid_}) ::kill(which, SIGKILL);

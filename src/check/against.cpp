@@ -51,7 +51,8 @@ AgainstPlan plan_of(const TestSettings& settings, bool limited, bool expect_same
     out.budget = budget_of(shared, limited, cases);
     out.own = CheckBudget::limited();
     if (limited && !settings.full) out.own.looks = 1;
-    out.seed = settings.seed, out.expect_same = expect_same;
+    out.seed = settings.seed;
+    out.expect_same = expect_same;
     constexpr double of_each = static_cast<double>(AgainstAnswer::families) + 2 * static_cast<double>(Family::families);
     out.levels = levels_of(settings.alpha, static_cast<double>(cases) * of_each);
     return out;
@@ -68,7 +69,8 @@ public:
         std::vector<Verdict> out;
         for (const char* name : compared_by) {
             Verdict v;
-            v.arm = a_.check_case.arm + " against " + b_.check_case.arm, v.check_case = a_.check_case.text(),
+            v.arm = a_.check_case.arm + " against " + b_.check_case.arm;
+            v.check_case = a_.check_case.text();
             v.name = name;
             out.push_back(std::move(v));
         }
@@ -95,7 +97,8 @@ private:
 
     StreamKey key_of(const Side& side) const {
         StreamKey key;
-        key.seed = plan_.seed, key.place = static_cast<std::uint16_t>(side.stream);
+        key.seed = plan_.seed;
+        key.place = static_cast<std::uint16_t>(side.stream);
         return key;
     }
 
@@ -229,7 +232,9 @@ std::vector<Verdict> failed_verdicts(const CheckCase& a, const CheckCase& b, con
     std::vector<Verdict> out;
     for (const char* name : compared_by) {
         Verdict v;
-        v.arm = a.arm + " against " + b.arm, v.check_case = a.text(), v.name = name;
+        v.arm = a.arm + " against " + b.arm;
+        v.check_case = a.text();
+        v.name = name;
         v.state = slow ? State::inconclusive : State::error;
         v.message = slow                                 ? std::string(fault.what())
             : dynamic_cast<const SamplerExited*>(&fault) ? fmt::format("It could not be evaluated: {}.", fault.what())

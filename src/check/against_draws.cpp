@@ -58,12 +58,14 @@ std::uint32_t draw_pilots(
     for (int t = 0; t < side.check_case.adapter->techniques(); ++t) {
         DrawClassifier classifier(side, t);
         StreamKey key = side.key;
-        key.purpose = Purpose::pilot, key.technique = static_cast<std::uint8_t>(t);
+        key.purpose = Purpose::pilot;
+        key.technique = static_cast<std::uint8_t>(t);
         const std::uint32_t count = classifier.source().available(key, budget.pilot());
         std::vector<PrimarySample> u;
         std::vector<Draw> draws;
         for (std::uint32_t from = 0; from < count; from += batch_size) {
-            u.resize(std::min(batch_size, count - from)), draws.assign(u.size(), {});
+            u.resize(std::min(batch_size, count - from));
+            draws.assign(u.size(), {});
             classifier.source().draw(key, from, u, draws);
             for (const Draw& d : draws)
                 if (classifier.is_drawn(d)) out.push_back(normalize(d.wi));
@@ -106,7 +108,8 @@ CommonTree common_tree(const AgainstSide& a, const AgainstSide& b, const CheckBu
     double all = 0;
     for (const Leaf& leaf : out.tree.leaves()) {
         const double m = leaf.q * out.tree.rect(leaf).area();
-        out.log_q += m * math::log(leaf.q), all += m;
+        out.log_q += m * math::log(leaf.q);
+        all += m;
     }
     out.log_q /= all;
     return out;
@@ -121,10 +124,12 @@ public:
         : common_(common), classifier_(side, technique), source_(classifier_.source()), to_(to) {}
 
     void independent(StreamKey key, std::uint32_t from, std::uint32_t last, std::uint32_t of_f) {
-        key.purpose = Purpose::draws, key.technique = static_cast<std::uint8_t>(source_.technique);
+        key.purpose = Purpose::draws;
+        key.technique = static_cast<std::uint8_t>(source_.technique);
         last = source_.available(key, last);
         for (; from < last; from += batch_size) {
-            u_.resize(std::min(batch_size, last - from)), draws_.assign(u_.size(), {});
+            u_.resize(std::min(batch_size, last - from));
+            draws_.assign(u_.size(), {});
             source_.draw(key, from, u_, draws_);
             to_.independent += static_cast<double>(u_.size());
             for (const Draw& d : draws_) take(d, -1);
@@ -133,12 +138,14 @@ public:
     }
     void scrambled(StreamKey key, std::uint32_t first, std::uint32_t last) {
         if (source_.traits.own_random || !source_.adapter.can_draw()) return;
-        key.purpose = Purpose::scrambles, key.technique = static_cast<std::uint8_t>(source_.technique);
+        key.purpose = Purpose::scrambles;
+        key.technique = static_cast<std::uint8_t>(source_.technique);
         for (int set = 0; set < replicate_sets; ++set) {
             key.part = static_cast<std::uint16_t>(set);
             const ScrambledSobol points(key, source_.numbers(), source_.resolution());
             for (std::uint32_t from = first; from < last; from += batch_size) {
-                u_.resize(std::min(batch_size, last - from)), draws_.assign(u_.size(), {});
+                u_.resize(std::min(batch_size, last - from));
+                draws_.assign(u_.size(), {});
                 points.points(from, u_);
                 source_.draw(u_, draws_);
                 for (const Draw& d : draws_) take(d, set);
@@ -186,7 +193,8 @@ private:
         for (std::size_t i = 0; i < draws_.size(); ++i) {
             const Draw& d = draws_[i];
             if (!classifier_.is_drawn(d)) continue;
-            at.push_back(i), w.push_back(d.wi);
+            at.push_back(i);
+            w.push_back(d.wi);
             to_.has_weights = to_.has_weights && (d.weight || (source_.has_density() && (source_.has_f() || d.f)));
         }
         std::vector<Vec3d> f(source_.has_f() ? w.size() : 0);
@@ -205,7 +213,8 @@ void draw_on(const AgainstSide& side, const CommonTree& common, const Look& to, 
     const auto techniques = static_cast<std::uint32_t>(side.check_case.adapter->techniques());
     const auto before = static_cast<std::uint32_t>(d.independent) / techniques,
                set_before = static_cast<std::uint32_t>(d.scrambled) / replicate_sets / techniques;
-    d.leaves.resize(common.tree.leaves().size()), d.node_by_set.resize(common.tree.rows());
+    d.leaves.resize(common.tree.leaves().size());
+    d.node_by_set.resize(common.tree.rows());
     d.kinds.resize(kinds_before_deltas + common.delta_directions.size());
     for (std::uint32_t t = 0; t < techniques; ++t) {
         AgainstTechnique one(side, common, static_cast<int>(t), d);
@@ -283,7 +292,10 @@ void test_kinds(const AgainstDraws& a, const AgainstDraws& b, const std::functio
 void test_sums_against(const CommonTree& g, const AgainstDraws& a, const AgainstDraws& b,
     const std::function<void(const AgainstAnswer&)>& visit) {
     double low = 1e300, high = -1e300;  // of ln q
-    for (const Leaf& leaf : g.tree.leaves()) low = std::min(low, leaf.q), high = std::max(high, leaf.q);
+    for (const Leaf& leaf : g.tree.leaves()) {
+        low = std::min(low, leaf.q);
+        high = std::max(high, leaf.q);
+    }
     const double ranges[against_sums] = {math::log(high / low), 2, 2, 2};
     for (int q = 0; q < against_sums; ++q) {
         const auto at = static_cast<std::size_t>(q);

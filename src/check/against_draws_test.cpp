@@ -25,7 +25,8 @@ struct Two {
     std::map<AgainstAnswer::Family, double> p() const {
         std::map<AgainstAnswer::Family, double> least, members;
         test_against(*common, of_first, of_second, [&](const AgainstAnswer& a) {
-            least.try_emplace(a.family, 1), ++members[a.family];
+            least.try_emplace(a.family, 1);
+            ++members[a.family];
             least[a.family] = std::min(least[a.family], a.p);
         });
         for (auto& [family, p] : least) p = std::min(1.0, p * members[family]);

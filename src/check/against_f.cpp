@@ -41,7 +41,10 @@ SharedF f_of_both(const AgainstCase& c) {
         std::vector<Draw> draws(u.size());
         source.draw(key, 0, u, draws);
         for (const Draw& d : draws)
-            if (d.pdf > 0 && d.f && d.wi.z != 0) out.wi.push_back(normalize(d.wi)), out.a.push_back(*d.f);
+            if (d.pdf > 0 && d.f && d.wi.z != 0) {
+                out.wi.push_back(normalize(d.wi));
+                out.a.push_back(*d.f);
+            }
     } else {
         const bool whole = std::ranges::any_of(c.common.drawn, [](Vec3d w) { return w.z < 0; });
         StreamKey key = c.a.key;
@@ -66,7 +69,8 @@ double moved_f(const SamplerAdapter& s, Vec3d wo, Vec3d wi, double f) {
     for (int k = 0; k < 6; ++k) {
         const double by = (k % 2 ? 4 : -4) * ulp;
         const Vec3d off{k / 2 == 0 ? by : 0, k / 2 == 1 ? by : 0, k / 2 == 2 ? by : 0};
-        at.push_back({wo, wi + off}), at.push_back({wo + off, wi});
+        at.push_back({wo, wi + off});
+        at.push_back({wo + off, wi});
     }
     double most = 0;
     for (double v : f_at(s, at))
@@ -81,13 +85,17 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
     for (std::size_t i = 0; i < both.wi.size(); ++i) {
         const double fa = both.a[i], fb = both.b[i], off = std::fabs(fa - fb),
                      size = std::max(std::fabs(fa), std::fabs(fb));
-        sum_a += fa, sum_b += fb;
+        sum_a += fa;
+        sum_b += fb;
         if (off <= same_number * size + 1e-30) continue;
         const double of_file = only_at_draws(a) ? 4 * ulp * size / std::max(std::fabs(both.wi[i].z), 1e-9)
                                                 : moved_f(a, c.a.check_case.wo, both.wi[i], fa);
         if (off <= same_number * size + of_file + moved_f(b, c.b.check_case.wo, both.wi[i], fb)) continue;
         ++count;
-        if (off / size > most) most = off / size, worst = i;
+        if (off / size > most) {
+            most = off / size;
+            worst = i;
+        }
     }
     v.same = count == 0;
     v.evidence["same"] = *v.same;
@@ -164,7 +172,9 @@ struct WeightMoments {
     bool heavy = false;
     explicit WeightMoments(std::span<const double> x) {
         const Spread s = crescent::spread(x);
-        n = s.n, mean = s.mean, variance = sqr(s.sd);
+        n = s.n;
+        mean = s.mean;
+        variance = sqr(s.sd);
         double m4 = 0;
         for (double v : x) m4 += sqr(sqr(v - s.mean)) / n;
         // The second term is the error of the mean. It is the only term if the weights take two values equally often.
@@ -176,7 +186,10 @@ struct WeightMoments {
     bool none(double times) const { return std::sqrt(variance) <= times * same_number * std::fabs(mean); }
 };
 
-void skip(Verdict& v, std::string message) { v.state = State::skipped, v.message = std::move(message); }
+void skip(Verdict& v, std::string message) {
+    v.state = State::skipped;
+    v.message = std::move(message);
+}
 
 /// Adds the ratio with its interval to the verdict, and the smaller variance if both stages agree.
 void note_ratio(Verdict& v, double ratio, double log_se, bool differ) {
@@ -258,7 +271,8 @@ struct ReweighedDraws {
         Source a(*c.a.check_case.adapter, 0, c.a.check_case.wo, c.a.check_case.light),
             b(*c.b.check_case.adapter, 0, c.b.check_case.wo, c.b.check_case.light);
         StreamKey key = c.a.key;
-        key.purpose = Purpose::draws, key.stage = static_cast<std::uint8_t>(stage);
+        key.purpose = Purpose::draws;
+        key.stage = static_cast<std::uint8_t>(stage);
         std::vector<PrimarySample> u(a.available(key, c.of_f));
         std::vector<Draw> draws(u.size());
         a.draw(key, 0, u, draws);
@@ -269,8 +283,12 @@ struct ReweighedDraws {
             const double p = x[i] > 0 ? b.density(d.wi) : 0;
             lost += x[i] > 0 && !(p > 0);
             others.push_back(p > 0 ? sqr(x[i]) * d.pdf / p : 0);
-            for (Group* g : {&of[i % groups], &all})
-                ++g->n, g->x += x[i], g->square += sqr(x[i]), g->other += others[i];
+            for (Group* g : {&of[i % groups], &all}) {
+                ++g->n;
+                g->x += x[i];
+                g->square += sqr(x[i]);
+                g->other += others[i];
+            }
         }
     }
     /// Standard error of the log ratio by the jackknife (Quenouille 1956).

@@ -123,7 +123,8 @@ void report_cut(const CheckCase& check_case, const Cut& cut, const TestSettings&
 void report_whole_cut(const Cut& cut, const CheckCase& check_case, const TestSettings& settings, Verdict& valid) {
     if (valid.state != State::right) return;
     const AbortText text = abort_text(cut, check_case, settings);
-    valid.state = text.state, valid.message = text.first;
+    valid.state = text.state;
+    valid.message = text.first;
     if (cut.why == Cut::Why::fault) note_first_failure(cut.what, valid);
 }
 
@@ -179,8 +180,10 @@ void require_examined(std::span<const CheckOutcome> outcomes, CheckResult& j) {
     if (std::ranges::any_of(outcomes, whole)) return;
     for (const SkippedCase& left : j.left_out)
         for (Verdict& v : j.verdicts)
-            if (v.check_case == left.check_case && v.arm == left.arm && v.state == State::skipped)
-                v.state = State::inconclusive, v.next.kind = NextStep::Kind::more_time;
+            if (v.check_case == left.check_case && v.arm == left.arm && v.state == State::skipped) {
+                v.state = State::inconclusive;
+                v.next.kind = NextStep::Kind::more_time;
+            }
 }
 
 void count(const CheckOutcome& outcome, CheckResult& j) {
@@ -205,7 +208,8 @@ void rank(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> 
             const std::size_t i = o.check_cases[k];
             const auto v = std::ranges::find(verdicts[i], "efficiency", &Verdict::name);
             if (v == verdicts[i].end()) continue;
-            ranked[i].wo = v->wo, ranked[i].seconds = v->seconds;
+            ranked[i].wo = v->wo;
+            ranked[i].seconds = v->seconds;
             *v = std::move(ranked[i]);
         }
 }
@@ -264,7 +268,9 @@ CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSetting
     of_engine.budget = budget_of(settings, false, checked);
     of_engine.limited = budget_of(settings, true, checked);
     of_engine.further_in_all = settings.budget ? 0 : static_cast<double>(settings.further_in_all);
-    of_engine.seed = settings.seed, of_engine.alpha = settings.alpha, of_engine.keep_evidence = settings.pictures;
+    of_engine.seed = settings.seed;
+    of_engine.alpha = settings.alpha;
+    of_engine.keep_evidence = settings.pictures;
     monitor.begin("verdicts", static_cast<double>(checked));
     CheckResult out;
     out.alpha = settings.alpha;

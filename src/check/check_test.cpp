@@ -44,7 +44,10 @@ private:
     void answer(std::size_t n) const {
         if (failed_) throw SamplerExited("given up");
         answers_ += n;
-        if (answers_ > fails_at) failed_ = true, throw SamplerError("no answer");
+        if (answers_ > fails_at) {
+            failed_ = true;
+            throw SamplerError("no answer");
+        }
         if (allowed > 0 && spending().seconds > allowed) throw SamplerTimeout("too slow");
     }
 };
@@ -102,7 +105,8 @@ TEST(RunChecks, SkipsCasesWithoutRemainingTime) {
 
 TEST(RunChecks, AcceptsFewCasesButNotNone) {
     const auto some = std::make_shared<Program>(), none = std::make_shared<Program>();
-    some->allowed = 10.5, none->allowed = 0.5;
+    some->allowed = 10.5;
+    none->allowed = 0.5;
     const CheckResult j = checked(some, true);
     EXPECT_EQ(j.state, State::right);
     EXPECT_EQ(j.left_out.size(), 2u);

@@ -135,7 +135,10 @@ private:
         CheckResult j = check_sampler("sampler", user::copy_for_check(arg), shared_settings(settings_));
         kept_.reset();
         since_explained_ = explains ? 0 : since_explained_ + 1;
-        if (!explains) kept_ = j, of_ = &arg;
+        if (!explains) {
+            kept_ = j;
+            of_ = &arg;
+        }
         return j;
     }
 

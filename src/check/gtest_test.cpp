@@ -71,8 +71,11 @@ TEST(Matchers, CheckEachElementSeparately) {
 TEST(Matchers, AreDescribedAndNegated) {
     const testing::Matcher<Counted> right = IsARightSamplerBy(one_wo()), open = IsNotAWrongSampler();
     std::ostringstream message;
-    right.DescribeTo(&message), message << "; ", right.DescribeNegationTo(&message), message << "; ",
-        open.DescribeTo(&message);
+    right.DescribeTo(&message);
+    message << "; ";
+    right.DescribeNegationTo(&message);
+    message << "; ";
+    open.DescribeTo(&message);
     EXPECT_EQ(message.str(), "is a right sampler; is not a right sampler; is not a wrong sampler");
     EXPECT_THAT(Counted{1.1}, testing::Not(IsARightSamplerBy(one_wo())));
     EXPECT_EQ(testing::PrintToString(Counted{}), "a sampler");

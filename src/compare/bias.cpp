@@ -77,15 +77,19 @@ MeanTest mean_test(const BiasPair& sides, std::size_t r, double level) {
     const Values a = sides.region_means(sides.a, r), b = sides.region_means(sides.b, r);
     const PixelSet& set = sides.all.regions[r];
     MeanTest t;
-    t.region = quantity_names[sides.quantity], t.paired = sides.in_pairs(), t.pooled = sides.pools();
-    t.a = mean_and_error(a).mean, t.b = mean_and_error(b).mean;
+    t.region = quantity_names[sides.quantity];
+    t.paired = sides.in_pairs();
+    t.pooled = sides.pools();
+    t.a = mean_and_error(a).mean;
+    t.b = mean_and_error(b).mean;
     t.why = why_not(sides, r);
     if (!t.why.empty()) {
         t.needed = renders_needed_text(sides, r);
         return t;
     }
     const SetVariance noise = sides.noise_of(set);
-    t.welch = sides.test(a, b, noise, false), t.information = sides.information();
+    t.welch = sides.test(a, b, noise, false);
+    t.information = sides.information();
     const double undetectable =
         std::max({sides.missable_difference(1, noise.pixels, level), sides.missable_difference(-1, noise.pixels, level),
             sides.undetectable_difference(t.a, t.b, noise.pixels, noise.own, level)});
@@ -121,7 +125,9 @@ RegionTests region_tests(const AllSides& all, std::size_t r, double level) {
         const double share = level * level_share(q, all.apart.size());
         const MeanTest t = mean_test(sides, r, share);
         const double p = t.why.empty() ? t.welch.p : std::nan("");
-        out.p.push_back(p), out.seen.push_back(p), out.each.push_back(t);
+        out.p.push_back(p);
+        out.seen.push_back(p);
+        out.each.push_back(t);
         if (std::isnan(p)) continue;
         const SetVariance noise = sides.noise_of(sides.all.regions[r]);
         if (std::fabs(t.a - t.b) < sides.undetectable_difference(t.a, t.b, noise.pixels, noise.own, share))
@@ -150,7 +156,8 @@ double test_regions(const AllSides& all, const BiasLevel& of, BiasResult& out) {
     Values p, seen;
     for (std::size_t r = 0; r < regions.size(); ++r) {
         tests.push_back(region_tests(all, r, level));
-        p.push_back(joint_p(tests[r].p).p), seen.push_back(joint_p(tests[r].seen).p);
+        p.push_back(joint_p(tests[r].p).p);
+        seen.push_back(joint_p(tests[r].seen).p);
     }
     const std::vector<bool> small = holm(p, of.each), differs = holm(seen, of.named);
     for (std::size_t r = 0; r < regions.size(); ++r) {
@@ -158,7 +165,8 @@ double test_regions(const AllSides& all, const BiasLevel& of, BiasResult& out) {
         for (std::size_t q = 0; q < test.each.size() && differs[r]; ++q)
             test.each[q].differs = test.seen[q] / level_share(q, test.each.size()) <= std::max(named, seen[r]);
         MeanTest& t = out.regions.emplace_back(test.each[0]);
-        t.region = regions[r].name, t.joint_p = seen[r];
+        t.region = regions[r].name;
+        t.joint_p = seen[r];
         t.channels.assign(test.each.begin() + 1, test.each.end());
         if (small[r] && !differs[r]) t.caveat = why_not_seen(all, tests[r], r, level);
     }
@@ -194,7 +202,10 @@ void name_tiles(const AllSides& all, BiasResult& result) {
     PlaceTests& out = result.tiles;
     std::vector<std::size_t> found;
     for (std::size_t t = 0; t < out.p.size(); ++t)
-        if (out.differs[t]) found.push_back(t), ++result.tiles_by[out.quantity[t]];
+        if (out.differs[t]) {
+            found.push_back(t);
+            ++result.tiles_by[out.quantity[t]];
+        }
     out.different = found.size();
     std::sort(found.begin(), found.end(),
         [&](std::size_t s, std::size_t t) { return out.p[s] != out.p[t] ? out.p[s] < out.p[t] : s < t; });
@@ -219,10 +230,13 @@ double test_tiles(const AllSides& all, const BiasLevel& of, BiasResult& result) 
         for (std::size_t q = 0; q < quantities; ++q) {
             const double level = of.each / static_cast<double>(count) * level_share(q, quantities);
             const TileTest test = test_tile(all.in_tile(q, t), t, level);
-            p.push_back(test.p), out.difference[q][t] = test.difference, left_out |= test.left_out;
+            p.push_back(test.p);
+            out.difference[q][t] = test.difference;
+            left_out |= test.left_out;
         }
         const JointP joint = joint_p(p);
-        out.p.push_back(joint.p), out.quantity.push_back(joint.quantity);
+        out.p.push_back(joint.p);
+        out.quantity.push_back(joint.quantity);
         if (std::isnan(joint.p)) out.left_out += left_out;
         else ++out.tested;
     }
@@ -278,10 +292,12 @@ SingleDifference single_difference(const BiasPair& sides) {
         for (std::size_t q = 0; q < sides.all.quantities; ++q)
             most = std::max(most, std::fabs(sides.a.film.of(q).mean[i] - sides.b.film.of(q).mean[i]));
         const double y = sides.a.film.y()[i] - sides.b.film.y()[i];
-        squares += y * y, out.different += most > 0;
+        squares += y * y;
+        out.different += most > 0;
         if (most <= out.largest) continue;
         const int x = static_cast<int>(i) % sides.all.width, row = static_cast<int>(i) / sides.all.width;
-        out.largest = most, out.at = {x, row, x, row};
+        out.largest = most;
+        out.at = {x, row, x, row};
     }
     out.pixels = pixels.size();
     out.rms = pixels.empty() ? 0 : std::sqrt(squares / static_cast<double>(pixels.size()));
@@ -374,8 +390,11 @@ BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const Comp
     std::size_t b, const BiasLevel& level, ProgressMonitor& monitor) {
     const BiasPair sides(plan, all, measured, a, b);
     BiasResult out;
-    out.a = plan.arms[a].name, out.b = sides.referred ? the_reference : plan.arms[b].name;
-    out.arm_a = a, out.arm_b = b, out.dependent = sides.dependent;
+    out.a = plan.arms[a].name;
+    out.b = sides.referred ? the_reference : plan.arms[b].name;
+    out.arm_a = a;
+    out.arm_b = b;
+    out.dependent = sides.dependent;
     if (sides.referred) out.reference_error = reference_error_from(sides.b);
     const double looks = plan.look > 0 ? look_factor(plan.look) : 1;  // these tests do not hold at any time
     out.non_finite = compare_non_finite(all, sides.a, sides.b, level.named / 2 / looks);
@@ -386,7 +405,8 @@ BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const Comp
     if (out.identical)
         for (std::size_t r = 0; r < all.regions.size(); ++r) {
             MeanTest& t = out.regions.emplace_back();
-            t.region = all.regions[r].name, t.joint_p = 1;
+            t.region = all.regions[r].name;
+            t.joint_p = 1;
             t.a = t.b = mean_interval(sides.region_means(sides.a, r), confidence).mean;
         }
     else test_means(plan, measured, all, rest, out, monitor);
@@ -463,7 +483,8 @@ Moments moments(const BiasPair& s, std::size_t i, bool floored) {
     m.difference = s.mean_a(i) - s.mean_b(i);
     double sum = 0, below = 0;
     const auto add = [&](double v, std::size_t renders) {
-        sum += v, below += renders > 1 ? v * v / static_cast<double>(renders - 1) : 0;
+        sum += v;
+        below += renders > 1 ? v * v / static_cast<double>(renders - 1) : 0;
     };
     if (s.in_pairs()) {
         m.difference = s.differences->film.of(q).mean[i];
@@ -528,7 +549,8 @@ PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double a
             if (!m.known) continue;
             if (s.quantity == 0 && table)
                 ++out.histogram[m.se > 0 ? table->of(m.difference / m.se, m.df) : m.difference == 0 ? bins - 1 : 0];
-            known = true, small |= m.se > 0 ? !(std::fabs(m.difference) < least[s.quantity] * m.se) : m.difference != 0;
+            known = true;
+            small |= m.se > 0 ? !(std::fabs(m.difference) < least[s.quantity] * m.se) : m.difference != 0;
         }
         out.tested += known;
         if (!known || !small) continue;
@@ -559,7 +581,8 @@ double test_pixels(std::span<const BiasPair> sides, const BiasLevel& levels, Bia
     parallel_for(std::size_t{0}, parts.size(), [&](std::size_t c) {
         parts[c] = part_of(sides, c * pixels_at_once, levels.named, level, least, table ? &*table : nullptr);
     });
-    out.pixel_p.assign(bins, 0), out.pixels_by.assign(sides.size(), 0);
+    out.pixel_p.assign(bins, 0);
+    out.pixels_by.assign(sides.size(), 0);
     std::vector<Candidate> small;
     for (const PixelCounts& part : parts) {
         for (std::size_t k = 0; k < bins; ++k) out.pixel_p[k] += part.histogram[k];
@@ -572,7 +595,8 @@ double test_pixels(std::span<const BiasPair> sides, const BiasLevel& levels, Bia
     out.pixels_different = discovered(p, static_cast<double>(out.pixels_tested), levels.named, s.dependent);
     small.resize(out.pixels_different);
     for (const Candidate& c : small) {
-        ++out.pixels_by[c.p.quantity], out.different_pixels.push_back(c.pixel);
+        ++out.pixels_by[c.p.quantity];
+        out.different_pixels.push_back(c.pixel);
         if (out.pixels_found.size() == named_most) continue;
         const int x = static_cast<int>(c.pixel) % s.all.width, y = static_cast<int>(c.pixel) / s.all.width;
         const BiasPair& of = sides[c.p.quantity];

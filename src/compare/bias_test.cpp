@@ -125,7 +125,8 @@ TEST(NonFinite, ASideWithoutAnyFinitePixelDiffers) {
 TEST(NonFinite, ANonFiniteStatisticIsInconclusive) {
     MemoryRenders m = arms(4);
     Render& reference = m.put("reference", 1);
-    reference.variance.assign(reference.size(), INFINITY), reference.variance_channels = "variance.Y";
+    reference.variance.assign(reference.size(), INFINITY);
+    reference.variance_channels = "variance.Y";
     const CompareResult r =
         m.compare({same, wide, {{"reference"}, "reference", false, ""}, {{"flip"}, "false", true, ""}});
     EXPECT_EQ(r.state, State::inconclusive) << r.sentence;
@@ -268,7 +269,8 @@ TEST(Identical, FilesAreTheSame) {
 
 TEST(Identical, OneFilePerSideIsDescribedAndInconclusive) {
     MemoryRenders m;
-    m.put("a", 1), m.put("b", 1).b[37] += 0.25f;
+    m.put("a", 1);
+    m.put("b", 1).b[37] += 0.25f;
     const CompareResult r = m.compare({same});
     EXPECT_EQ(r.state, State::inconclusive);
     ASSERT_TRUE(r.bias[0].single);

@@ -34,7 +34,8 @@ std::optional<double> stated_mean(const std::optional<double>& plan, const ArmSt
 ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size_t a, ProgressMonitor& monitor) {
     ArmResult out;
     const ArmStats& arm = all.arms[a];
-    out.name = plan.arms[a].name, out.renders = arm.files.size();
+    out.name = plan.arms[a].name;
+    out.renders = arm.files.size();
     out.spp = stated_mean(plan.arms[a].spp, arm, [](const RenderFile& f) { return f.spp; });
     out.seconds = stated_mean(plan.arms[a].seconds, arm, [](const RenderFile& f) { return f.seconds; });
     const std::vector<Flips> flip = measure_flip(plan, all, a, monitor);
@@ -76,16 +77,20 @@ std::string why_not_finite(const RenderStats& all, const CompareResult& result, 
 
 AssertionResult asserted(const AssertionPlan& plan, const RenderStats& all, CompareResult& result) {
     AssertionResult out;
-    out.name = plan.name, out.op = plan.check.op, out.text = to_string(plan.check);
+    out.name = plan.name;
+    out.op = plan.check.op;
+    out.text = to_string(plan.check);
     std::string why;
-    out.measured = value_of(plan.check.left, result, why), out.bound = value_of(plan.check.right, result, why);
+    out.measured = value_of(plan.check.left, result, why);
+    out.bound = value_of(plan.check.right, result, why);
     if (!why.empty()) result.warnings.push_back(out.name + ": " + why);
     out.pass = holds(out.measured, out.op, out.bound);
     for (const ParsedQuantity* side : {&plan.check.left, &plan.check.right}) {
         if (side->number) continue;
         const std::string bad = why_not_finite(all, result, side->region);
         if (bad.empty()) continue;
-        out.pass = false, out.text += fmt::format(" (cannot hold in {}: {})", side->region, bad);
+        out.pass = false;
+        out.text += fmt::format(" (cannot hold in {}: {})", side->region, bad);
         break;
     }
     return out;
@@ -116,15 +121,19 @@ std::string why_inconclusive(const ComparePlan& plan, const BiasResult& bias) {
 void conclude(const ComparePlan& plan, CompareResult& result) {
     using State = CompareResult::State;
     for (const AssertionResult& a : result.assertions)
-        if (!a.pass)
-            result.state = State::fails,
+        if (!a.pass) {
+            result.state = State::fails;
             result.sentence = std::isnan(a.measured) || std::isnan(a.bound)
                 ? fmt::format("An assertion does not pass: {}: a side of it was not measured.", a.text)
                 : fmt::format(
                       "An assertion fails: {}: measured {} and {}.", a.text, shortest(a.measured), shortest(a.bound));
+        }
     if (plan.expect != Expectation::same) return;
     for (const BiasResult& bias : result.bias)
-        if (bias.differs()) result.state = State::fails, result.sentence = bias.sentence;
+        if (bias.differs()) {
+            result.state = State::fails;
+            result.sentence = bias.sentence;
+        }
     for (const BiasResult& bias : result.bias) {
         const std::string why = bias.identical ? "" : why_inconclusive(plan, bias);
         if (why.empty() || result.state != State::holds) continue;
@@ -153,7 +162,8 @@ CompareResult test_differences(const ComparePlan& plan, const RenderStats& all, 
                 out.noise.push_back(compare_noise(plan, all, a, b, alpha));
         }
     }
-    out.rankings = rank(out), out.ladders = ladders_of(out);
+    out.rankings = rank(out);
+    out.ladders = ladders_of(out);
     for (const AssertionPlan& a : plan.assertions) out.assertions.push_back(asserted(a, all, out));
     conclude(plan, out);
     return out;

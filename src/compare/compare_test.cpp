@@ -35,7 +35,9 @@ MemoryRenders two_arms(float factor) {
 
 TEST(Comparisons, HaveTheMeanCostOfTheirFiles) {
     MemoryRenders m = two_arms(1);
-    m.renders["a0"].seconds = 1, m.renders["a1"].seconds = 2, m.renders["a2"].seconds = 6;
+    m.renders["a0"].seconds = 1;
+    m.renders["a1"].seconds = 2;
+    m.renders["a2"].seconds = 6;
     m.renders["b0"].spp = 16;
     const CompareResult r = m.compare();
     EXPECT_EQ(r.arms[0].seconds, 3);
@@ -79,7 +81,8 @@ using CompareFiles = ScratchFolder;
 TEST_F(CompareFiles, AllOutputsAppearAtOnce) {
     for (int k = 0; k < 4; ++k) {
         WrittenExr exr;
-        exr.constant = {{"A", static_cast<float>(k)}}, exr.channels = {"R", "G", "B"};
+        exr.constant = {{"A", static_cast<float>(k)}};
+        exr.channels = {"R", "G", "B"};
         exr.data = exr.display = {{k, 0}, {20 + k, 12}};
         exr.write(path((k < 2 ? "a" : "b") + std::to_string(k) + ".exr"));
     }

@@ -113,7 +113,8 @@ ExrFile::ExrFile(const OpenFile& file) : file_(file) {
     exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
     start.error_handler_fn = keep_message;
     start.user_data = const_cast<OpenFile*>(&file);
-    start.read_fn = read_bytes, start.size_fn = file_size;
+    start.read_fn = read_bytes;
+    start.size_fn = file_size;
     start.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     clear_message();
     expect_success(file, exr_start_read(&context_, file.path().c_str(), &start));
@@ -191,16 +192,19 @@ ExrChunks::ExrChunks(const OpenFile& file, exr_const_context_t context, const Ex
     exr_tile_level_mode_t levels{};
     exr_tile_round_mode_t rounding{};
     if (part.tiled) expect_success(file, exr_get_tile_descriptor(context, part.index, &w, &h, &levels, &rounding));
-    else
-        expect_success(file, exr_get_scanlines_per_chunk(context, part.index, &rows)),
-            h = static_cast<std::uint32_t>(std::max(0, rows));
+    else {
+        expect_success(file, exr_get_scanlines_per_chunk(context, part.index, &rows));
+        h = static_cast<std::uint32_t>(std::max(0, rows));
+    }
     const PixelWindow chunk{0, 0, std::int64_t{w} - 1, std::int64_t{h} - 1};
     const bool side = !chunk.empty() && w <= most_pixels_a_side && h <= most_pixels_a_side;
     if (!side || (part.tiled && chunk.pixels() > std::max(large_tile, 4 * part.data.pixels())))
         file.fail(fmt::format("attribute 'tiles': expected tiles that fit {} x {} pixels, found {} x {}",
             part.data.width(), part.data.height(), w, h));
-    width_ = w, height_ = h;
-    across_ = in_steps(part.data.width(), w), count_ = across_ * in_steps(part.data.height(), h);
+    width_ = w;
+    height_ = h;
+    across_ = in_steps(part.data.width(), w);
+    count_ = across_ * in_steps(part.data.height(), h);
 }
 
 exr_chunk_info_t ExrChunks::info(std::int64_t chunk) const {

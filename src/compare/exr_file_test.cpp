@@ -35,7 +35,8 @@ const std::vector<Imf::Compression> compressions = {Imf::NO_COMPRESSION, Imf::RL
 std::string with_data_window(std::string bytes, int x1, int y1) {
     const std::string key = std::string("dataWindow\0box2i\0", 17);
     const std::size_t at = bytes.find(key) + key.size() + 4 + 8;
-    std::memcpy(&bytes[at], &x1, 4), std::memcpy(&bytes[at + 4], &y1, 4);
+    std::memcpy(&bytes[at], &x1, 4);
+    std::memcpy(&bytes[at + 4], &y1, 4);
     return bytes;
 }
 
@@ -75,7 +76,9 @@ TEST_F(ExrFiles, EveryCompressionHasThePixelsThatOpenExrReads) {
                 WrittenExr exr;
                 exr.channels = {"A", "B", "G", "R"};
                 exr.data = {{-3, 5}, {36, 60}};
-                exr.compression = compression, exr.type = type, exr.tiled = tiled;
+                exr.compression = compression;
+                exr.type = type;
+                exr.tiled = tiled;
                 const std::string name = file(exr);
                 const Render r = read_render(name);
                 ASSERT_EQ(r.size(), 40u * 56u);
@@ -90,7 +93,8 @@ TEST_F(ExrFiles, EveryCompressionHasThePixelsThatOpenExrReads) {
 TEST_F(ExrFiles, TilesAreReadAtFullResolution) {
     for (const Imf::LevelMode levels : {Imf::MIPMAP_LEVELS, Imf::RIPMAP_LEVELS}) {
         WrittenExr exr;
-        exr.tiled = true, exr.levels = levels;
+        exr.tiled = true;
+        exr.levels = levels;
         const Render r = read_render(file(exr));
         ASSERT_EQ(r.size(), 21u * 13u);
         for (int y = 0; y < 13; ++y)
@@ -240,7 +244,8 @@ TEST_F(ExrFiles, HeadersWithMorePixelsThanTheFileAreRefused) {
             SCOPED_TRACE(fmt::format("compression {} type {}", static_cast<int>(compression), static_cast<int>(type)));
             WrittenExr exr;
             exr.data = exr.display = {{0, 0}, {31, 15}};
-            exr.compression = compression, exr.type = type;
+            exr.compression = compression;
+            exr.type = type;
             const std::string bytes = bytes_of(file(exr));
             ASSERT_EQ(refusal([&] { return read_render(write("same.exr", with_data_window(bytes, 31, 15))); }), "");
             for (const auto& [x, y] : {std::pair{63, 15}, {31, 31}, {14090263, 15}, {31, 2147483647}, {-1, 15}})

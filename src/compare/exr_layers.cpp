@@ -74,10 +74,15 @@ ExrExtra exr_extra(const ExrPart& part) {
         if (name == "variance" || name == "var" || name.ends_with("_variance"))
             kind = pbrt ? Kind::of_samples : Kind::variance;
         if (name == "error" || name == "stddev") kind = Kind::error;
-        if (kind != Kind::none && !of_light(colours).empty()) out.kind = kind, out.spread = of_light(colours);
+        if (kind != Kind::none && !of_light(colours).empty()) {
+            out.kind = kind;
+            out.spread = of_light(colours);
+        }
         const auto mean = layer.starts_with("m2_") ? all.find(layer.substr(3)) : all.end();
-        if (mean != all.end() && mean->second.contains("y") && colours.contains("y"))
-            out.kind = Kind::moments, out.spread = {colours.at("y"), mean->second.at("y")};
+        if (mean != all.end() && mean->second.contains("y") && colours.contains("y")) {
+            out.kind = Kind::moments;
+            out.spread = {colours.at("y"), mean->second.at("y")};
+        }
     }
     return out;
 }
@@ -109,7 +114,8 @@ void set_samples(Render& out, const ExrExtra& extra, const std::vector<float>& p
         if (!std::isfinite(n) || n < 0)
             throw InputError({out.file, 0, 0},
                 fmt::format("channel '{}': expected samples a pixel, 0 or more, found {}", extra.samples, n));
-        sum += static_cast<double>(n), most = std::max(most, static_cast<double>(n));
+        sum += static_cast<double>(n);
+        most = std::max(most, static_cast<double>(n));
     }
     if (!(most > 1)) return;
     out.sample_channel = extra.samples;
@@ -208,7 +214,8 @@ void add_layers(std::vector<ExrLayer>& out, const ExrPart& part, bool alone) {
         layer.radiance = !is_data(prefix) && !(prefix.empty() && is_data(part_name));
         if (layer.channels = all({"r", "g", "b"}); !layer.channels.empty()) {
         } else if (layer.channels = all({"x", "y", "z"}); !layer.channels.empty()) {
-            layer.kind = Kind::xyz, layer.radiance = layer.radiance && is_xyz_colour(layer.name);
+            layer.kind = Kind::xyz;
+            layer.radiance = layer.radiance && is_xyz_colour(layer.name);
         } else if (layer.channels = all({"y", "ry", "by"}); !layer.channels.empty()) {
             layer.kind = Kind::luminance_chroma;
         } else if (layer.channels = all({"y"}); !layer.channels.empty()) {

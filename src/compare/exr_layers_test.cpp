@@ -46,7 +46,8 @@ TEST(ExrVariance, OfYIsOfFullyCorrelatedChannels) {
     const auto variance = [](Kind kind, const std::vector<std::vector<float>>& planes) {
         Render out("r", 1, 1);
         ExrExtra extra;
-        extra.kind = kind, extra.spread.resize(planes.size());
+        extra.kind = kind;
+        extra.spread.resize(planes.size());
         set_variance(out, extra, planes);
         EXPECT_EQ(out.per_sample, kind == Kind::of_samples || kind == Kind::moments);
         return static_cast<double>(out.variance.at(0));

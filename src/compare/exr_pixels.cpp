@@ -165,8 +165,11 @@ Planes ExrFile::read_luminance_chroma(const ExrPart& part, const std::string& la
         for (std::int64_t y = part.data.y0; y <= part.data.y1; ++y) {
             in.readPixels(static_cast<int>(y));
             const std::size_t to = static_cast<std::size_t>(part.data.y1 - y) * width;
-            for (std::size_t i = 0; i < width; ++i)
-                out[0][to + i] = row[i].r, out[1][to + i] = row[i].g, out[2][to + i] = row[i].b;
+            for (std::size_t i = 0; i < width; ++i) {
+                out[0][to + i] = row[i].r;
+                out[1][to + i] = row[i].g;
+                out[2][to + i] = row[i].b;
+            }
         }
     });
     return out;
@@ -179,14 +182,16 @@ namespace {
 
 void set_primaries(Render& out, const ExrPart& part) {
     if (!part.primaries) return;
-    out.primaries = *part.primaries, out.weights = luminance_weights_of(*part.primaries);
+    out.primaries = *part.primaries;
+    out.weights = luminance_weights_of(*part.primaries);
 }
 
 /// Returns the render without pixels, with the attributes of the part.
 Render render_of(const ExrPart& part, const OpenFile& file, const ExrLayer& layer) {
     Render out(file.path(), static_cast<int>(part.data.width()), static_cast<int>(part.data.height()), Render::empty);
     out.layer = layer.name;
-    out.data = part.data, out.display = part.display;
+    out.data = part.data;
+    out.display = part.display;
     out.spp =
         exr_attribute(file.path(), part, "samples a pixel", {"spp", "samples", "samplesperpixel", "samplecount", "n"});
     out.seconds = exr_attribute(file.path(), part, "seconds", {"rendertime", "seconds", "time", "rendertimes"});
@@ -213,7 +218,9 @@ Render read_exr(const OpenFile& file, const std::string& wanted, const ReadingOp
     std::vector<std::string> channels;
     if (layer.kind == ExrLayer::Kind::luminance_chroma) {
         auto rgb = exr.read_luminance_chroma(part, layer.prefix);
-        out.r = std::move(rgb[0]), out.g = std::move(rgb[1]), out.b = std::move(rgb[2]);
+        out.r = std::move(rgb[0]);
+        out.g = std::move(rgb[1]);
+        out.b = std::move(rgb[2]);
     } else {
         channels = layer.channels;
     }
@@ -223,7 +230,10 @@ Render read_exr(const OpenFile& file, const std::string& wanted, const ReadingOp
     if (channels.empty()) return out;
     std::vector<std::vector<float>> planes = exr.read(part, channels);
     std::vector<float> samples;
-    if (!extra.samples.empty()) samples = std::move(planes.back()), planes.pop_back();
+    if (!extra.samples.empty()) {
+        samples = std::move(planes.back());
+        planes.pop_back();
+    }
     std::vector<float>* to[] = {&out.r, &out.g, &out.b};
     for (std::size_t c = 0; c < colours; ++c) *to[c] = std::move(planes[c]);
     planes.erase(planes.begin(), planes.begin() + static_cast<std::ptrdiff_t>(colours));

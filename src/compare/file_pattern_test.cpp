@@ -75,7 +75,8 @@ TEST_F(FilePatterns, CharactersOfFoldersAreLiteral) {
         EXPECT_THAT(suite.views[0].baseline, ElementsAre(folder + "/base/v-1.exr"));
         EXPECT_EQ(baseline_folder(suite), folder + "/base");
         SuiteFlags flags;
-        flags.baseline = folder + "/base", flags.candidate = folder + "/out";
+        flags.baseline = folder + "/base";
+        flags.candidate = folder + "/out";
         EXPECT_THAT(read_suite("", flags).views[0].candidate, ElementsAre(folder + "/out/v-1.exr"));
         write(std::string(name) + "/arms.toml", "[arms.a]\nfiles = \"base/*.exr\"\n");
         const ComparePlan plan = plan_of({}, folder + "/arms.toml");

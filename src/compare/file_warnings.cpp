@@ -16,7 +16,8 @@ void FileWarnings::add(
     auto at = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& k) { return k.kind == key; });
     if (at == kinds_.end()) at = kinds_.insert(kinds_.end(), {key, file, text, 0, pixels, pixels});
     ++at->files;
-    at->fewest = std::min(at->fewest, pixels), at->most = std::max(at->most, pixels);
+    at->fewest = std::min(at->fewest, pixels);
+    at->most = std::max(at->most, pixels);
 }
 
 std::vector<std::string> FileWarnings::lines() const {
@@ -100,7 +101,8 @@ public:
             if (failures(a_, i) + failures(b_, i) > 0) failing_.push_back(i);
         if (failing_.empty()) return {};
         differs_.assign(failing_.size(), false);
-        groups(alpha / 2), pixels(alpha / 2);
+        groups(alpha / 2);
+        pixels(alpha / 2);
         collect();
         return std::move(out_);
     }
@@ -115,7 +117,10 @@ private:
         for (std::size_t k = 0; k < failing_.size(); ++k) {
             const Counts c = counts(failing_[k]);
             p.push_back(fisher_exact(c.a, na_, c.b, nb_));
-            if ((c.a == na_ && c.b == 0) || (c.b == nb_ && c.a == 0)) differs_[k] = true, out_.p = 0;
+            if ((c.a == na_ && c.b == 0) || (c.b == nb_ && c.a == 0)) {
+                differs_[k] = true;
+                out_.p = 0;
+            }
         }
         const std::vector<bool> found = discoveries(p, alpha, false);
         for (std::size_t k = 0; k < p.size(); ++k)
@@ -135,7 +140,8 @@ private:
         for (std::size_t r = 0; r < all_.regions.size(); ++r) {
             FailedGroups g{all_.regions[r].name, sum(a_, r), sum(b_, r), 1, false};
             g.p = binomial_exact(g.a, g.a + g.b, share);
-            p.push_back(g.p), out_.groups.push_back(g);
+            p.push_back(g.p);
+            out_.groups.push_back(g);
         }
         const std::vector<bool> found = holm(p, alpha);
         out_.p = std::min(out_.p, 2 * static_cast<double>(p.size()) * *std::min_element(p.begin(), p.end()));
@@ -155,7 +161,8 @@ private:
     static void put(FailingPixels& to, std::uint32_t pixel, std::uint32_t own, std::uint32_t other) {
         const bool first = to.pixels.empty();
         to.pixels.push_back(pixel);
-        to.least = first ? own : std::min(to.least, own), to.most = std::max(to.most, own);
+        to.least = first ? own : std::min(to.least, own);
+        to.most = std::max(to.most, own);
         to.other_least = first ? other : std::min(to.other_least, other);
         to.other_most = std::max(to.other_most, other);
     }
@@ -207,7 +214,8 @@ std::string places_of(const FailingPixels& failing, int width) {
     Box box{x(failing.pixels[0]), y(failing.pixels[0]), 0, y(failing.pixels.back())};
     for (const std::uint32_t i : failing.pixels) {
         if (first.size() < named_places) first.push_back(fmt::format("({}, {})", x(i), y(i)));
-        box.x0 = std::min(box.x0, x(i)), box.x1 = std::max(box.x1, x(i));
+        box.x0 = std::min(box.x0, x(i));
+        box.x1 = std::max(box.x1, x(i));
     }
     std::string out = fmt::format("{}", fmt::join(first, ", "));
     if (failing.pixels.size() > first.size())

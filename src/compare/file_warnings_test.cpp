@@ -14,9 +14,11 @@ using ::testing::IsEmpty;
 
 TEST(FileWarnings, OfOneKindShareALine) {
     FileWarnings warnings;
-    warnings.add("a", "not finite", 3), warnings.add("b", "constant");
-    warnings.add("c", "not finite", 1), warnings.add("d", "copy of a", 0, "copy"),
-        warnings.add("e", "copy of b", 0, "copy");
+    warnings.add("a", "not finite", 3);
+    warnings.add("b", "constant");
+    warnings.add("c", "not finite", 1);
+    warnings.add("d", "copy of a", 0, "copy");
+    warnings.add("e", "copy of b", 0, "copy");
     EXPECT_THAT(warnings.lines(),
         ElementsAre("a (the first of 2 files): 1 to 3 pixels not finite", "b: constant",
             "d (the first of 2 files): copy of a"));
@@ -28,7 +30,8 @@ TEST(FileWarnings, OfOneKindShareALine) {
 /// An 8 x 4 image whose left_out pixels are these, in a left half and the whole frame.
 RenderStats image(const std::vector<std::uint32_t>& failing) {
     RenderStats all;
-    all.width = 8, all.height = 4;
+    all.width = 8;
+    all.height = 4;
     for (const char* name : {"left", "frame"}) {
         PixelSet& set = all.regions.emplace_back();
         set.name = name;
@@ -52,11 +55,15 @@ TEST(FailedGroups, AreJoinedByAnyOfEightNeighbours) {
 /// A side of `renders` renders; `counts`: pixel and in how many renders it is not finite, with one group each.
 ArmStats side(std::size_t renders, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& counts) {
     ArmStats out;
-    out.files.resize(renders), out.not_finite.assign(32, 0);
+    out.files.resize(renders);
+    out.not_finite.assign(32, 0);
     out.failed_groups.assign(renders, std::vector<std::uint32_t>(2));
     for (const auto& [pixel, count] : counts) {
         out.not_finite[pixel] = count;
-        for (std::uint32_t k = 0; k < count; ++k) ++out.failed_groups[k][1], out.failed_groups[k][0] += pixel % 8 < 4;
+        for (std::uint32_t k = 0; k < count; ++k) {
+            ++out.failed_groups[k][1];
+            out.failed_groups[k][0] += pixel % 8 < 4;
+        }
     }
     return out;
 }
@@ -88,7 +95,10 @@ TEST(NonFiniteCounts, OfGroupsShowScatteredFailures) {
     // 12 pixels, each in one of 8 renders of one side: no pixel differs, but 12 groups against 0 have p = 2^-11.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> counts;
     std::vector<std::uint32_t> pixels;
-    for (std::uint32_t k = 0; k < 12; ++k) counts.emplace_back(2 * k, 1), pixels.push_back(2 * k);
+    for (std::uint32_t k = 0; k < 12; ++k) {
+        counts.emplace_back(2 * k, 1);
+        pixels.push_back(2 * k);
+    }
     const NonFinite found = compare_non_finite(image(pixels), side(8, {}), side(8, counts), 0.01);
     EXPECT_EQ(found.groups[1].b, 12u);
     EXPECT_NEAR(found.groups[1].p, 0x1p-11, 1e-12);

@@ -45,7 +45,8 @@ public:
     StoredImage read() {
         if (!begin()) refuse();
         ImageHead& head = image_.head;
-        head.width = png_get_image_width(png_, info_), head.height = png_get_image_height(png_, info_);
+        head.width = png_get_image_width(png_, info_);
+        head.height = png_get_image_height(png_, info_);
         head.channels = png_get_channels(png_, info_);
         head.bytes = png_get_bit_depth(png_, info_) == 16 ? 2 : 1;
         const std::size_t row = std::size_t{head.width} * head.channels * head.bytes;
@@ -140,7 +141,8 @@ Render render_of(const OpenFile& file, const StoredImage& image, const ReadingOp
     if (image.levels() > 0) {
         const bool srgb = options.encoding == ImageEncoding::automatic ? image.srgb.value_or(true)
                                                                        : options.encoding == ImageEncoding::srgb;
-        out.display_referred = true, out.displayed = options.space == ImageSpace::display && srgb;
+        out.display_referred = true;
+        out.displayed = options.space == ImageSpace::display && srgb;
         out.steps = {.levels = image.levels(), .srgb = srgb && options.space == ImageSpace::radiance};
         out.rounding = 0;
     }
@@ -156,7 +158,9 @@ Render render_of(const OpenFile& file, const StoredImage& image, const ReadingOp
             }
     };
     const bool is_grey = head.channels < 3, has_alpha = head.channels % 2 == 0;
-    fill(out.r, 0, values), fill(out.g, is_grey ? 0 : 1, values), fill(out.b, is_grey ? 0 : 2, values);
+    fill(out.r, 0, values);
+    fill(out.g, is_grey ? 0 : 1, values);
+    fill(out.b, is_grey ? 0 : 2, values);
     if (has_alpha) fill(out.alpha, head.channels - 1, shares);
     return out;
 }

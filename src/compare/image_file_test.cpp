@@ -67,7 +67,10 @@ std::string picture(const std::string& format) {
 /// A PNG of linear numbers of 16 bits, as its gAMA states.
 std::string wide_png(const std::vector<std::uint16_t>& rgb) {
     png_image image{};
-    image.version = PNG_IMAGE_VERSION, image.width = width, image.height = height, image.format = PNG_FORMAT_LINEAR_RGB;
+    image.version = PNG_IMAGE_VERSION;
+    image.width = width;
+    image.height = height;
+    image.format = PNG_FORMAT_LINEAR_RGB;
     png_alloc_size_t size = 0;
     EXPECT_TRUE(png_image_write_to_memory(&image, nullptr, &size, 0, rgb.data(), 0, nullptr));
     std::string out(size, '\0');
@@ -123,7 +126,8 @@ TEST_F(Images, OfSixteenBitsAreReadInTheByteOrderAndEncodingOfTheirFormat) {
     EXPECT_FLOAT_EQ(png.r[0], 9007 / 65535.0f);  // the file states that it is linear
     EXPECT_EQ(png.steps.levels, 65536);
     std::string pgm = "P5\n1 1\n65535\n";
-    pgm += '\x12', pgm += '\x34';
+    pgm += '\x12';
+    pgm += '\x34';
     EXPECT_FLOAT_EQ(read_render(write("a.pgm", pgm), "", {.encoding = ImageEncoding::linear, .channel = ""}).g[0],
         0x1234 / 65535.0f);
 }
@@ -190,7 +194,9 @@ TEST(Quantisation, StepsAloneAreNoDifferenceAndLimitWhatIsFound) {
         for (const char* side : {"a", "b"})
             for (std::uint32_t k = 0; k < 6; ++k) {
                 Render& r = memory.put(side + std::to_string(k), 12 * k + (*side == 'b'));
-                r.steps = {.levels = 256, .srgb = false}, r.rounding = 0, r.display_referred = true;
+                r.steps = {.levels = 256, .srgb = false};
+                r.rounding = 0;
+                r.display_referred = true;
                 for (std::size_t i = 0; i < r.size(); ++i) {
                     const double noise = 2 * (static_cast<double>(r.r[i]) - 1);
                     const double level = 100.5 + 0.1 * static_cast<double>(i % 7) + (*side == 'b' ? change : 0) + noise;
@@ -217,7 +223,8 @@ TEST(Clipping, IsStatedWithItsShare) {
     MemoryRenders memory;
     for (const char* name : {"a0", "a1", "b0", "b1"}) {
         Render& r = memory.put(name, static_cast<std::uint32_t>(name[0] * 2 + name[1]));
-        r.display_referred = true, r.steps = {.levels = 256, .srgb = true};
+        r.display_referred = true;
+        r.steps = {.levels = 256, .srgb = true};
         for (std::size_t i = 0; i < 64; ++i) r.r[i] = r.g[i] = r.b[i] = 1;
         for (std::size_t i = 64; i < r.size(); ++i) r.r[i] = r.g[i] = r.b[i] = std::min(0.9f, 0.5f * r.r[i]);
     }

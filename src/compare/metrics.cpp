@@ -59,7 +59,10 @@ MetricValue variance(const ArmStats& arm, const PixelSet& set, std::size_t regio
     if (arm.files.size() >= 2) {
         Values each = over_renders(arm, region, [&](const RegionStats& r) { return r.spread * k / (k - 1); });
         MetricValue out = mean_of(each, heavy, at_least_0);
-        if (arm.files.size() == 2) out.interval.reset(), out.why = "two renders have equal spreads: no interval";
+        if (arm.files.size() == 2) {
+            out.interval.reset();
+            out.why = "two renders have equal spreads: no interval";
+        }
         return out;
     }
     const double stated = mean_variance(arm.film, set);
@@ -74,7 +77,10 @@ MetricValue squared_bias(const ArmStats& arm, const PixelSet& set, std::size_t r
     const double k = static_cast<double>(arm.files.size());
     if (arm.files.size() < 2) return missing("two renders or more are needed to separate bias and variance");
     double sum = 0, squares = 0;
-    for (const auto& render : arm.regions) sum += render[region].with_sum, squares += render[region].mse;
+    for (const auto& render : arm.regions) {
+        sum += render[region].with_sum;
+        squares += render[region].mse;
+    }
     const auto statistic = [&](double all, double each, double n) { return (all - each) / (n * (n - 1)) - reference; };
     MetricValue out{statistic(sum, squares, k), {}, ""};
     if (heavy) out.why = "heavy tail";
@@ -139,16 +145,20 @@ void tail_of(const ArmStats& arm, std::size_t region, RegionResult& out) {
 std::optional<double> stated_over_measured(const ArmStats& arm, const PixelSet& set) {
     if (arm.film.stated_variance.empty() || arm.film.count < 2) return {};
     double stated = 0, measured = 0;
-    for (const std::uint32_t i : set.pixels)
-        stated += static_cast<double>(arm.film.stated_variance[i]), measured += arm.film.variance(i);
+    for (const std::uint32_t i : set.pixels) {
+        stated += static_cast<double>(arm.film.stated_variance[i]);
+        measured += arm.film.variance(i);
+    }
     return measured > 0 ? std::optional(stated / static_cast<double>(arm.film.count) / measured) : std::nullopt;
 }
 
 /// Removes values that are not finite, because comparisons with them have no meaning.
 void keep_finite(MetricValue& m) {
     if (m.value && !std::isfinite(*m.value)) m = missing(fmt::format("it is {}, not a finite number", *m.value));
-    if (m.interval && !(std::isfinite(m.interval->first) && std::isfinite(m.interval->second)))
-        m.interval.reset(), m.why = "its interval is not finite";
+    if (m.interval && !(std::isfinite(m.interval->first) && std::isfinite(m.interval->second))) {
+        m.interval.reset();
+        m.why = "its interval is not finite";
+    }
 }
 
 RegionResult without_pixels(const PixelSet& set, const std::vector<QuantityWord>& words) {
@@ -197,7 +207,8 @@ RegionResult measure_region(
     const PixelSet& set = all.regions[region];
     if (set.pixels.empty()) return without_pixels(set, compare_words());
     RegionResult out;
-    out.region = set.name, out.pixels = set.pixels.size();
+    out.region = set.name;
+    out.pixels = set.pixels.size();
     tail_of(arm, region, out);
     const bool heavy = out.heavy(), mean_heavy = out.mean_heavy(), referred = all.reference.has_value();
     const auto against = [&](const char* name, auto read, auto transform, bool no_interval) {
@@ -222,7 +233,8 @@ RegionResult measure_region(
             flip ? MetricValue{*flip, {}, "of the first render"}
                  : missing(referred ? "not requested" : "no reference"));
     };
-    picture("flip", flips.hdr), picture("flip_ldr", flips.ldr);
+    picture("flip", flips.hdr);
+    picture("flip_ldr", flips.ldr);
     costs(var, cost, out);
     out.power = arm.power[region];
     out.colour = noise_colour(out.power);

@@ -60,7 +60,8 @@ const CompareFlag reference{{"reference"}, "reference", false, ""}, no_flip{{"fl
 
 TEST(RegionMetrics, FollowTheirDefinitions) {
     MemoryRenders m;
-    m.put_grey("a0", 2, {2, 2}), m.put_grey("a1", 2, {0, 4});
+    m.put_grey("a0", 2, {2, 2});
+    m.put_grey("a1", 2, {0, 4});
     m.put_grey("reference", 2, {1, 2}).variance = {0.1f, 0.3f};  // of its mean: 0.2
     const RegionResult r = m.compare({reference, no_flip, spp, seconds}).arms[0].regions[0];
     const auto value = [&](const char* name) { return r.metric(name).value.value_or(std::nan("")); };
@@ -101,7 +102,8 @@ TEST(RegionMetrics, AStatedVarianceIsComparedWithThatOverRenders) {
 TEST(RegionMetrics, TailsDecideWhichMeansHaveIntervals) {
     const auto heavy = [](double k, double share) {
         RegionResult r;
-        r.tail = Tail{k, 0.1, 50}, r.largest_share = share;
+        r.tail = Tail{k, 0.1, 50};
+        r.largest_share = share;
         return std::pair(r.heavy(), r.mean_heavy());
     };
     EXPECT_EQ(heavy(0.4, 0.1), std::pair(false, false));

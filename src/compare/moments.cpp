@@ -109,9 +109,12 @@ void put_readings(Imf::Header& header, const RenderStats& all, const ArmStats& a
         for (std::size_t t = 0; t < all.tiles.count(); ++t) {
             std::vector<double> means;
             double most = 0;
-            for (const auto& render : readings.tiles)
-                means.push_back(render[t].mean), most = std::max(most, render[t].largest);
-            deviations.push_back(deviation_of(means)), largest.push_back(most);
+            for (const auto& render : readings.tiles) {
+                means.push_back(render[t].mean);
+                most = std::max(most, render[t].largest);
+            }
+            deviations.push_back(deviation_of(means));
+            largest.push_back(most);
         }
         put(header, moments_attribute("tiles", 0, q), deviations);
         put(header, moments_attribute("tiles", 1, q), largest);
@@ -123,8 +126,10 @@ std::string header_text(const RenderStats& all, const ArmStats& arm, bool consta
     Json out = {{"format", moments_format}, {"renders", arm.files.size()}, {"constant", constant},
         {"quantities", arm.quantities.size()}, {"rounding", arm.film.rounding}, {"tile", all.tiles.size},
         {"regions", Json::array()}};
-    if (const Quantisation& steps = arm.film.steps; steps.levels > 0)
-        out["levels"] = steps.levels, out["srgb"] = steps.srgb;
+    if (const Quantisation& steps = arm.film.steps; steps.levels > 0) {
+        out["levels"] = steps.levels;
+        out["srgb"] = steps.srgb;
+    }
     for (const PixelSet& set : all.regions) {
         const Box box = set.box.value_or(all.frame());
         out["regions"].push_back({{"name", set.name}, {"box", {box.x0, box.y0, box.x1, box.y1}}});

@@ -228,7 +228,8 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
     read_failures(file, all, to);
     MeanFilm& film = to.film;
     film.count = file.text().renders;
-    film.rounding = file.text().rounding, film.steps = file.text().steps;
+    film.rounding = file.text().rounding;
+    film.steps = file.text().steps;
     film.planes.assign(grey ? 1 : colour_quantities, {});
     for (std::size_t q = grey ? 0 : 1; q < film.planes.size(); ++q) {
         film.planes[q].mean = read_means(file, quantity_names[q], to);
@@ -285,9 +286,12 @@ TileReading tile_mean(const RenderStats& all, const MeanPlane& plane, std::size_
             const auto i =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
             if (all.bad[i]) continue;
-            out.mean += plane.mean[i], out.spread += plane.m2[i] / renders, pixels += 1;
+            out.mean += plane.mean[i];
+            out.spread += plane.m2[i] / renders;
+            pixels += 1;
         }
-    out.mean /= pixels, out.spread /= pixels;
+    out.mean /= pixels;
+    out.spread /= pixels;
     return out;
 }
 

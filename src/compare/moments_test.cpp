@@ -24,8 +24,11 @@ protected:
     /// The statistics of the file, of an image of the same size.
     RenderStats read(const ComparePlan& plan) const {
         RenderStats all;
-        all.width = all.height = 16, all.bad.assign(256, false), all.quantities = colour_quantities;
-        all.tiles = written.tiles, all.regions = written.regions;
+        all.width = all.height = 16;
+        all.bad.assign(256, false);
+        all.quantities = colour_quantities;
+        all.tiles = written.tiles;
+        all.regions = written.regions;
         read_moments_film(file, Render().weights, all, all.arms.emplace_back());
         read_moments_regions(file, plan, all, all.arms[0]);
         return all;
@@ -70,8 +73,10 @@ TEST_F(MomentFiles, KeepTheMeansOfRegionsAndTheSpreadOfTiles) {
     for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(is.regions[k][0], was.regions[k][0], 1e-6);
     for (std::size_t t = 0; t < all.tiles.count(); ++t) {
         std::vector<double> before, after;
-        for (std::size_t k = 0; k < 4; ++k)
-            before.push_back(was.tiles[k][t].mean), after.push_back(is.tiles[k][t].mean);
+        for (std::size_t k = 0; k < 4; ++k) {
+            before.push_back(was.tiles[k][t].mean);
+            after.push_back(is.tiles[k][t].mean);
+        }
         EXPECT_NEAR(mean_interval(after, 0.95).mean, mean_interval(before, 0.95).mean, 1e-6);
         EXPECT_NEAR(mean_interval(after, 0.95).se / mean_interval(before, 0.95).se, 1, 1e-5);
     }

@@ -72,7 +72,8 @@ std::string sentence(const NoiseResult& n, std::size_t tested) {
 
 NoiseResult compare_noise(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b, double alpha) {
     NoiseResult out;
-    out.a = plan.arms[a].name, out.b = plan.arms[b].name;
+    out.a = plan.arms[a].name;
+    out.b = plan.arms[b].name;
     std::vector<double> p;
     for (std::size_t t = 0; t < all.tiles.count(); ++t) {
         const MeanInterval va = spread_of(all.arms[a], t), vb = spread_of(all.arms[b], t);
@@ -111,9 +112,14 @@ Render difference(const RenderStats& all, Render a, const Render& b) {
             throw InputError({r->file, 0, 0},
                 fmt::format("expected {} x {} pixels as before, found {} x {}: the file has changed", all.width,
                     all.height, r->width, r->height));
-    for (std::size_t i = 0; i < a.size(); ++i) a.r[i] -= b.r[i], a.g[i] -= b.g[i], a.b[i] -= b.b[i];
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        a.r[i] -= b.r[i];
+        a.g[i] -= b.g[i];
+        a.b[i] -= b.b[i];
+    }
     for (std::size_t i = 0; i < a.alpha.size(); ++i) a.alpha[i] -= b.alpha[i];
-    a.variance.clear(), a.rounding = std::max(a.rounding, b.rounding);
+    a.variance.clear();
+    a.rounding = std::max(a.rounding, b.rounding);
     return a;
 }
 
@@ -168,8 +174,10 @@ PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& all, st
             all.source.read(second.files[out.pairs[k].second].path, other_layer));
     };
     std::vector<std::string> paths;
-    for (std::size_t k = 0; k < out.pairs.size(); ++k)
-        paths.push_back(std::to_string(k)), out.differences.files.push_back({paths.back(), {}, {}, {}, {}, {}, {}, {}});
+    for (std::size_t k = 0; k < out.pairs.size(); ++k) {
+        paths.push_back(std::to_string(k));
+        out.differences.files.push_back({paths.back(), {}, {}, {}, {}, {}, {}, {}});
+    }
     monitor.begin("differences of pairs", 2 * static_cast<double>(out.pairs.size()));
     each_render(source, paths, {}, monitor, [&](const Render& render) { out.differences.film.add(render); });
     second_pass(plan, all, source, out.differences, {}, nullptr, monitor);
@@ -223,7 +231,8 @@ std::optional<Ranking> ranking(const CompareResult& result, std::size_t region, 
         return *a.value.value != *b.value.value ? *a.value.value < *b.value.value : a.arm < b.arm;
     });
     Ranking out;
-    out.region = result.arms[0].regions[region].region, out.measure = by.words;
+    out.region = result.arms[0].regions[region].region;
+    out.measure = by.words;
     for (const Ranked& r : order) out.order.push_back(r.arm);
     out.sentence = fmt::format("Noise in {}, {}: {}.", out.region, by.words, order_text(order));
     return out;
@@ -269,7 +278,8 @@ MetricValue slope_of(const CompareResult& result, const SppLadder& ladder, std::
         const MetricValue &rmse = r.metric("rmse"), &var = r.metric("var"), &metric = rmse.value ? rmse : var;
         if (!metric.value || !(*metric.value > 0)) return {{}, {}, "a sample count has no value"};
         const double root = rmse.value ? 1 : 0.5;
-        x.push_back(math::log(*result.arms[a].spp)), y.push_back(root * math::log(*metric.value));
+        x.push_back(math::log(*result.arms[a].spp));
+        y.push_back(root * math::log(*metric.value));
         const bool known = metric.interval && metric.interval->first > 0;
         half.push_back(known ? root * math::log(metric.interval->second / metric.interval->first) / 2 : std::nan(""));
     }
@@ -280,7 +290,8 @@ MetricValue slope_of(const CompareResult& result, const SppLadder& ladder, std::
     if (!(squares > 0)) return {{}, {}, "all arms have the same samples per pixel"};
     for (std::size_t k = 0; k < x.size(); ++k) {
         const double weight = (x[k] - middle) / squares;
-        slope += weight * y[k], half_squares += weight * weight * half[k] * half[k];
+        slope += weight * y[k];
+        half_squares += weight * weight * half[k] * half[k];
     }
     MetricValue out{slope, {}, std::isnan(half_squares) ? "a sample count has no interval" : ""};
     if (out.why.empty()) out.interval = {slope - std::sqrt(half_squares), slope + std::sqrt(half_squares)};
@@ -361,7 +372,8 @@ Row transformed(const Row& x) {
         for (std::size_t start = 0; start < size; start += 2 * half) {
             for (std::size_t k = 0; k < half; ++k) {
                 const Complex even = out[start + k], odd = rotated(out[start + k + half], k * (size / (2 * half)));
-                out[start + k] = even + odd, out[start + k + half] = even - odd;
+                out[start + k] = even + odd;
+                out[start + k + half] = even - odd;
             }
         }
     }

@@ -90,7 +90,9 @@ TEST(NoiseOfTiles, IsComparedByTheRatioOfVariances) {
     ComparePlan plan;
     plan.arms.resize(2);
     RenderStats all;
-    all.width = 24, all.height = 8, all.tiles = Tiles(24, 8);
+    all.width = 24;
+    all.height = 8;
+    all.tiles = Tiles(24, 8);
     all.arms = {spreads({4, 1, 1}), spreads({1, 1, 0})};
     PixelSet& frame = all.regions.emplace_back();
     frame.pixels.resize(24 * 8);
@@ -108,7 +110,8 @@ TEST(NoiseOfTiles, IsComparedByTheRatioOfVariances) {
 /// An arm with one metric in one region, and an interval of this factor around it.
 ArmResult measured(const std::string& name, const char* metric, double value, double factor, double spp = 1) {
     ArmResult out;
-    out.name = name, out.spp = spp;
+    out.name = name;
+    out.spp = spp;
     out.regions.emplace_back().metrics = {{metric, {value, {{value / factor, value * factor}}, ""}}};
     return out;
 }

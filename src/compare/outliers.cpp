@@ -51,7 +51,8 @@ struct Bulk {
 /// that are no larger than an outlier.
 Bulk bulk_of(const RenderStats& all, std::size_t region, std::size_t quantity) {
     Bulk out;
-    out.region = region, out.quantity = quantity;
+    out.region = region;
+    out.quantity = quantity;
     std::vector<std::pair<double, std::uint32_t>> squares;
     for (const std::uint32_t i : all.regions[region].pixels) squares.emplace_back(pooled_squares(all, quantity, i), i);
     const auto most = static_cast<std::ptrdiff_t>(most_with_outliers * static_cast<double>(squares.size()));
@@ -62,8 +63,10 @@ Bulk bulk_of(const RenderStats& all, std::size_t region, std::size_t quantity) {
     squares.resize(static_cast<std::size_t>(most));
     std::sort(squares.begin(), squares.end(), std::greater<>());
     const double renders = renders_of_both(all), of_one = renders / (renders - 1);
-    while (!squares.empty() && squares.back().first * of_one <= out.limit(all, renders))
-        out.rest += squares.back().first, squares.pop_back();
+    while (!squares.empty() && squares.back().first * of_one <= out.limit(all, renders)) {
+        out.rest += squares.back().first;
+        squares.pop_back();
+    }
     for (const auto& [square, pixel] : squares) out.large.push_back(pixel);
     return out;
 }
@@ -133,7 +136,8 @@ void add_outliers(const RenderStats& all, Bulk bulk, const PixelValues& values, 
     while (!single.empty()) {  // smallest last
         const double square = pooled_squares(all, bulk.quantity, single.back().pixel);
         if (square * of_one > bulk.limit(all, renders)) break;
-        bulk.rest += square, single.pop_back();
+        bulk.rest += square;
+        single.pop_back();
     }
     out.insert(out.end(), single.begin(), single.end());
 }
@@ -149,7 +153,8 @@ void count_outlier_groups(const RenderStats& all, OutlierPixels& out) {
             pixels.push_back(p.pixel);
         }
         const std::uint64_t groups = touching_groups(pixels, all.width);
-        out.groups[first.side] += groups, out.by_render[first.side][first.render] = groups;
+        out.groups[first.side] += groups;
+        out.by_render[first.side][first.render] = groups;
     }
 }
 
@@ -246,7 +251,8 @@ std::optional<OutlierRender> outlier_render(const RenderStats& all) {
                 for (const auto& render : side.quantities[0].tiles) sum += render[t].mean;
                 const double value = side.quantities[0].tiles[k][t].mean;
                 const double rest = (sum - value) / static_cast<double>(n - 1);
-                own += value, others += rest;
+                own += value;
+                others += rest;
                 off.push_back(std::fabs(value - rest));
             }
             const double noise = std::max(other_noise, tile_noise(side, tiles, k));

@@ -35,7 +35,9 @@ struct TwoSides {
     }
     void add(const std::string& path, std::uint32_t pixel, float size) {
         Render& render = renders.at(path);
-        render.r[pixel] += size, render.g[pixel] += size, render.b[pixel] += size;
+        render.r[pixel] += size;
+        render.g[pixel] += size;
+        render.b[pixel] += size;
     }
     RenderStats read() const {
         RenderSource source;
@@ -87,7 +89,8 @@ TEST(Outliers, TheRuleIsSymmetric) {
         TwoSides sides({Kind::lognormal, 1.5}, 4, 4, seed * 50), turned = sides;
         for (auto& [path, render] : turned.renders) {
             const std::string other = (path[0] == '0' ? "1" : "0") + path.substr(1);
-            render = sides.renders.at(other), render.file = path;
+            render = sides.renders.at(other);
+            render.file = path;
         }
         const auto one = sides.read().outliers.groups, two = turned.read().outliers.groups;
         EXPECT_THAT(one, ElementsAre(two[1], two[0]));

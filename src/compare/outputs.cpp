@@ -51,9 +51,12 @@ Json arm_json(const ArmResult& arm, const ArmStats& readings, const std::vector<
         for (std::size_t r = 0; r < sets.size(); ++r) {
             const RegionStats& read = readings.regions[k][r];
             Json& at = file["regions"][sets[r].name] = {{"y_mean", number(read.y)}};
-            if (referred)
-                at["rmse"] = number(std::sqrt(read.mse)), at["relmse"] = number(read.relmse),
-                at["mape"] = number(read.mape), at["fireflies"] = read.fireflies;
+            if (referred) {
+                at["rmse"] = number(std::sqrt(read.mse));
+                at["relmse"] = number(read.relmse);
+                at["mape"] = number(read.mape);
+                at["fireflies"] = read.fireflies;
+            }
         }
         out["files"].push_back(std::move(file));
     }
@@ -71,14 +74,18 @@ Json found_json(const std::vector<Found>& found) {
 }
 
 void put_test(Json& at, const MeanTest& t) {
-    at["a"] = number(t.a), at["b"] = number(t.b);
+    at["a"] = number(t.a);
+    at["b"] = number(t.b);
     if (!t.caveat.empty()) at["doubt"] = t.caveat;
     if (!t.why.empty()) {
         at["why"] = t.why;
         return;
     }
-    at["p"] = number(t.welch.p), at["standard_error"] = number(t.welch.se), at["df"] = number(t.welch.df),
-    at["smallest"] = number(t.smallest), at["paired"] = t.paired;
+    at["p"] = number(t.welch.p);
+    at["standard_error"] = number(t.welch.se);
+    at["df"] = number(t.welch.df);
+    at["smallest"] = number(t.smallest);
+    at["paired"] = t.paired;
 }
 
 Json region_test_json(const MeanTest& t) {
@@ -106,11 +113,14 @@ Json failing_json(const FailingPixels& f, int width) {
         const int x = static_cast<int>(f.pixels[k]) % width, y = static_cast<int>(f.pixels[k]) / width;
         if (k < first_most) out["first"].push_back({x, y});
         if (k == 0) box = {x, y, x, y};
-        box.x0 = std::min(box.x0, x), box.x1 = std::max(box.x1, x), box.y1 = std::max(box.y1, y);
+        box.x0 = std::min(box.x0, x);
+        box.x1 = std::max(box.x1, x);
+        box.y1 = std::max(box.y1, y);
     }
     if (f.pixels.empty()) return out;
     out["box"] = box_json(box);
-    out["renders"] = {f.least, f.most}, out["renders_of_the_other"] = {f.other_least, f.other_most};
+    out["renders"] = {f.least, f.most};
+    out["renders_of_the_other"] = {f.other_least, f.other_most};
     return out;
 }
 
@@ -164,8 +174,10 @@ Json noise_json(const NoiseResult& n) {
 
 Json ladder_json(const SppLadder& ladder, const CompareResult& result) {
     Json out = {{"name", ladder.name}, {"arms", Json::array()}, {"spp", Json::array()}};
-    for (const std::size_t a : ladder.arms)
-        out["arms"].push_back(result.arms[a].name), out["spp"].push_back(number(*result.arms[a].spp));
+    for (const std::size_t a : ladder.arms) {
+        out["arms"].push_back(result.arms[a].name);
+        out["spp"].push_back(number(*result.arms[a].spp));
+    }
     for (const auto& [region, slope] : ladder.slopes) out["slopes"][region] = measured_json(slope);
     return out;
 }

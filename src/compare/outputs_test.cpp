@@ -28,7 +28,9 @@ struct Compared {
                 for (float& x : *plane) x *= 2;
         }
         renders.renders["b0"].spp = 16;
-        plan = renders.plan(flags), all = renders.read(flags), result = renders.compare(flags);
+        plan = renders.plan(flags);
+        all = renders.read(flags);
+        result = renders.compare(flags);
     }
     nlohmann::json json() const { return nlohmann::json::parse(text(compare_result_json(plan, all, result, {}))); }
     MemoryRenders renders;

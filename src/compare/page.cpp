@@ -69,8 +69,10 @@ Json region_of(const std::string& region, const Json& all, std::vector<Json>& no
     };
     for (const auto& [name, m] : first.at("metrics").items()) {
         const bool any = std::ranges::any_of(all, [&](const Json& arm) { return metric(arm, name).value.has_value(); });
-        if (any) names.push_back(name), titles.push_back(title_of(name));
-        else not_measured.push_back({{"metric", title_of(name)}, {"why", m.value("why", "")}});
+        if (any) {
+            names.push_back(name);
+            titles.push_back(title_of(name));
+        } else not_measured.push_back({{"metric", title_of(name)}, {"why", m.value("why", "")}});
     }
     for (const Json& arm : all) {
         Json cells = Json::array();
@@ -96,7 +98,8 @@ void add_numbers(const Json& result, Json& to) {
         not_measured.clear();
         regions.push_back(region_of(name, result.at("arms"), not_measured));
     }
-    to["regions"] = regions, to["not_measured"] = separated(std::move(not_measured));
+    to["regions"] = regions;
+    to["not_measured"] = separated(std::move(not_measured));
 }
 
 // ---- Whether arms agree on the mean.
@@ -174,8 +177,12 @@ std::string histogram(
     const double width = (x.high - x.low) / static_cast<double>(below.size());
     for (std::size_t k = 0; k < below.size(); ++k) {
         const double first = below[k], second = first + (above.empty() ? 0 : above[k]);
-        for (const double edge : {x.low + width * static_cast<double>(k), x.low + width * static_cast<double>(k + 1)})
-            edges.push_back(edge), zero.push_back(0), low.push_back(first), high.push_back(second);
+        for (const double edge : {x.low + width * static_cast<double>(k), x.low + width * static_cast<double>(k + 1)}) {
+            edges.push_back(edge);
+            zero.push_back(0);
+            low.push_back(first);
+            high.push_back(second);
+        }
         all.push_back(second);
     }
     Chart chart(460, 200, std::move(x), linear_axis(what, all), title);
@@ -251,7 +258,8 @@ Json spectra_of(const Json& result) {
             for (std::size_t k = 0; k < power.size(); ++k) line.push_back({static_cast<double>(k + 1), power[k]});
             if (line.empty()) continue;
             const std::string colour = fmt::format("c{}", a % 6);
-            chart.line(line, colour), chart.name(line.back(), arms[a].at("arm").get<std::string>(), colour);
+            chart.line(line, colour);
+            chart.name(line.back(), arms[a].at("arm").get<std::string>(), colour);
             names.push_back(
                 {{"arm", arms[a].at("arm")}, {"colour", arms[a].at("regions").at(region).at("spectrum").at("noise")}});
         }
@@ -296,7 +304,10 @@ Json ladder_chart(const Json& result, const std::string& region) {
             const MetricValue& m = line.metrics[k];
             xs.push_back(line.spp[k]);
             if (m.value) ys.push_back(*m.value);
-            if (m.interval) ys.push_back(m.interval->first), ys.push_back(m.interval->second);
+            if (m.interval) {
+                ys.push_back(m.interval->first);
+                ys.push_back(m.interval->second);
+            }
         }
     Chart chart(520, 280, log_axis("samples a pixel", xs), log_axis(what, ys), "Ladder of " + region);
     std::vector<Json> slopes;
@@ -310,7 +321,9 @@ Json ladder_chart(const Json& result, const std::string& region) {
             if (m.interval) chart.bar(lines[l].spp[k], m.interval->first, m.interval->second, colour);
         }
         if (points.empty()) continue;
-        chart.line(points, colour), chart.dots(points, colour), chart.name(points.back(), lines[l].name, colour);
+        chart.line(points, colour);
+        chart.dots(points, colour);
+        chart.name(points.back(), lines[l].name, colour);
         const MetricValue slope = metric_of(result.at("ladders").at(l).at("slopes").at(region));
         if (slope.value)
             slopes.push_back({{"arm", lines[l].name}, {"slope", with_minus(figures(*slope.value, 3))},

@@ -21,7 +21,8 @@ namespace crescent {
 Tiles::Tiles(int width, int height) {
     const double wanted = std::sqrt(static_cast<double>(width) * height / 512);
     size = std::max(8, static_cast<int>(std::ceil(wanted)));
-    across = (width + size - 1) / size, down = (height + size - 1) / size;
+    across = (width + size - 1) / size;
+    down = (height + size - 1) / size;
 }
 
 Box Tiles::box(std::size_t tile, int width, int height) const {
@@ -110,7 +111,8 @@ void FirstPass::moments(ArmStats& to, const std::string& path) {
 
 void FirstPass::fit(const Render& render) {
     if (all_.bad.empty()) {
-        all_.width = render.width, all_.height = render.height;
+        all_.width = render.width;
+        all_.height = render.height;
         all_.bad.assign(render.size(), false);
     }
     ensure(render.width == all_.width && render.height == all_.height, "renders of a view have one size");
@@ -122,7 +124,9 @@ void FirstPass::check_pixels(const Render& render, ArmStats& to) {
         const bool finite = std::isfinite(render.r[i]) && std::isfinite(render.g[i]) && std::isfinite(render.b[i]);
         if (!finite) {
             if (to.not_finite.empty()) to.not_finite.assign(render.size(), 0);
-            ++bad, all_.bad[i] = true, ++to.not_finite[i];
+            ++bad;
+            all_.bad[i] = true;
+            ++to.not_finite[i];
         }
         negative += finite && (render.r[i] < 0 || render.g[i] < 0 || render.b[i] < 0);
     }
@@ -135,7 +139,8 @@ void FirstPass::check_pixels(const Render& render, ArmStats& to) {
 
 /// A channel at the largest number of its file represents any larger value.
 void FirstPass::count_clipped(const Render& render) {
-    all_.displayed |= render.displayed, all_.display_referred |= render.display_referred;
+    all_.displayed |= render.displayed;
+    all_.display_referred |= render.display_referred;
     if (!render.display_referred) {  // a float file is not clipped
         all_.clipped.assign(render.size(), false);
         return;
@@ -187,7 +192,10 @@ public:
         if (!(x > least())) return;
         heap_.push_back(x);
         std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
-        if (heap_.size() > keep_) std::pop_heap(heap_.begin(), heap_.end(), std::greater<>()), heap_.pop_back();
+        if (heap_.size() > keep_) {
+            std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
+            heap_.pop_back();
+        }
     }
     std::vector<float> falling() const {
         std::vector<float> out = heap_;
@@ -263,12 +271,14 @@ private:
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t i = set.pixels[k];
             const double spread = (y(i) - film.y()[i]) * (y(i) - film.y()[i]);
-            sum.y += y(i), sum.spread += spread;
+            sum.y += y(i);
+            sum.spread += spread;
             double squared = spread;
             if (reference_) {
                 const double ref = reference_->y()[i], e = y(i) - ref;
                 squared = e * e;
-                sum.mse += squared, sum.with_sum += e * static_cast<double>(film.count) * (film.y()[i] - ref);
+                sum.mse += squared;
+                sum.with_sum += e * static_cast<double>(film.count) * (film.y()[i] - ref);
                 sum.fireflies += std::fabs(e) > plan_.firefly_k * ref;
                 sum.relmse += squared / (ref * ref + epsilon);
                 sum.mape += std::fabs(e) / (std::fabs(ref) + epsilon);
@@ -285,14 +295,23 @@ private:
             std::size_t{0}, parts.size(), [&](std::size_t c) { parts[c] = part(set, c * chunk, film, least); });
         RegionStats out;
         for (const Part& p : parts) {
-            out.y += p.sum.y, out.spread += p.sum.spread, out.mse += p.sum.mse, out.with_sum += p.sum.with_sum;
-            out.relmse += p.sum.relmse, out.mape += p.sum.mape, out.fireflies += p.sum.fireflies;
+            out.y += p.sum.y;
+            out.spread += p.sum.spread;
+            out.mse += p.sum.mse;
+            out.with_sum += p.sum.with_sum;
+            out.relmse += p.sum.relmse;
+            out.mape += p.sum.mape;
+            out.fireflies += p.sum.fireflies;
             for (const float x : p.large) largest.add(x);
         }
         const double count = static_cast<double>(set.pixels.size());
         if (count == 0) return out;
-        out.y /= count, out.spread /= count, out.mse /= count, out.with_sum /= count;
-        out.relmse /= count, out.mape /= count;
+        out.y /= count;
+        out.spread /= count;
+        out.mse /= count;
+        out.with_sum /= count;
+        out.relmse /= count;
+        out.mape /= count;
         if (reference_ && plan_.trim > 0) trim(set, out);
         return out;
     }
@@ -304,7 +323,8 @@ private:
             relative.push_back(static_cast<float>(e * e / (ref * ref + epsilon)));
             absolute.push_back(static_cast<float>(std::fabs(e) / (std::fabs(ref) + epsilon)));
         }
-        out.relmse = trimmed_mean(relative, plan_.trim), out.mape = trimmed_mean(absolute, plan_.trim);
+        out.relmse = trimmed_mean(relative, plan_.trim);
+        out.mape = trimmed_mean(absolute, plan_.trim);
     }
 
     /// The spectrum of the error: about the mean of the renders, rescaled because this mean removes 1/K of it, or about
@@ -332,7 +352,10 @@ private:
         std::vector<std::array<QuantityPart, count>> parts((set.pixels.size() + chunk - 1) / chunk);
         std::array<float, count> least{};
         std::array<const double*, count> mean{};
-        for (std::size_t q = 0; q < count; ++q) least[q] = largest[q]->least(), mean[q] = film.of(q).mean.data();
+        for (std::size_t q = 0; q < count; ++q) {
+            least[q] = largest[q]->least();
+            mean[q] = film.of(q).mean.data();
+        }
         parallel_for(std::size_t{0}, parts.size(), [&](std::size_t c) {
             std::array<double, count> sum{};
             for (std::size_t k = c * chunk; k < std::min(set.pixels.size(), (c + 1) * chunk); ++k) {
@@ -367,13 +390,18 @@ private:
                     static_cast<std::size_t>(j) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
                 if (all_.bad[i]) continue;
                 const double value = static_cast<double>(values[i]), off = value - plane.mean[i], spread = off * off;
-                out.mean += value, out.spread += spread, pixels += 1;
+                out.mean += value;
+                out.spread += spread;
+                pixels += 1;
                 out.largest = std::max(out.largest, spread);
                 if (spread < lone * plane.m2[i]) continue;
-                rare.rise = std::max(rare.rise, off), rare.fall = std::max(rare.fall, -off);
+                rare.rise = std::max(rare.rise, off);
+                rare.fall = std::max(rare.fall, -off);
             }
         }
-        out.mean /= pixels, out.spread /= pixels, out.largest /= pixels;
+        out.mean /= pixels;
+        out.spread /= pixels;
+        out.largest /= pixels;
         return out;
     }
 
@@ -398,7 +426,10 @@ private:
             readings[t] = tile(values, all_.tiles.box(t, all_.width, all_.height), plane, lone, rare[t]);
         });
         to.tiles.push_back(std::move(readings));
-        for (const Outliers& o : rare) to.rise = std::max(to.rise, o.rise), to.fall = std::max(to.fall, o.fall);
+        for (const Outliers& o : rare) {
+            to.rise = std::max(to.rise, o.rise);
+            to.fall = std::max(to.fall, o.fall);
+        }
     }
 
     const ComparePlan& plan_;

@@ -31,7 +31,9 @@ TEST(Tiles, CoverTheImageOnce) {
 /// Two renders of two pixels and their reference.
 MemoryRenders two_pixels() {
     MemoryRenders m;
-    m.put_grey("a0", 2, {2, 2}), m.put_grey("a1", 2, {0, 4}), m.put_grey("reference", 2, {1, 2});
+    m.put_grey("a0", 2, {2, 2});
+    m.put_grey("a1", 2, {0, 4});
+    m.put_grey("reference", 2, {1, 2});
     return m;
 }
 const CompareFlag reference{{"reference"}, "reference", false, ""}, firefly{{"firefly_k"}, "0.9", true, ""};
@@ -77,7 +79,8 @@ TEST(SecondPass, KeepsTheLargestOutlierOfItsPixel) {
 
 TEST(SecondPass, RegionsAndNumbersAreThoseOfTheFiles) {
     MemoryRenders m;
-    m.put_grey("a-16spp-007", 3, {1, 2, 3, 4, 5, 6}), m.put_grey("a-16spp-008", 3, {3, 2, 3, 4, 5, 6});
+    m.put_grey("a-16spp-007", 3, {1, 2, 3, 4, 5, 6});
+    m.put_grey("a-16spp-008", 3, {3, 2, 3, 4, 5, 6});
     const RenderStats all = m.read({{{"regions", "right", "box"}, "[2, 0, 2, 1]", true, ""}});
     ASSERT_EQ(all.regions.size(), 2u);
     EXPECT_THAT(all.regions[0].pixels, ElementsAre(2, 5));

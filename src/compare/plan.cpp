@@ -26,7 +26,10 @@ Node text_node(const std::string& text, const SourceLocation& at) {
 
 void move_to(Node& node, const SourceLocation& at) {
     node.at = at;
-    for (Member& member : node.members) member.at = at, move_to(member.value, at);
+    for (Member& member : node.members) {
+        member.at = at;
+        move_to(member.value, at);
+    }
 }
 
 /// Returns the value of a flag: parsed as TOML if the flag has it and it is valid, else as text, for which the parser
@@ -64,7 +67,8 @@ void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
     }
     if (begun.insert(fmt::format("{}", fmt::join(flag.path, "."))).second) {
         to = Node{};
-        to.kind = Node::Kind::array, to.at = at;
+        to.kind = Node::Kind::array;
+        to.at = at;
     }
     to.members.push_back({"", at, std::move(value)});
 }

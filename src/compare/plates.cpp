@@ -68,7 +68,10 @@ Block diverging_block(const Box& box, const Fit& f, Theme theme, const std::func
         double sum = 0, count = 0;
         for (int j = y; j > std::max(box.y0 - 1, y - down); --j)
             for (int i = x; i < std::min(box.x1 + 1, x + across); ++i)
-                if (const double v = value(i, j); !std::isnan(v)) sum += v, count += 1;
+                if (const double v = value(i, j); !std::isnan(v)) {
+                    sum += v;
+                    count += 1;
+                }
         return diverging(count > 0 ? sum / count : std::nan(""), theme);
     });
 }
@@ -260,17 +263,20 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 LadderCurve curve_of(const CompareResult& result, std::size_t ladder, std::size_t region) {
     const SppLadder& l = result.ladders[ladder];
     LadderCurve out;
-    out.name = escaped(l.name), out.ink = series[ladder % series_count];
+    out.name = escaped(l.name);
+    out.ink = series[ladder % series_count];
     for (const std::size_t a : l.arms) {
         const RegionResult& measured = result.arms[a].regions[region];
         const MetricValue metric = ladder_metric(measured.metric("rmse"), measured.metric("var"));
-        out.n.push_back(*result.arms[a].spp), out.value.push_back(metric.value.value_or(nan));
+        out.n.push_back(*result.arms[a].spp);
+        out.value.push_back(metric.value.value_or(nan));
         out.interval.push_back(metric.interval.value_or(std::pair(nan, nan)));
         out.heavy |= measured.heavy();
     }
     const MetricValue& slope = l.slopes[region].second;
     out.slope = slope.value.value_or(nan);
-    out.low = slope.interval ? slope.interval->first : nan, out.high = slope.interval ? slope.interval->second : nan;
+    out.low = slope.interval ? slope.interval->first : nan;
+    out.high = slope.interval ? slope.interval->second : nan;
     return out;
 }
 

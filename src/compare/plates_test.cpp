@@ -27,9 +27,12 @@ std::vector<std::string> plates_of(const MemoryRenders& m, const std::vector<Com
 
 TEST(ComparePlates, ShowWhatHasData) {
     MemoryRenders m;
-    m.put("a0", 1), m.put("a1", 2);
+    m.put("a0", 1);
+    m.put("a1", 2);
     EXPECT_THAT(plates_of(m), ::testing::ElementsAre("errors", "renders"));  // about the mean of the arm
-    m.put("b0", 3), m.put("b1", 4), m.put("reference", 5);
+    m.put("b0", 3);
+    m.put("b1", 4);
+    m.put("reference", 5);
     const auto all = plates_of(m, {{{"reference"}, "reference", false, ""}, {{"flip"}, "false", true, ""}});
     EXPECT_THAT(all, ::testing::IsSupersetOf({"renders", "errors", "noise-b-a"}));
     EXPECT_TRUE(std::ranges::any_of(all, [](const std::string& name) { return name.starts_with("bias-"); }));
@@ -53,7 +56,8 @@ TEST(LadderPlates, HaveACurveForEachLadder) {
     CompareResult result;
     for (const double spp : {16.0, 64.0}) {
         ArmResult& arm = result.arms.emplace_back();
-        arm.name = "path-" + std::to_string(static_cast<int>(spp)), arm.spp = spp;
+        arm.name = "path-" + std::to_string(static_cast<int>(spp));
+        arm.spp = spp;
         arm.regions.emplace_back().region = whole_frame;
         arm.regions[0].metrics = {{"rmse", {1 / spp, {{0.9 / spp, 1.1 / spp}}, ""}}};
     }
@@ -65,7 +69,10 @@ TEST(LadderPlates, HaveACurveForEachLadder) {
 
 TEST(ComparePages, EscapeNamesAndListFiles) {
     MemoryRenders m;
-    m.put("a<i>0", 1), m.put("a<i>1", 2), m.put("b0", 3), m.put("b1", 4);
+    m.put("a<i>0", 1);
+    m.put("a<i>1", 2);
+    m.put("b0", 3);
+    m.put("b1", 4);
     const CompareFlag title{{"title"}, "a < b & \"c\"", false, ""};
     const RenderStats all = m.read({title});
     const Json result = compare_result_json(m.plan({title}), all, m.compare({title}), {});

@@ -44,7 +44,8 @@ void convert(Render& render, const Matrix3& m) {
     for (std::size_t i = 0; i < render.size(); ++i) {
         const Rgb out = transformed(
             m, {static_cast<double>(render.r[i]), static_cast<double>(render.g[i]), static_cast<double>(render.b[i])});
-        render.r[i] = static_cast<float>(out[0]), render.g[i] = static_cast<float>(out[1]),
+        render.r[i] = static_cast<float>(out[0]);
+        render.g[i] = static_cast<float>(out[1]);
         render.b[i] = static_cast<float>(out[2]);
     }
 }
@@ -165,13 +166,16 @@ void each_render(const RenderSource& source, const std::vector<std::string>& pat
 
 Render in_rec709(const RenderStats& all, Render render) {
     if (!same_primaries(all.primaries, {})) convert(render, conversion(all.primaries, {}));
-    render.primaries = {}, render.weights = luminance_weights_of({});
+    render.primaries = {};
+    render.weights = luminance_weights_of({});
     return render;
 }
 
 Render in_rec709(const RenderStats& all, const MeanFilm& film) {
     Render out("", all.width, all.height, Render::empty);
-    out.r = film.radiance(0), out.g = film.radiance(1), out.b = film.radiance(2);
+    out.r = film.radiance(0);
+    out.g = film.radiance(1);
+    out.b = film.radiance(2);
     if (all.displayed)
         for (std::vector<float>* plane : {&out.r, &out.g, &out.b})
             for (float& value : *plane) value = static_cast<float>(srgb_decode(static_cast<double>(value)));
@@ -199,7 +203,11 @@ Files files_of(const ComparePlan& plan, const RenderSource& source) {
 void share_windows(CommonView& view, const ComparePlan& plan, const Files& files, ProgressMonitor& monitor) {
     monitor.begin("data windows", static_cast<double>(files.total));
     const auto each = [&](const std::vector<std::string>& paths, const std::string& layer) {
-        for (const std::string& path : paths) monitor.check(), view.share(path, layer), monitor.advance(1);
+        for (const std::string& path : paths) {
+            monitor.check();
+            view.share(path, layer);
+            monitor.advance(1);
+        }
     };
     for (std::size_t a = 0; a < files.arms.size(); ++a) each(files.arms[a], plan.arms[a].layer);
     each(files.reference, plan.reference_layer);

@@ -260,7 +260,9 @@ TEST_F(Renders, DamagedFilesAreReadOrRefused) {
              Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::DWAA_COMPRESSION})
         for (const bool tiled : {false, true}) {
             WrittenExr exr;
-            exr.compression = c, exr.tiled = tiled, exr.type = Imf::HALF;
+            exr.compression = c;
+            exr.tiled = tiled;
+            exr.type = Imf::HALF;
             exr.write(path("whole.exr"));
             whole.push_back(bytes_of(path("whole.exr")));
         }
@@ -300,7 +302,10 @@ protected:
 };
 
 TEST_F(Memory, APixelThatIsNotFiniteIsLeftOutEverywhereAndReported) {
-    put("a0", 1), put("a1", 2).g[17] = std::nanf(""), put("b0", 3), put("b1", 4).r[18] = INFINITY;
+    put("a0", 1);
+    put("a1", 2).g[17] = std::nanf("");
+    put("b0", 3);
+    put("b1", 4).r[18] = INFINITY;
     const RenderStats all = read();
     EXPECT_EQ(all.bad_pixels, 2u);
     EXPECT_EQ(all.regions.back().pixels.size(), 254u);
@@ -309,19 +314,27 @@ TEST_F(Memory, APixelThatIsNotFiniteIsLeftOutEverywhereAndReported) {
 }
 
 TEST_F(Memory, CopiesInOneArmAreRefusedAndInTwoArmsReported) {
-    put("a0", 1), put("a1", 2), put("b0", 1), put("b1", 3);
+    put("a0", 1);
+    put("a1", 2);
+    put("b0", 1);
+    put("b1", 3);
     EXPECT_THAT(read().warnings, ::testing::ElementsAre(HasSubstr("b0 of b: the same pixels as a0 of a")));
     put("a2", 2);
     EXPECT_THAT(refusal(), HasSubstr("a2: the same pixels as a1"));
 }
 
 TEST_F(Memory, SizesThatDifferAreRefused) {
-    put("a0", 1), put("a1", 2), put("b0", 3, 17);
+    put("a0", 1);
+    put("a1", 2);
+    put("b0", 3, 17);
     EXPECT_THAT(refusal(), HasSubstr("b0: expected 16 x 16 pixels as in a0, found 17 x 17"));
 }
 
 TEST_F(Memory, ConstantAndNegativePixelsAreReported) {
-    put("a0", 1), put("a1", 2).r[3] = -1, put("b0", 3), put("b1", 4);
+    put("a0", 1);
+    put("a1", 2).r[3] = -1;
+    put("b0", 3);
+    put("b1", 4);
     for (auto* plane : {&renders["b0"].r, &renders["b0"].g, &renders["b0"].b}) plane->assign(256, 0.5f);
     EXPECT_THAT(read().warnings,
         ::testing::ElementsAre(
@@ -331,7 +344,9 @@ TEST_F(Memory, ConstantAndNegativePixelsAreReported) {
 TEST_F(Memory, VarianceOfOneSampleIsDividedByTheirNumber) {
     for (const char* name : {"a0", "b0"}) {
         Render& r = put(name, name[0]);
-        r.variance.assign(r.size(), 8), r.per_sample = true, r.variance_channels = "Variance.R";
+        r.variance.assign(r.size(), 8);
+        r.per_sample = true;
+        r.variance_channels = "Variance.R";
     }
     const RenderStats all = read({{{"arms", "a", "spp"}, "4", true, "--spp"}});
     EXPECT_DOUBLE_EQ(all.arms[0].film.variance(0), 2);

@@ -65,7 +65,9 @@ Correlation correlation(
         double sum = 0;
         for (; k < at.ends[block]; ++k) {
             const double x = static_cast<double>(a[k]), y = static_cast<double>(b[k]);
-            sum += x * y, squares_a += x * x, squares_b += y * y;
+            sum += x * y;
+            squares_a += x * x;
+            squares_b += y * y;
         }
         product += sum;
         if (sum != 0) blocks.push_back(sum);
@@ -138,7 +140,8 @@ void estimate_correlations(const ArmStats& a, const ArmStats& b, const SeedSampl
             const double variance = a.film.variance(at.pixels[i]) + b.film.variance(at.pixels[i]);
             if (!(variance > 0)) continue;
             product += of_a[k][i] * of_b[k][i] / variance;
-            squares_a += of_a[k][i] * of_a[k][i] / variance, squares_b += of_b[k][i] * of_b[k][i] / variance;
+            squares_a += of_a[k][i] * of_a[k][i] / variance;
+            squares_b += of_b[k][i] * of_b[k][i] / variance;
         }
         if (squares_a > 0 && squares_b > 0) pairs[k].correlation = product / std::sqrt(squares_a * squares_b);
     }
@@ -177,11 +180,17 @@ std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, co
         for (std::size_t j = 0; j < b.files.size(); ++j) {
             const Correlation c = correlation(a.sampled[i], b.sampled[j], at, limits);
             all_r[i][j] = c.r;
-            if (c.found) found.push_back({i, j, c.r}), largest = std::max(largest, c.r);
+            if (c.found) {
+                found.push_back({i, j, c.r});
+                largest = std::max(largest, c.r);
+            }
         }
     std::erase_if(found, [&](const SeedPair& p) { return p.correlation < largest / 2; });
     std::vector<std::size_t> partners_a(a.files.size()), partners_b(b.files.size());
-    for (const SeedPair& p : found) ++partners_a[p.a], ++partners_b[p.b];
+    for (const SeedPair& p : found) {
+        ++partners_a[p.a];
+        ++partners_b[p.b];
+    }
     std::erase_if(found, [&](const SeedPair& p) { return partners_a[p.a] > 1 || partners_b[p.b] > 1; });
     if (found.size() < std::min(a.files.size(), b.files.size()))
         if (const std::vector<RenderPair> named = named_pairs(a, b); shares_seeds(all_r, named)) {

@@ -50,7 +50,8 @@ void place(Render& render, const PixelWindow& to) {
     if (render.data == to) return;
     for (std::vector<float>* plane : {&render.r, &render.g, &render.b, &render.alpha, &render.variance})
         if (!plane->empty()) *plane = placed(*plane, render.data, to);
-    render.width = static_cast<int>(to.width()), render.height = static_cast<int>(to.height());
+    render.width = static_cast<int>(to.width());
+    render.height = static_cast<int>(to.height());
 }
 
 /// A small file may state a huge display window around a few pixels, which would need its memory.
@@ -128,7 +129,8 @@ void CommonView::convert_primaries(Render& render) const {
     render.notes.push_back(fmt::format("its primaries ({}) are not those of {} ({}): it is converted to the latter",
         to_string(render.primaries), first_.file, to_string(first_.primaries)));
     convert(render, conversion(render.primaries, first_.primaries));
-    render.primaries = first_.primaries, render.weights = first_.weights;
+    render.primaries = first_.primaries;
+    render.weights = first_.weights;
 }
 
 void CommonView::check_unchanged(const Render& render, const std::string& layer) {
@@ -153,8 +155,10 @@ Render CommonView::read(const std::string& path, const std::string& layer) {
     const Guard guard(lock_);
     if (first_.file.empty()) {
         first_ = Render(path, render.width, render.height, Render::empty);
-        first_.data = render.data, first_.display = render.display;
-        first_.primaries = render.primaries, first_.weights = render.weights;
+        first_.data = render.data;
+        first_.display = render.display;
+        first_.primaries = render.primaries;
+        first_.weights = render.weights;
     }
     check_fits(render);
     place(render, window_for(render));

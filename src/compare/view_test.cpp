@@ -121,7 +121,8 @@ TEST_F(Views, AFileThatChangesBetweenReadingsIsRefused) {
         {"other pixels",
             [&](const std::string& file) {
                 WrittenExr other = exr;
-                other.constant = {{"R", 3.0f}, {"G", 3.0f}, {"B", 3.0f}}, other.channels = {};
+                other.constant = {{"R", 3.0f}, {"G", 3.0f}, {"B", 3.0f}};
+                other.channels = {};
                 other.write(file);
             }},
         {"another size",
@@ -146,7 +147,8 @@ TEST_F(Views, AFileThatChangesBetweenReadingsIsRefused) {
         for (const std::vector<CompareFlag>& way : ways())
             for (const char* which : {"a1.exr", "b2.exr"}) {
                 SCOPED_TRACE(what);
-                write_arm("a", exr), write_arm("b", exr);
+                write_arm("a", exr);
+                write_arm("b", exr);
                 int readings = 0;
                 RenderSource source;
                 source.read = [&](const std::string& file, const std::string& layer) {

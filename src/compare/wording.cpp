@@ -34,13 +34,21 @@ public:
     void pixel(std::size_t i) {
         if (all_.bad[i]) return;
         const double a = a_.of(quantity_).mean[i], b = b_.of(quantity_).mean[i], d = a - b;
-        out_.pixels += 1, out_.mean_a += a, out_.mean_b += b;
+        out_.pixels += 1;
+        out_.mean_a += a;
+        out_.mean_b += b;
         const double own_a = a_.variance(i, quantity_), own_b = b_.variance(i, quantity_);
-        out_.a += paired_ ? paired_->variance(i, quantity_) : own_a, out_.b += paired_ ? 0 : own_b;
+        out_.a += paired_ ? paired_->variance(i, quantity_) : own_a;
+        out_.b += paired_ ? 0 : own_b;
         out_.own += own_a + own_b;
         const bool neighbours = pairs_started_ && last_ + 1 == i && i % static_cast<std::size_t>(all_.width) != 0;
-        if (neighbours) rough_ += (d - before_) * (d - before_) / 2, pairs_ += 1;
-        last_ = i, before_ = d, pairs_started_ = true;
+        if (neighbours) {
+            rough_ += (d - before_) * (d - before_) / 2;
+            pairs_ += 1;
+        }
+        last_ = i;
+        before_ = d;
+        pairs_started_ = true;
     }
     /// `low`: the noise over a whole set relative to that between neighbours.
     SetVariance done(double low) const {
@@ -102,8 +110,10 @@ bool heavy_deviations(const RenderStats& all, const ArmStats& arm, std::size_t q
 
 bool one_pixel_decides(const ArmStats& arm, std::size_t quantity, std::size_t tile) {
     double sum = 0, largest = 0;
-    for (const auto& render : arm.quantities[quantity].tiles)
-        sum += render[tile].spread, largest = std::max(largest, render[tile].largest);
+    for (const auto& render : arm.quantities[quantity].tiles) {
+        sum += render[tile].spread;
+        largest = std::max(largest, render[tile].largest);
+    }
     return sum > 0 && largest > heavy_share * sum;
 }
 
@@ -133,7 +143,8 @@ BiasPair::BiasPair(const ComparePlan& plan, const RenderStats& readings, const C
     referred = second >= readings.arms.size();
     brightest = plan.brightest.value_or(0);
     count_pixel_p = plan.count_pixel_p;
-    shared_noise = plan.shared_noise, look = plan.look;
+    shared_noise = plan.shared_noise;
+    look = plan.look;
     if (const double weight = quantity > 0 && quantity < colour_quantities ? weights[quantity - 1] : 1; weight > 0)
         brightest /= weight;
     if (!referred) other = &measured.arms[second];
@@ -141,9 +152,11 @@ BiasPair::BiasPair(const ComparePlan& plan, const RenderStats& readings, const C
     dependent = frame.colour == NoiseColour::correlated;
     if (other) dependent |= other->region(whole_frame).colour == NoiseColour::correlated;
     if (dependent) low_frequencies = low_over_high(frame.power);
-    tile_a = tile_variances(a, quantity), tile_b = tile_variances(b, quantity);
+    tile_a = tile_variances(a, quantity);
+    tile_b = tile_variances(b, quantity);
     if (!paired) return;
-    pairs = &paired->pairs, differences = &paired->differences;
+    pairs = &paired->pairs;
+    differences = &paired->differences;
     tile_paired = tile_variances(*differences, quantity);
 }
 
@@ -528,7 +541,10 @@ std::vector<std::string> found_about_means(const CompareResult& result) {
     double smallest = 0;
     for (const BiasResult& b : result.bias) {
         if (result.bias.size() <= few || !quiet(b)) out.push_back(b.sentence);
-        else ++rest, smallest = std::max(smallest, b.regions.back().smallest);
+        else {
+            ++rest;
+            smallest = std::max(smallest, b.regions.back().smallest);
+        }
     }
     if (rest)
         out.push_back(

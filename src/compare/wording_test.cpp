@@ -25,7 +25,9 @@ struct FourRenders {
             renders.put_grey("a" + std::to_string(k), 2, {1 + x, 5});             // variance 5/3 and 0
             renders.put_grey("b" + std::to_string(k), 2, {2 * x, 4 + x * 0.5f});  // 20/3 and 5/12
         }
-        plan = renders.plan(flags), all = renders.read(flags), measured = renders.compare(flags);
+        plan = renders.plan(flags);
+        all = renders.read(flags);
+        measured = renders.compare(flags);
     }
     BiasPair pair() const { return {plan, all, measured, 0, 1}; }
     MemoryRenders renders;
@@ -90,11 +92,15 @@ TEST(TwoSides, OnePixelThatDecidesATileIsFound) {
 
 TEST(Roughness, IsTheErrorOfAReferenceOfOneFile) {
     RenderStats all;
-    all.width = 4, all.height = 1, all.bad.assign(4, false);
+    all.width = 4;
+    all.height = 1;
+    all.bad.assign(4, false);
     ArmStats arm;
-    arm.film.count = 2, arm.film.planes = {{{1, 2, 1, 2}, {0, 0, 0, 0}}};
+    arm.film.count = 2;
+    arm.film.planes = {{{1, 2, 1, 2}, {0, 0, 0, 0}}};
     all.reference.emplace();
-    all.reference->film.count = 1, all.reference->film.planes = {{{0, 0, 0, 0}, {0, 0, 0, 0}}};
+    all.reference->film.count = 1;
+    all.reference->film.planes = {{{0, 0, 0, 0}, {0, 0, 0, 0}}};
     PixelSet set;
     set.pixels = {0, 1, 2, 3};
     EXPECT_DOUBLE_EQ(roughness(all, arm, set), 0.5);

@@ -255,7 +255,10 @@ bool is_number(const Comparison& c) { return c.left.number && c.right.number; }
 void resolve(ParseContext& context, AssertionPlan& plan, const std::string& path) {
     std::string why;
     std::optional<Comparison> check = parse_comparison(plan.text, why);
-    if (check && is_number(*check)) check.reset(), why = "expected a quantity on one side at least, found two numbers";
+    if (check && is_number(*check)) {
+        check.reset();
+        why = "expected a quantity on one side at least, found two numbers";
+    }
     if (check)
         if (why = resolve_quantity(check->left, context.e); why.empty())
             why = resolve_quantity(check->right, context.e);

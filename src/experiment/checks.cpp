@@ -127,7 +127,10 @@ Reaches reaches_of(const Experiment& e, const std::string& name, std::set<std::s
         if (!seen.insert(name).second) return out;
         for (const std::string& part : arm->combination.of) {
             const Reaches more = reaches_of(e, part, seen);
-            out.fill |= more.fill, out.lights |= more.lights, out.sky |= more.sky, out.triangles |= more.triangles;
+            out.fill |= more.fill;
+            out.lights |= more.lights;
+            out.sky |= more.sky;
+            out.triangles |= more.triangles;
         }
         return out;
     }

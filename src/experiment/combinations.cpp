@@ -297,8 +297,13 @@ private:
         const auto unit = [&](std::uint32_t i) { return static_cast<double>(crescent::draw(1, k, 0, i).x); };
         for (std::size_t i = 0; i < p.size(); ++i) p[i] = 10 * unit(static_cast<std::uint32_t>(i) + 2);
         FormulaInputs in;
-        in.s = m.s, in.alpha = m.alpha, in.rho_d = luminance(m.rho_d), in.rho_s = m.rho_s;
-        in.cos_o = unit(0), in.cos_i = unit(1), in.p = p;
+        in.s = m.s;
+        in.alpha = m.alpha;
+        in.rho_d = luminance(m.rho_d);
+        in.rho_s = m.rho_s;
+        in.cos_o = unit(0);
+        in.cos_i = unit(1);
+        in.p = p;
         return in;
     }
     ParseContext& context_;

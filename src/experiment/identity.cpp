@@ -17,8 +17,10 @@ std::string toml_text(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
         const auto byte = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\') out += '\\', out += c;
-        else if (byte < 0x20 || byte == 0x7f) out += fmt::format("\\u{:04x}", byte);
+        if (c == '"' || c == '\\') {
+            out += '\\';
+            out += c;
+        } else if (byte < 0x20 || byte == 0x7f) out += fmt::format("\\u{:04x}", byte);
         else out += c;
     }
     return out + '"';
@@ -167,7 +169,8 @@ std::uint64_t hash(const Experiment& experiment) {
     for (MeshObject& mesh : counted.meshes) {
         const std::optional<std::string> content = mesh.pack ? content_of(mesh) : mesh.content;
         if (!content) continue;
-        mesh.file = *content, mesh.content.reset();
+        mesh.file = *content;
+        mesh.content.reset();
         for (const TextureKey& key : texture_keys) (mesh.*key.texture).file.reset();
     }
     std::string text = canonical_text(counted);

@@ -28,7 +28,8 @@ void load_sky(SkyLight& sky) {
     if (sky.content && sky.content != content)
         throw InputError(
             {sky.file, 0, 0}, fmt::format("expected an image with the content {}, found {}", *sky.content, content));
-    sky.content = content, sky.image = std::move(image);
+    sky.content = content;
+    sky.image = std::move(image);
 }
 
 namespace {

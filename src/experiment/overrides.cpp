@@ -68,7 +68,10 @@ Member* step(Node& node, const std::string& segment) {
 
 void move_to(Node& node, const SourceLocation& at) {
     node.at = at;
-    for (Member& member : node.members) member.at = at, move_to(member.value, at);
+    for (Member& member : node.members) {
+        member.at = at;
+        move_to(member.value, at);
+    }
 }
 
 class Override {
@@ -96,12 +99,16 @@ private:
         try {
             Node tree = read_toml("value = " + text, place_.file);
             if (tree.members.size() == 1 && tree.members[0].key == "value") value = std::move(tree.members[0].value);
-            else value.kind = Node::Kind::text, value.text = text;
+            else {
+                value.kind = Node::Kind::text;
+                value.text = text;
+            }
         } catch (const InputError& error) {
             if (text.empty()) return fail("expected a value after '='"), false;
             if (std::string_view("[{\"'").find(text[0]) != std::string_view::npos)
                 return fail(fmt::format("the value: {}", error.diagnostics().front().message)), false;
-            value.kind = Node::Kind::text, value.text = text;
+            value.kind = Node::Kind::text;
+            value.text = text;
         }
         move_to(value, place_);
         return true;

@@ -264,7 +264,10 @@ void resolve_s(ParseContext& context) {
     bool valid = true;
     for (std::size_t k = 0; k < e.surface_count(); ++k) {
         Material& material = e.material(k);
-        if (!material.s && s > 0) material.s = s, material.inherits_s = true;
+        if (!material.s && s > 0) {
+            material.s = s;
+            material.inherits_s = true;
+        }
         valid = valid && context.is_valid(e.surface_path(k) + ".s");
     }
     if (s > 0 || !valid) return;

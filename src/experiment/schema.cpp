@@ -117,8 +117,11 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t hang 
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find(' ', at), text.size());
         const std::string_view word = text.substr(at, end - at);
-        if (line.size() > indent && line.size() + 1 + word.size() > columns)
-            out += line + "\n", indent += std::exchange(hang, 0), line.assign(indent, ' ');
+        if (line.size() > indent && line.size() + 1 + word.size() > columns) {
+            out += line + "\n";
+            indent += std::exchange(hang, 0);
+            line.assign(indent, ' ');
+        }
         if (line.size() > indent) line += ' ';
         line += word;
         at = end + 1;

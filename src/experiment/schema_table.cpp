@@ -327,7 +327,8 @@ Section plates() {
 /// The text until it is parsed. Another text is another assertion.
 constexpr Slot comparison = {[](void* object, const Value& value) {
                                  auto& plan = *static_cast<AssertionPlan*>(object);
-                                 plan.text = value.text, plan.check = {};
+                                 plan.text = value.text;
+                                 plan.check = {};
                              },
     [](const void* object, Value& value) {
         const auto& plan = *static_cast<const AssertionPlan*>(object);

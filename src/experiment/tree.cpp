@@ -44,13 +44,18 @@ Node convert(const toml::node& from, const std::string& file, int depth) {
             for (const auto& item : *array)
                 to.members.push_back({"", place_of(item.source(), file), convert(item, file, depth + 1)});
     } else if (const auto* text = from.as_string()) {
-        to.kind = Node::Kind::text, to.text = text->get();
+        to.kind = Node::Kind::text;
+        to.text = text->get();
     } else if (const auto* integer = from.as_integer()) {
-        to.kind = Node::Kind::integer, to.integer = integer->get(), to.number = static_cast<double>(to.integer);
+        to.kind = Node::Kind::integer;
+        to.integer = integer->get();
+        to.number = static_cast<double>(to.integer);
     } else if (const auto* number = from.as_floating_point()) {
-        to.kind = Node::Kind::number, to.number = number->get();
+        to.kind = Node::Kind::number;
+        to.number = number->get();
     } else if (const auto* flag = from.as_boolean()) {
-        to.kind = Node::Kind::flag, to.flag = flag->get();
+        to.kind = Node::Kind::flag;
+        to.flag = flag->get();
     } else {
         to.kind = Node::Kind::date;
     }
@@ -69,7 +74,10 @@ void refuse_junk(std::string_view text, const std::string& file) {
             throw InputError({file, line, column},
                 fmt::format("expected a key of at most 5 names, found more than {} dots in one run", most_dots));
         if (std::string_view("\n=,[]{}").find(c) != std::string_view::npos) dots = 0;
-        if (c == '\n') ++line, column = 0;
+        if (c == '\n') {
+            ++line;
+            column = 0;
+        }
         ++column;
     }
 }

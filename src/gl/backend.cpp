@@ -157,9 +157,10 @@ std::vector<Film> Estimator::films(const Scene& scene, const std::string& sample
                 "the GL back end has no light of the kind '{}' ({}): use the cpu", light.kind(), light.name));
     const Image& image = scene.image();
     std::vector<Film> out;
-    for (const std::uint64_t sample_count : n)
-        out.emplace_back(image.width, image.height, sample_count),
-            out.back().directions = out.back().evaluations = directions_per_sample(sampler);
+    for (const std::uint64_t sample_count : n) {
+        out.emplace_back(image.width, image.height, sample_count);
+        out.back().directions = out.back().evaluations = directions_per_sample(sampler);
+    }
     for (const TileBox& box : rectangles_of(image.width, image.height, count_lights(scene), largest_texture_))
         estimate(scene, box, sampler, seed, out, monitor);
     return out;

@@ -134,7 +134,10 @@ TEST(Films, SmallVariancesAreTheCpus) {
         const Film a = estimate_films(scene, "light-area", {n}, 5, "", monitor)[0],
                    b = gl.films(scene, "light-area", {n}, 5, monitor)[0];
         double cpu = 0, gpu = 0;
-        for (std::size_t at = 0; at < a.size(); ++at) cpu += a.var[at], gpu += b.var[at];
+        for (std::size_t at = 0; at < a.size(); ++at) {
+            cpu += a.var[at];
+            gpu += b.var[at];
+        }
         EXPECT_NEAR(gpu / cpu, 1, 1e-3) << n;
     }
 }
@@ -148,7 +151,10 @@ TEST(Films, SmallLampsAreMetByWhatIsDrawnTowardsThem) {
         const Film a = estimate_films(scene, arm, {16}, 5, "", monitor)[0],
                    b = gl.films(scene, arm, {16}, 5, monitor)[0];
         double cpu = 0, gpu = 0;
-        for (std::size_t at = 0; at < a.size(); ++at) cpu += a.y[at], gpu += b.y[at];
+        for (std::size_t at = 0; at < a.size(); ++at) {
+            cpu += a.y[at];
+            gpu += b.y[at];
+        }
         EXPECT_NEAR(gpu / cpu, 1, 1e-5) << arm;
     }
 }

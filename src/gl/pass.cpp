@@ -126,8 +126,10 @@ Pass::Pass(const Context& context, const PointTexture& shading_points, const Fra
       monitor_(monitor),
       moments_(shading_points.groups().size()),
       met_(framebuffer.attachments() - 2) {
-    for (std::size_t g = 0; g < moments_.size(); ++g)
-        moments_[g].resize(shading_points.groups()[g]), means_.emplace_back(shading_points.groups()[g].count);
+    for (std::size_t g = 0; g < moments_.size(); ++g) {
+        moments_[g].resize(shading_points.groups()[g]);
+        means_.emplace_back(shading_points.groups()[g].count);
+    }
 }
 
 void Pass::advance_to(std::uint64_t n) {
@@ -210,19 +212,20 @@ void Pass::gather(std::size_t first_light, int samples) {
         for (std::size_t i = 0; i < group.count; ++i) {
             const std::size_t at = 4 * shading_points_.texel(group, i);
             if (first_light == 0) {
-                m.g[i] += static_cast<double>(sums_[at]), m.g_lobe[i] += static_cast<double>(sums_[at + 1]);
+                m.g[i] += static_cast<double>(sums_[at]);
+                m.g_lobe[i] += static_cast<double>(sums_[at + 1]);
                 const double by = static_cast<double>(counts_[at + 3]) - means_[g][i];  // Chan, Golub & LeVeque 1983
                 m.spread[i] += static_cast<double>(sums_[at + 2]) + by * by * (before * more / (before + more));
                 means_[g][i] += by * (more / (before + more));
                 m.largest[i] = std::max(m.largest[i], sums_[at + 3]);
-                m.horizon[i] += static_cast<std::uint32_t>(counts_[at]),
-                    m.hits[i] += static_cast<std::uint32_t>(counts_[at + 1]);
+                m.horizon[i] += static_cast<std::uint32_t>(counts_[at]);
+                m.hits[i] += static_cast<std::uint32_t>(counts_[at + 1]);
                 m.bad[i] += static_cast<std::uint32_t>(counts_[at + 2]);
             }
             for (std::size_t k = 0; k < lights; ++k) {
                 const float* pair = met_[k / 2].data() + at + 2 * (k % 2);
-                m.light_g[first_light + k][i] += static_cast<double>(pair[0]),
-                    m.light_g_lobe[first_light + k][i] += static_cast<double>(pair[1]);
+                m.light_g[first_light + k][i] += static_cast<double>(pair[0]);
+                m.light_g_lobe[first_light + k][i] += static_cast<double>(pair[1]);
             }
         }
     });

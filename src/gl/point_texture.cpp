@@ -50,7 +50,10 @@ void PointTexture::fill_point(std::vector<float>& layers, const ShadingPoints& s
     std::size_t layer = 0;
     const auto put = [&](float x, float y, float z, float w) {
         float* to = layers.data() + 4 * (layer++ * texels + at);
-        to[0] = x, to[1] = y, to[2] = z, to[3] = w;
+        to[0] = x;
+        to[1] = y;
+        to[2] = z;
+        to[3] = w;
     };
     put(s.wox[i], s.woy[i], s.woz[i], s.s[i]);
     put(s.alpha[i], s.diffuse[i], s.rho_s[i], 0);
@@ -112,7 +115,8 @@ LobePixels PointTexture::pixels_of(int lobe) const {
             const std::size_t at = texel(group, i);
             const int x = static_cast<int>(at % across);
             ++out.strips[at / across / strip_rows];
-            out.x0 = std::min(out.x0, x), out.x1 = std::max(out.x1, x + 1);
+            out.x0 = std::min(out.x0, x);
+            out.x1 = std::max(out.x1, x + 1);
         }
     }
     return out;

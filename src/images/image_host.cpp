@@ -48,7 +48,8 @@ void write_all(const void* from, std::size_t bytes) {
         const ssize_t n = ::write(STDOUT_FILENO, next, bytes);
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0) ::_exit(1);  // no one reads
-        next += n, bytes -= static_cast<std::size_t>(n);
+        next += n;
+        bytes -= static_cast<std::size_t>(n);
     }
 }
 

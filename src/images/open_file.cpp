@@ -62,7 +62,8 @@ const char* kind_of(mode_t mode) {
 
 FileState state_of(const struct stat& s) {
     FileState out;
-    out.device = static_cast<std::uint64_t>(s.st_dev), out.inode = static_cast<std::uint64_t>(s.st_ino);
+    out.device = static_cast<std::uint64_t>(s.st_dev);
+    out.inode = static_cast<std::uint64_t>(s.st_ino);
     out.size = static_cast<std::uint64_t>(std::max<off_t>(0, s.st_size));
 #ifdef __APPLE__
     const timespec& t = s.st_mtimespec;

@@ -244,7 +244,9 @@ double atan2(double y, double x) {
 double hypot(double x, double y) { return hypot(x, y, 0); }
 
 double hypot(double x, double y, double z) {
-    x = std::fabs(x), y = std::fabs(y), z = std::fabs(z);
+    x = std::fabs(x);
+    y = std::fabs(y);
+    z = std::fabs(z);
     if (x == infinity || y == infinity || z == infinity) return infinity;
     const double xy = x > y ? x : y, largest = xy > z ? xy : z;
     if (largest == 0 || x != x || y != y || z != z) return x + y + z;
@@ -347,7 +349,11 @@ template <bool with_rest> Two quotient(double m, double c, double rest) {
     const double d = m - c, high = upper_part(m) + c;
     double low = m - upper_part(m), small = 0;
     Two over = {d, 0};
-    if constexpr (with_rest) over = sum(d, rest), low += rest, small = over.lo;
+    if constexpr (with_rest) {
+        over = sum(d, rest);
+        low += rest;
+        small = over.lo;
+    }
     const double inverse = 1 / (high + low), s = upper_part<29>(over.hi * inverse);
     return {s, (((over.hi - s * high) - s * low) + small) * inverse};
 }

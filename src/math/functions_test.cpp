@@ -153,7 +153,10 @@ TEST(Functions, TwoArgumentErrorsAreWithinTheTable) {
                 Exact exact(x), other(y);
                 row.exact(exact.v, exact.v, other.v, MPFR_RNDN);
                 const double off = ulps(row.ours(x, y), exact);
-                if (off > worst) worst = off, where = ::testing::PrintToString(std::pair(x, y));
+                if (off > worst) {
+                    worst = off;
+                    where = ::testing::PrintToString(std::pair(x, y));
+                }
             }
         EXPECT_LE(worst, row.bound) << row.name << where;
         RecordProperty(row.name, std::to_string(worst));

@@ -43,7 +43,8 @@ private:
                 double before = 1, here = x;
                 for (unsigned j = 2; j <= n; ++j) {
                     const double next = ((2 * j - 1) * x * here - (j - 1) * before) / j;
-                    before = here, here = next;
+                    before = here;
+                    here = next;
                 }
                 slope = n * (x * here - before) / (x * x - 1);
                 if (x != 0) x -= here / slope;

@@ -205,7 +205,10 @@ double fisher_exact(std::uint64_t ka, std::uint64_t na, std::uint64_t kb, std::u
     constexpr double slack = 1 + 1e-9;  // outcomes with equal probability differ by rounding
     const double seen = weight[ka - low] * slack;
     double all = 0, extreme = 0;
-    for (const double w : weight) all += w, extreme += w <= seen ? w : 0;
+    for (const double w : weight) {
+        all += w;
+        extreme += w <= seen ? w : 0;
+    }
     return std::min(1.0, extreme / all);
 }
 
@@ -340,7 +343,8 @@ MeanInterval mean_interval(std::span<const double> values, double confidence) {
     for (const double v : values) squares += (v - out.mean) * (v - out.mean);
     out.se = std::sqrt(squares / (n - 1) / n);
     const double t = student_quantile(0.5 + confidence / 2, n - 1);
-    out.low = out.mean - t * out.se, out.high = out.mean + t * out.se;
+    out.low = out.mean - t * out.se;
+    out.high = out.mean + t * out.se;
     return out;
 }
 
@@ -355,7 +359,8 @@ MeanInterval count_interval(std::span<const double> counts, double of, double co
         const double t_se = student_quantile(0.5 + confidence / 2, static_cast<double>(out.n - 1)) * out.se / of;
         const double c = t_se * t_se / (p * (1 - p));
         const double middle = (p + c / 2) / (1 + c), half = std::sqrt(t_se * t_se + c * c / 4) / (1 + c);
-        low = middle - half, high = middle + half;
+        low = middle - half;
+        high = middle + half;
     }
     out.low = std::max(0.0, of * std::min(low, independent.low));
     out.high = std::min(of, of * std::max(high, independent.high));

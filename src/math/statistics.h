@@ -178,7 +178,8 @@ inline std::optional<std::vector<double>> solved(
         for (std::size_t i = k; i < n; ++i)
             if (std::fabs(a[i][k]) > std::fabs(a[pivot][k])) pivot = i;
         if (!(std::fabs(a[pivot][k]) > least * size[k])) return {};
-        std::swap(a[k], a[pivot]), std::swap(b[k], b[pivot]);
+        std::swap(a[k], a[pivot]);
+        std::swap(b[k], b[pivot]);
         for (std::size_t i = k + 1; i < n; ++i) {
             const double by = a[i][k] / a[k][k];
             for (std::size_t j = k; j < n; ++j) a[i][j] -= by * a[k][j];

@@ -145,7 +145,9 @@ FalseRejection false_rejection(
     constexpr std::uint64_t n = 100'000;
     constexpr int runs = 128;
     Surface lambert = adapter.surface;
-    lambert.rho_d = {1, 1, 1}, lambert.rho_s = 0, lambert.s = s;
+    lambert.rho_d = {1, 1, 1};
+    lambert.rho_s = 0;
+    lambert.s = s;
     FalseRejection out{s, (s - 1) / (s + 1), n, runs, 0, 0, 0};
     std::vector<int> rejected(runs);
     const double bound = student_two_sided_quantile(static_cast<double>(n - 1), alpha);

@@ -147,7 +147,8 @@ std::vector<AssertionResult> evaluate_assertions(
     for (const AssertionPlan& plan : experiment.assertions) {
         AssertionResult r;
         const auto& [left, right, op] = plan.check;
-        r.name = plan.name, r.op = op;
+        r.name = plan.name;
+        r.op = op;
         r.skipped = seeds_missing(plan, measurements);
         r.measured = side(left, plan.median, measurements, r);
         r.bound = side(right, plan.median, measurements, r);

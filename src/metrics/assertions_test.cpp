@@ -12,7 +12,9 @@ Experiment two_arms(const std::vector<std::pair<std::string, bool>>& checks) {
     Experiment e;
     e.seed = 5;
     Shape ball;
-    ball.name = "ball", ball.material.s = 32, ball.material.rho_s = 0.1;
+    ball.name = "ball";
+    ball.material.s = 32;
+    ball.material.rho_s = 0.1;
     e.shapes = {ball};
     e.arms = {{"a", "cosine", {4, 16}, {}}, {"b", "phong", {4}, {}}};
     e.regions = {{"H", {2, 3, 5, 4}, {}}};
@@ -38,9 +40,10 @@ Metrics measured() {
     Metrics m;
     const double of_a[] = {2, 4, 9}, of_b[] = {3, 1, 1};
     for (std::uint32_t i = 0; i < 3; ++i)
-        for (const std::uint64_t n : {4u, 16u})
-            m.runs.push_back(run("a", n, 5 + i, of_a[i] / static_cast<double>(n))),
-                m.runs.push_back(run("b", n, 5 + i, of_b[i] / static_cast<double>(n)));
+        for (const std::uint64_t n : {4u, 16u}) {
+            m.runs.push_back(run("a", n, 5 + i, of_a[i] / static_cast<double>(n)));
+            m.runs.push_back(run("b", n, 5 + i, of_b[i] / static_cast<double>(n)));
+        }
     m.furnaces = {{"white", "a", "combined", 64, 0.27, 0.30, 0.01, std::nullopt, 0, std::nullopt}};
     m.shape_pixels = {{"ball", 120}};
     m.geometry_pixels = 500;
@@ -71,7 +74,9 @@ TEST(Quantities, AreReadFromTheRunTheyName) {
 TEST(Assertions, RmseWithinReferenceErrorDoesNotPass) {
     Metrics m = measured();
     m.references.resize(1);
-    m.references[0].s = 32, m.references[0].region = "H", m.references[0].quadrature_error = 0.1,
+    m.references[0].s = 32;
+    m.references[0].region = "H";
+    m.references[0].quadrature_error = 0.1;
     m.references[0].rms_standard_error = 9;
     EXPECT_TRUE(verdict("rmse.H(a, n=4) < 1", false, m)) << "0.5 is five times the error";
     EXPECT_FALSE(verdict("rmse.H(a, n=16) < 1", false, m)) << "0.125 is not";

@@ -36,7 +36,10 @@ TEST(Flip, AgreesWithThePublishedProgram) {
     };
     for (const auto& [lift, oracle] : {std::pair{0.0, 0.17929989}, {3.0, 0.45306307}}) {
         std::vector<float> a[3], b[3];
-        for (int c = 0; c < 3; ++c) a[c] = plane(c, false, lift), b[c] = plane(c, true, lift);
+        for (int c = 0; c < 3; ++c) {
+            a[c] = plane(c, false, lift);
+            b[c] = plane(c, true, lift);
+        }
         const auto flip = lift > 0 ? hdr_flip : ldr_flip;
         EXPECT_NEAR(mean(flip({90, 60, a[0], a[1], a[2]}, {90, 60, b[0], b[1], b[2]}, 67.0206, "")), oracle, 1e-4)
             << lift;
@@ -46,7 +49,10 @@ TEST(Flip, AgreesWithThePublishedProgram) {
 /// The mean over a box is that of the whole map: the filters see the pixels around the box, and no others.
 TEST(Flip, OfABoxIsThatOfTheWholePictureThere) {
     std::vector<float> a[3], b[3];
-    for (int c = 0; c < 3; ++c) a[c] = plane(c, false, 3), b[c] = plane(c, true, 3);
+    for (int c = 0; c < 3; ++c) {
+        a[c] = plane(c, false, 3);
+        b[c] = plane(c, true, 3);
+    }
     const FlipImage reference{90, 60, a[0], a[1], a[2]}, test{90, 60, b[0], b[1], b[2]};
     const std::vector<float> map = hdr_flip(reference, test, 30);
     const Box boxes[] = {{40, 20, 52, 29}, {0, 0, 7, 59}, {89, 59, 89, 59}};

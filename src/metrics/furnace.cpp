@@ -42,7 +42,10 @@ FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan,
         experiment.seed, isa, &monitor.stop, out.samples.data());
     const double n = static_cast<double>(plan.n);
     FurnaceResult& metric = out.metric;
-    metric.name = plan.name, metric.arm = plan.arm, metric.part = lobe_only ? "lobe" : "combined", metric.n = plan.n;
+    metric.name = plan.name;
+    metric.arm = plan.arm;
+    metric.part = lobe_only ? "lobe" : "combined";
+    metric.n = plan.n;
     const double rho_d = luminance(surface.rho_d);
     const double albedo = surface.rho_s > 0 ? lobe_albedo(surface.brdf, surface.s, surface.alpha, 1.0) : 0;
     metric.measured = (rho_d / pi * m.g[0] + surface.rho_s * m.g_lobe[0]) / n;
@@ -84,10 +87,13 @@ ShadingPoints furnace_points(const Surface& surface, std::size_t count, double c
     const auto fill = [&](std::vector<float>& array, double value) { array.assign(count, static_cast<float>(value)); };
     for (std::size_t i = 0; i < count; ++i) shading_points.pixel.push_back(static_cast<std::uint32_t>(i));
     shading_points.shape.assign(count, 0);
-    fill(shading_points.wox, std::sqrt(1 - cos_o * cos_o)), fill(shading_points.woy, 0),
-        fill(shading_points.woz, cos_o);
-    fill(shading_points.s, surface.s), fill(shading_points.alpha, surface.alpha);
-    fill(shading_points.diffuse, luminance(surface.rho_d)), fill(shading_points.rho_s, surface.rho_s);
+    fill(shading_points.wox, std::sqrt(1 - cos_o * cos_o));
+    fill(shading_points.woy, 0);
+    fill(shading_points.woz, cos_o);
+    fill(shading_points.s, surface.s);
+    fill(shading_points.alpha, surface.alpha);
+    fill(shading_points.diffuse, luminance(surface.rho_d));
+    fill(shading_points.rho_s, surface.rho_s);
     for (auto* zero : {&shading_points.px, &shading_points.py, &shading_points.pz, &shading_points.ty,
              &shading_points.tz, &shading_points.bx, &shading_points.bz, &shading_points.nx, &shading_points.ny})
         fill(*zero, 0);

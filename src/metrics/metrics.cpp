@@ -97,11 +97,14 @@ struct PairedError {
     double squares = 0, variance = 0, own = 0;
     void add(const FilmPixel& p) {
         const double e2 = p.pair_error * p.pair_error;
-        squares += p.squared_error(), variance += 4 * p.difference() * p.difference() * e2, own += e2;
+        squares += p.squared_error();
+        variance += 4 * p.difference() * p.difference() * e2;
+        own += e2;
     }
     void write(RegionMetrics& m) const {
         const double pixels = static_cast<double>(m.pixels);
-        m.mse = squares / pixels, m.mse_error = std::sqrt(variance) / pixels,
+        m.mse = squares / pixels;
+        m.mse_error = std::sqrt(variance) / pixels;
         m.reference_error = std::sqrt(own / pixels);
     }
 };
@@ -159,7 +162,8 @@ double rms(const std::vector<float>& a, int width, const Box& box) {
 ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, const Region& region,
     const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used) {
     ReferenceQuality m;
-    m.s = q.s, m.region = region.name;
+    m.s = q.s;
+    m.region = region.name;
     m.quadrature_error = rms(q.error, q.width, region.box);
     if (note) {
         m.rms_difference = rms_difference(q.y, note->y, q.width, region.box);
@@ -186,7 +190,8 @@ std::vector<ReferenceQuality> paired_quality(
     for (const ReferenceFilm& film : references)
         for (const Region& region : experiment.regions) {
             ReferenceQuality& m = out.emplace_back();
-            m.s = film.s, m.region = region.name;
+            m.s = film.s;
+            m.region = region.name;
             m.paired_error = rms(film.error, film.width, region.box);
             for (const RunMetrics& run : runs)
                 if (const RegionMetrics* at = run.region(region.name); at && run.key.s == film.s)
@@ -365,7 +370,10 @@ Line fit_known(const std::vector<std::uint64_t>& n, const std::vector<double>& r
     std::vector<std::uint64_t> known_n;
     std::vector<double> known;
     for (std::size_t i = 0; i < n.size(); ++i)
-        if (!std::isnan(rmse[i])) known_n.push_back(n[i]), known.push_back(rmse[i]);
+        if (!std::isnan(rmse[i])) {
+            known_n.push_back(n[i]);
+            known.push_back(rmse[i]);
+        }
     return known.size() < 2 ? Line{std::nan(""), std::nan("")} : fit_power(known_n, known);
 }
 

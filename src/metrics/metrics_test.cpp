@@ -82,7 +82,8 @@ TEST(PairedMetrics, AreThoseOfTheProductOfTwoErrors) {
         film.y[k] = static_cast<float>(y);
         reference.y[k] = static_cast<float>(0.5 * (first + second));
         reference.error[k] = static_cast<float>(0.5 * std::fabs(first - second));
-        products += (y - first) * (y - second), own += sqr(0.5 * (first - second));
+        products += (y - first) * (y - second);
+        own += sqr(0.5 * (first - second));
         variance += sqr(y - 0.5 * (first + second)) * sqr(first - second);
     }
     const RegionMetrics far = measure(experiment, {"a", 10, 32, 1}, film, reference, shapes).regions[0];

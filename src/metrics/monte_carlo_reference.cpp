@@ -44,7 +44,8 @@ ShadingPoints only_light(const Scene& scene, const ShadingPoints& all, std::size
 
 ShadingPoints only_lobe(const ShadingPoints& all) {
     ShadingPoints shading_points = all;
-    shading_points.disks.clear(), shading_points.others.clear();
+    shading_points.disks.clear();
+    shading_points.others.clear();
     std::fill(shading_points.fill_d.begin(), shading_points.fill_d.end(), 0.0f);
     return shading_points;
 }

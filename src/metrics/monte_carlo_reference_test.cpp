@@ -33,8 +33,14 @@ TEST(Estimator, DiskBehindAnotherIsHiddenFromBoth) {
     Experiment experiment = test::small_scene();
     DiskLight& near = experiment.disks[0];
     DiskLight& far = experiment.disks[1];
-    near.center = {0, 2, 0}, near.normal = {0, -1, 0}, near.radius = 0.5, near.radiance = {5, 5, 5};
-    far.center = {0, 3, 0}, far.normal = {0, -1, 0}, far.radius = 0.6, far.radiance = {50, 50, 50};
+    near.center = {0, 2, 0};
+    near.normal = {0, -1, 0};
+    near.radius = 0.5;
+    near.radiance = {5, 5, 5};
+    far.center = {0, 3, 0};
+    far.normal = {0, -1, 0};
+    far.radius = 0.6;
+    far.radiance = {50, 50, 50};
     EXPECT_LT(references_apart(experiment), 4);
     Experiment alone = experiment;
     alone.disks.erase(alone.disks.begin());
@@ -52,14 +58,17 @@ double correlation(const std::vector<float>& a, const std::vector<float>& b, con
     double aa = 0, bb = 0, ab = 0;
     for (std::size_t at = 0; at < truth.size(); ++at) {
         const double x = static_cast<double>(a[at] - truth[at]), y = static_cast<double>(b[at] - truth[at]);
-        aa += x * x, bb += y * y, ab += x * y;
+        aa += x * x;
+        bb += y * y;
+        ab += x * y;
     }
     return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
 }
 
 TEST(Estimator, ArticleReferenceSharesNoRandomStream) {
     Experiment experiment = test::small_scene();
-    experiment.seed = experiment.reference.seed = 1, experiment.seeds = 4;
+    experiment.seed = experiment.reference.seed = 1;
+    experiment.seeds = 4;
     const Scene scene(experiment);
     ProgressMonitor monitor;
     const std::vector<double> s = {experiment.s()};

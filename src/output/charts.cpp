@@ -90,9 +90,14 @@ std::vector<double> moved_apart(const std::vector<double>& places, double pitch,
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return places[a] < places[b]; });
     std::vector<double> moved = places;
     double least = first, most = last;
-    for (const std::size_t i : order) moved[i] = std::max(moved[i], least), least = moved[i] + pitch;
-    for (auto i = order.rbegin(); i != order.rend(); ++i)
-        moved[*i] = std::min(moved[*i], most), most = moved[*i] - pitch;
+    for (const std::size_t i : order) {
+        moved[i] = std::max(moved[i], least);
+        least = moved[i] + pitch;
+    }
+    for (auto i = order.rbegin(); i != order.rend(); ++i) {
+        moved[*i] = std::min(moved[*i], most);
+        most = moved[*i] - pitch;
+    }
     return moved;
 }
 

@@ -137,7 +137,8 @@ private:
         std::string_view name = tex_.substr(at_);
         std::size_t length = 0;
         while (length < name.size() && std::isalpha(static_cast<unsigned char>(name[length]))) ++length;
-        name = name.substr(0, length), at_ += length;
+        name = name.substr(0, length);
+        at_ += length;
         while (at_ < tex_.size() && tex_[at_] == ' ') ++at_;
         if (name == "frac") {
             Node top = atom(), bottom = atom();

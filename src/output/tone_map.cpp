@@ -42,7 +42,9 @@ Rgb neutral(const Rgb& colour) {
     // The toe removes the reflection of the surface, 4 %: x - 6.25 x^2 = x (1 - x / (4 fresnel)) meets it at x = 2
     // fresnel.
     double offset = x < 2 * fresnel ? x - x * x / (4 * fresnel) : fresnel;
-    r -= offset, g -= offset, b -= offset;
+    r -= offset;
+    g -= offset;
+    b -= offset;
     double peak = std::max({r, g, b});
     if (peak < start) return {r, g, b};
 

@@ -48,9 +48,12 @@ struct Crosses {
         Long near = -1e300L, far = 1e300L;
         const auto slab = [&](Long a, Long b, Long from, Long v) {
             const Long t0 = (a - from) / v, t1 = (b - from) / v;
-            near = std::max(near, std::min(t0, t1)), far = std::min(far, std::max(t0, t1));
+            near = std::max(near, std::min(t0, t1));
+            far = std::min(far, std::max(t0, t1));
         };
-        slab(o.min.x, o.max.x, x.x, d.x), slab(o.min.y, o.max.y, x.y, d.y), slab(o.min.z, o.max.z, x.z, d.z);
+        slab(o.min.x, o.max.x, x.x, d.x);
+        slab(o.min.y, o.max.y, x.y, d.y);
+        slab(o.min.z, o.max.z, x.z, d.z);
         return near < far && (in(near) || in(far));
     }
     bool operator()(const shapes::Quad& o) const {
@@ -144,7 +147,8 @@ struct Count {
         for (const Vec3l by : {Vec3l{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
             for (const Long sign : {-1.0L, 1.0L})
                 if (truth(sign * tolerance * by, 0) != is || truth({}, sign * tolerance) != is) return;
-        ++rays, hidden += is;
+        ++rays;
+        hidden += is;
         off += is != blocked_by<float>(occluder_about({body, -1}, origin), offset, d, distance);
     }
 };

@@ -40,8 +40,10 @@ WeightedDirection direction_of(const PointDraw& drawn, double pdf, double weight
     WeightedDirection out;
     out.drawn.wi = drawn.wi;
     out.drawn.pdf.v = static_cast<float>(pdf);
-    out.drawn.disk = drawn.light, out.drawn.met = drawn.met;
-    out.drawn.texel = drawn.texel, out.drawn.triangle = drawn.triangle;
+    out.drawn.disk = drawn.light;
+    out.drawn.met = drawn.met;
+    out.drawn.texel = drawn.texel;
+    out.drawn.triangle = drawn.triangle;
     out.weight = static_cast<float>(weight);
     return out;
 }
@@ -104,12 +106,17 @@ private:
             float v;
             if (!meets_disk(lights_->facing[k], aimed.drawn, k, false, v)) continue;
             const float t = lights_->facing[k].k / v;
-            if (is_nearer(t, nearest)) nearest = t, met = static_cast<int>(k);
+            if (is_nearer(t, nearest)) {
+                nearest = t;
+                met = static_cast<int>(k);
+            }
         }
         for (std::size_t k = points_.disks.size(); k < points_.light_count(); ++k) {
             float t;
-            if (meets_light(lights_->others[k - points_.disks.size()], aimed.drawn, k, t) && is_nearer(t, nearest))
-                nearest = t, met = static_cast<int>(k);
+            if (meets_light(lights_->others[k - points_.disks.size()], aimed.drawn, k, t) && is_nearer(t, nearest)) {
+                nearest = t;
+                met = static_cast<int>(k);
+            }
         }
         return met;
     }
@@ -154,8 +161,11 @@ CombinationCall Combination::kernel_call(const PixelNumbers* numbers) const {
     out.form = mixture_              ? CombinationCall::Form::mixture
         : plan_.draw == MisDraw::one ? CombinationCall::Form::one
                                      : CombinationCall::Form::every;
-    out.power = plan_.heuristic == MisHeuristic::power, out.has_weights = !plan_.weights.empty();
-    out.samplers = of_.size(), out.sampler = built_in_.data(), out.repeats = repeats_.data();
+    out.power = plan_.heuristic == MisHeuristic::power;
+    out.has_weights = !plan_.weights.empty();
+    out.samplers = of_.size();
+    out.sampler = built_in_.data();
+    out.repeats = repeats_.data();
     out.numbers = numbers;
     return out;
 }
@@ -175,7 +185,8 @@ void CombinationCall::read_numbers(const std::uint32_t* pixel, std::size_t count
     std::uint32_t block, float* x, float* y) const {
     for (std::size_t l = 0; l < count; ++l) {
         const Vec2<float> u = (*numbers)(pixel[l], sample, block);
-        x[l] = as_float(double(u.x)), y[l] = as_float(double(u.y));
+        x[l] = as_float(double(u.x));
+        y[l] = as_float(double(u.y));
     }
 }
 
@@ -200,7 +211,8 @@ SampleCost Combination::cost() const {
     } else if (plan_.kind == CombinationKind::mis && plan_.draw != MisDraw::one) {
         out.directions = 0;
         for (std::size_t k = 0; k < of_.size(); ++k) out.directions += samples_of(k);
-        out.f = out.directions, out.densities = out.directions * others;
+        out.f = out.directions;
+        out.densities = out.directions * others;
     } else {
         out.densities = others;
     }
@@ -253,7 +265,9 @@ std::vector<double> Combination::mis_weights(const PointRows& at, std::span<cons
                 out[row] = mis_weight(k[row], in, here);
                 continue;
             }
-            mine.push_back(row), directions.push_back(wi[row]), ++runs.back().rows;
+            mine.push_back(row);
+            directions.push_back(wi[row]);
+            ++runs.back().rows;
             densities.insert(densities.end(), here.begin(), here.end());
         }
         if (runs.back().rows == 0) runs.pop_back();
@@ -281,7 +295,10 @@ void Combination::sample_every(const PointRows& at, const NumberBlocks& u, std::
     for (std::size_t k = 0; k < of_.size(); ++k)
         for (std::size_t repeat = 0; repeat < samples_of(k); ++repeat, ++next) {
             of_[k]->draw(at, numbers_of(at, u, k, repeat, static_cast<std::size_t>(of_[k]->numbers())), drawn);
-            for (std::size_t i = 0; i < rows; ++i) wi[i] = drawn[i].wi, p[k][i] = drawn[i].pdf;
+            for (std::size_t i = 0; i < rows; ++i) {
+                wi[i] = drawn[i].wi;
+                p[k][i] = drawn[i].pdf;
+            }
             for (std::size_t j = 0; j < of_.size(); ++j)
                 if (j != k) of_[j]->density(at, wi, p[j]);
             const std::vector<double> w = mis_weights(at, std::vector<std::size_t>(rows, k), wi, p);
@@ -330,7 +347,10 @@ void Combination::sample_resampled(const PointRows& at, const NumberBlocks& u, s
     for (std::size_t c = 0; c < m; ++c) {
         const std::size_t k = c % samplers;
         of_[k]->draw(at, numbers_of(at, u, k, c / samplers, static_cast<std::size_t>(of_[k]->numbers())), drawn);
-        for (std::size_t i = 0; i < rows; ++i) wi[i] = drawn[i].wi, density[i] = candidates_of(k) * drawn[i].pdf;
+        for (std::size_t i = 0; i < rows; ++i) {
+            wi[i] = drawn[i].wi;
+            density[i] = candidates_of(k) * drawn[i].pdf;
+        }
         for (std::size_t j = 0; j < samplers; ++j) {
             if (j == k) continue;
             of_[j]->density(at, wi, p);
@@ -350,7 +370,8 @@ void Combination::sample_resampled(const PointRows& at, const NumberBlocks& u, s
                 sum[row] += weight;
                 const double share = weight / sum[row];
                 if (left[row] < share || !(share < 1)) {
-                    chosen[row] = drawn[row], chosen_target[row] = target[row];
+                    chosen[row] = drawn[row];
+                    chosen_target[row] = target[row];
                     left[row] = left[row] / share;
                 } else {
                     left[row] = (left[row] - share) / (1 - share);

@@ -22,8 +22,11 @@ void add_meshes(Experiment& e) {
         mesh.positions = {{-reach, y, -reach}, {reach, y, -reach}, {reach, y, reach}, {-reach, y, reach}};
         mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
         MeshObject& object = e.meshes.emplace_back();
-        object.name = name, object.pack = make_pack(std::move(mesh)), object.emission = emission;
-        object.material.rho_d = {0.3, 0.2, 0.4}, object.material.s = 1;
+        object.name = name;
+        object.pack = make_pack(std::move(mesh));
+        object.emission = emission;
+        object.material.rho_d = {0.3, 0.2, 0.4};
+        object.material.s = 1;
     };
     add("panel", 2.2f, 0.5f, {7, 6, 5});
     add("plate", 0.35f, 0.9f, {});
@@ -40,7 +43,10 @@ constexpr Around scenes[] = {{"fill and disks", true, true, false, false}, {"sky
 Scene scene_of(const Around& around) {
     Experiment e = test::small_scene();
     if (!around.fill) e.fill = {};
-    if (!around.disks) e.disks.clear(), e.lights.clear();
+    if (!around.disks) {
+        e.disks.clear();
+        e.lights.clear();
+    }
     if (around.sky) e.sky = test::noisy_sky(16, 4);
     if (around.meshes) add_meshes(e);
     return Scene(std::move(e));
@@ -48,14 +54,20 @@ Scene scene_of(const Around& around) {
 
 std::vector<CombinationPlan> plans() {
     std::vector<CombinationPlan> out(6);
-    for (CombinationPlan& plan : out)
-        plan.kind = CombinationKind::mis, plan.of = {"cosine", "phong", "light-area", "sky", "light-triangle"};
-    out[1].heuristic = MisHeuristic::power, out[1].samples = {1, 2, 1, 3, 1};
+    for (CombinationPlan& plan : out) {
+        plan.kind = CombinationKind::mis;
+        plan.of = {"cosine", "phong", "light-area", "sky", "light-triangle"};
+    }
+    out[1].heuristic = MisHeuristic::power;
+    out[1].samples = {1, 2, 1, 3, 1};
     out[2].weights = {"p1^2 / (p1^2 + p2^2 + p3^2 + p4^2 + p5^2)", "p2^2 / (p1^2 + p2^2 + p3^2 + p4^2 + p5^2)",
         "p3^2 / (p1^2 + p2^2 + p3^2 + p4^2 + p5^2)", "p4^2 / (p1^2 + p2^2 + p3^2 + p4^2 + p5^2)", "rest"};
-    out[3].draw = MisDraw::one, out[3].heuristic = MisHeuristic::power;
-    out[4].draw = MisDraw::one, out[4].probabilities = {"0.25", "rho_s / 2", "0.125", "0", "rest"};
-    out[5].kind = CombinationKind::mixture, out[5].weights = {"0.5", "min(rho_s, 0.25)", "0.125", "0.0625", "rest"};
+    out[3].draw = MisDraw::one;
+    out[3].heuristic = MisHeuristic::power;
+    out[4].draw = MisDraw::one;
+    out[4].probabilities = {"0.25", "rho_s / 2", "0.125", "0", "rest"};
+    out[5].kind = CombinationKind::mixture;
+    out[5].weights = {"0.5", "min(rho_s, 0.25)", "0.125", "0.0625", "rest"};
     return out;
 }
 
@@ -140,9 +152,13 @@ TEST(CombinationsInKernels, TakeOtherNumbers) {
 
 TEST(CombinationsInKernels, AreThoseOfBuiltInSamplers) {
     CombinationPlan plan = plans()[0];
-    plan.kind = CombinationKind::ris, plan.candidates = 4;
+    plan.kind = CombinationKind::ris;
+    plan.candidates = 4;
     EXPECT_FALSE(combination_of(plan).runs_in_kernels());
-    plan = plans()[5], plan.kind = CombinationKind::mis, plan.weights.clear(), plan.of = {"cosine"};
+    plan = plans()[5];
+    plan.kind = CombinationKind::mis;
+    plan.weights.clear();
+    plan.of = {"cosine"};
     Techniques of = {built_in_technique("cosine"), combination_of(plans()[5]).technique()};
     EXPECT_FALSE(Combination("tested", plan, std::move(of), nullptr, {}, {}).runs_in_kernels());
 }

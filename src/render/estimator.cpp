@@ -170,7 +170,8 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
     std::vector<Film> films(n.size());
     parallel_for(std::size_t{0}, n.size(), [&](std::size_t r) {
         films[r] = Film(image.width, image.height, n[r]);
-        films[r].directions = cost_of_sample(arm).directions, films[r].evaluations = cost_of_sample(arm).f;
+        films[r].directions = cost_of_sample(arm).directions;
+        films[r].evaluations = cost_of_sample(arm).f;
     });
     std::vector<std::vector<std::uint64_t>> bad(n.size(), std::vector<std::uint64_t>(tiles.size()));
     PerThread<std::vector<Moments>> scratch(
@@ -322,8 +323,14 @@ void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, s
         };
         for (std::uint64_t j = first; j < first + n;) {  // like crescent::draw(): two samples from one hash
             const auto h = draws<std::uint32_t>(pixel, static_cast<std::uint32_t>(j >> 1), block, seed);
-            if (!(j & 1)) put(h.x, h.y), ++j;
-            if (j < first + n) put(h.z, h.w), ++j;
+            if (!(j & 1)) {
+                put(h.x, h.y);
+                ++j;
+            }
+            if (j < first + n) {
+                put(h.z, h.w);
+                ++j;
+            }
         }
     }
 }
@@ -351,7 +358,9 @@ void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
         for (std::uint64_t first = 0; first < n; first += longest_batch) {
             if (call.stop && call.stop->load(std::memory_order_relaxed)) return;
             const std::uint64_t count = std::min(longest_batch, n - first);
-            runs.clear(), u.clear(), lights_at.clear();
+            runs.clear();
+            u.clear();
+            lights_at.clear();
             for (std::size_t at = i; at < end; ++at) {
                 const Vec3<double> wo{
                     double(shading_points.wox[at]), double(shading_points.woy[at]), double(shading_points.woz[at])};
@@ -359,7 +368,8 @@ void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
                 if (!lights.empty()) add_lights_at(shading_points, at, lights_at);
                 add_numbers(shading_points.pixel[at], call.seed, first, count, numbers, u);
             }
-            wi.resize(runs.size() * count), pdf.resize(wi.size());
+            wi.resize(runs.size() * count);
+            pdf.resize(wi.size());
             sampler.draw({runs, u, lights, lights_at}, {wi, pdf});
             for (std::size_t k = 0; k < wi.size(); ++k) drawn.push_back(usable(wi[k], pdf[k]));
         }

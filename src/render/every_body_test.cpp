@@ -70,7 +70,8 @@ TEST(EveryBody, HiddenEdgePartsMatchCameraRays) {
                 const auto is = surely_crosses(body, x, y0 + v * (y1 - y0) - x);
                 if (!is) continue;
                 const auto within = [&](Interval i) { return v > i.lo && v < i.hi; };
-                ++(*is ? hidden : seen), off += (within(parts[0]) || within(parts[1])) != *is;
+                ++(*is ? hidden : seen);
+                off += (within(parts[0]) || within(parts[1])) != *is;
             }
         }
         EXPECT_EQ(off, 0) << Kind::name << "::hidden, of " << hidden + seen;
@@ -94,7 +95,8 @@ TEST(EveryBody, KernelShadowsMatchCameraRays) {
             const OccluderF packed = occluder_about({body, -1}, origin);
             const bool blocked =
                 blocked_by<float>(packed, single(x - origin), single((1 / far) * way), static_cast<float>(far));
-            ++(*is ? hidden : seen), off += blocked != *is;
+            ++(*is ? hidden : seen);
+            off += blocked != *is;
         }
         EXPECT_EQ(off, 0) << Kind::name << "::blocks, of " << hidden + seen;
         EXPECT_GT(std::min(hidden, seen), 300) << Kind::name;

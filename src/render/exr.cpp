@@ -224,7 +224,9 @@ std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_n
     for (std::size_t k = 0; grey && k < rgb.size(); k += 3) rgb[k + 1] = rgb[k + 2] = rgb[k];
     auto out = std::make_shared<RgbImage>();
     out->hash = hash_of_texels(width, height, rgb);
-    out->width = width, out->height = height, out->rgb = std::move(rgb);
+    out->width = width;
+    out->height = height;
+    out->rgb = std::move(rgb);
     return out;
 }
 
@@ -244,7 +246,8 @@ std::shared_ptr<const RgbImage> read_hdr(const std::string& path, WhyNot why_not
     const StoredImage stored = decoded(file);
     const ImageHead& head = stored.head;
     auto out = std::make_shared<RgbImage>();
-    out->width = static_cast<int>(head.width), out->height = static_cast<int>(head.height);
+    out->width = static_cast<int>(head.width);
+    out->height = static_cast<int>(head.height);
     out->rgb.resize(3 * out->texels());
     for (std::size_t k = 0; k < out->rgb.size(); ++k) {
         const std::size_t channel = head.channels < 3 ? 0 : k % 3;

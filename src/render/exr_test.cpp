@@ -42,8 +42,10 @@ Film counting_film() {
     std::uint32_t count = 7;
     for (auto* plane : {&film.horizon, &film.light_hits})
         for (std::uint32_t& v : *plane) v = count += 1000003;
-    film.r[0] = std::numeric_limits<float>::denorm_min(), film.g[1] = std::numeric_limits<float>::max();
-    film.y[2] = std::numeric_limits<float>::quiet_NaN(), film.second_moment[3] = std::numeric_limits<float>::infinity(),
+    film.r[0] = std::numeric_limits<float>::denorm_min();
+    film.g[1] = std::numeric_limits<float>::max();
+    film.y[2] = std::numeric_limits<float>::quiet_NaN();
+    film.second_moment[3] = std::numeric_limits<float>::infinity();
     film.b[4] = -0.0f;
     return film;
 }

@@ -134,7 +134,10 @@ struct HorizonFracMetric {
         .label = "horizon share"};
     double under = 0, geometry = 0;
     void add(const FilmPixel& p, const FilmFacts&) {
-        if (p.geometry) ++geometry, under += p.horizon;
+        if (p.geometry) {
+            ++geometry;
+            under += p.horizon;
+        }
     }
     double value(const FilmFacts& f) const {
         return geometry > 0 ? under / (geometry * static_cast<double>(f.n * f.directions)) : 0;

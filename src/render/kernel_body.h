@@ -143,7 +143,8 @@ template <class A, class L, class E, class F> struct Lane : E {
         const L& brdf, const D& drawn, std::uint64_t j, const KernelCall& call) {
         F x;
         if constexpr (requires { A::many_directions; }) {
-            x = accumulate(to, c, brdf, arm.next->drawn, arm.next->weight), ++arm.next;
+            x = accumulate(to, c, brdf, arm.next->drawn, arm.next->weight);
+            ++arm.next;
             for (std::size_t k = 1; k < arm.count; ++k, ++arm.next)
                 x = x + accumulate(to, c, brdf, arm.next->drawn, arm.next->weight);
         } else if constexpr (requires { A::combines; }) {

@@ -41,9 +41,16 @@ template <class F, class A>
 [[gnu::noinline]] void draw_direction(const std::byte* at, Vec3<F> wo, Vec2<F> u, DrawnByAny<F>& out) {
     const A& arm = sampler_at<F, A>(at);
     const auto take = [&](const auto& drawn) {
-        out.wi = drawn.wi, out.pdf = drawn.pdf, out.disk = number<F>(-1), out.met = no_lane<F>();
-        out.texel = UintOf<F>(no_texel), out.triangle = UintOf<F>(no_triangle);
-        if constexpr (requires { drawn.met; }) out.disk = drawn.disk, out.met = drawn.met;
+        out.wi = drawn.wi;
+        out.pdf = drawn.pdf;
+        out.disk = number<F>(-1);
+        out.met = no_lane<F>();
+        out.texel = UintOf<F>(no_texel);
+        out.triangle = UintOf<F>(no_triangle);
+        if constexpr (requires { drawn.met; }) {
+            out.disk = drawn.disk;
+            out.met = drawn.met;
+        }
         if constexpr (requires { drawn.texel; }) out.texel = drawn.texel;
         if constexpr (requires { drawn.triangle; }) out.triangle = drawn.triangle;
     };
@@ -183,9 +190,14 @@ private:
             if (!any(here)) continue;
             DrawnByAny<F> drawn;
             sampler(k).draw(place(k), wo_, u, drawn);
-            if (!some) out = drawn, some = true;
-            out.wi = select_each(here, drawn.wi, out.wi), out.pdf.v = select(here, drawn.pdf.v, out.pdf.v);
-            out.disk = select(here, drawn.disk, out.disk), out.met = (here & drawn.met) | (!here & out.met);
+            if (!some) {
+                out = drawn;
+                some = true;
+            }
+            out.wi = select_each(here, drawn.wi, out.wi);
+            out.pdf.v = select(here, drawn.pdf.v, out.pdf.v);
+            out.disk = select(here, drawn.disk, out.disk);
+            out.met = (here & drawn.met) | (!here & out.met);
             out.texel = select(here, drawn.texel, out.texel);
             out.triangle = select(here, drawn.triangle, out.triangle);
         }
@@ -230,8 +242,11 @@ private:
     void heuristic(const Indices& chosen, const double (&count)[lanes], const float (&p)[most_parts][lanes],
         double (&w)[lanes]) const {
         double own[lanes], sum[lanes], least[lanes];
-        for (std::size_t l = 0; l < lanes; ++l)
-            own[l] = static_cast<double>(p[chosen.of[l]][l]), sum[l] = 0, least[l] = 0;
+        for (std::size_t l = 0; l < lanes; ++l) {
+            own[l] = static_cast<double>(p[chosen.of[l]][l]);
+            sum[l] = 0;
+            least[l] = 0;
+        }
         for (std::size_t k = 0; k < of_.samplers; ++k)
             for (std::size_t l = 0; l < lanes; ++l) {
                 const double density = static_cast<double>(p[k][l]);

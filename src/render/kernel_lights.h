@@ -153,11 +153,14 @@ template <class F> struct Lights {
     First first() const { return light_count > 0 ? cones[0] : DiskCone<F>{}; }
     /// Sets what samplers that aim at lights need of them.
     void show(ShadingPoint<F>& shading_point) const {
-        shading_point.disks = disks, shading_point.disk_count = static_cast<int>(disk_count);
-        shading_point.others = others, shading_point.other_count = static_cast<int>(light_count - disk_count);
+        shading_point.disks = disks;
+        shading_point.disk_count = static_cast<int>(disk_count);
+        shading_point.others = others;
+        shading_point.other_count = static_cast<int>(light_count - disk_count);
         if (!shading_points.around) return;
         shading_point.around = shading_points.around.get();
-        shading_point.position = position(), shading_point.frame = frame();
+        shading_point.position = position();
+        shading_point.frame = frame();
     }
 
     /// Returns X of a sample with known g and lobe; x is the part from the fill.
@@ -178,8 +181,10 @@ template <class F> struct Lights {
     LocalLight<F> light_at(const LightArrays& from) const {
         const auto& n = from.numbers;
         LocalLight<F> out;
-        out.kind = from.kind, out.power = F(from.power);
-        out.a = load_lanes<F>(n[0], n[1], n[2], at), out.b = load_lanes<F>(n[3], n[4], n[5], at);
+        out.kind = from.kind;
+        out.power = F(from.power);
+        out.a = load_lanes<F>(n[0], n[1], n[2], at);
+        out.b = load_lanes<F>(n[3], n[4], n[5], at);
         out.c = load_lanes<F>(n[6], n[7], n[8], at);
         for (std::size_t k = 0; k < out.number.size(); ++k) out.number[k] = load_lanes<F>(n[9 + k], at);
         return out;

@@ -53,8 +53,12 @@ template <class F> struct SurroundedTotals : LightTotals<F> {
             add_lanes(sum, total.at);
             sum = number<F>(0);
         };
-        move(of.g, around->g), move(of.g_lobe, around->g_lobe);
-        for (int c = 0; c < 3; ++c) move(of.rgb[c], around->rgb[c]), move(of.rgb_lobe[c], around->rgb_lobe[c]);
+        move(of.g, around->g);
+        move(of.g_lobe, around->g_lobe);
+        for (int c = 0; c < 3; ++c) {
+            move(of.rgb[c], around->rgb[c]);
+            move(of.rgb_lobe[c], around->rgb_lobe[c]);
+        }
     }
     /// Writes the totals so far, including the partial block.
     void write(const Surrounded<F>& lights, Moments& out) const {
@@ -63,7 +67,8 @@ template <class F> struct SurroundedTotals : LightTotals<F> {
         const auto put = [&](F sum, const LaneTotals<F>& total, std::vector<double>& to) {
             add_lanes(sum, total.at, to.data() + lights.at);
         };
-        put(of.g, around->g, out.around_g), put(of.g_lobe, around->g_lobe, out.around_g_lobe);
+        put(of.g, around->g, out.around_g);
+        put(of.g_lobe, around->g_lobe, out.around_g_lobe);
         for (std::size_t c = 0; c < 3; ++c) {
             put(of.rgb[c], around->rgb[c], out.around[c]);
             put(of.rgb_lobe[c], around->rgb_lobe[c], out.around_lobe[c]);
@@ -72,8 +77,12 @@ template <class F> struct SurroundedTotals : LightTotals<F> {
 
 private:
     template <class Work> void each(Work&& work) {
-        work(around->g), work(around->g_lobe);
-        for (int c = 0; c < 3; ++c) work(around->rgb[c]), work(around->rgb_lobe[c]);
+        work(around->g);
+        work(around->g_lobe);
+        for (int c = 0; c < 3; ++c) {
+            work(around->rgb[c]);
+            work(around->rgb_lobe[c]);
+        }
     }
 };
 
@@ -166,7 +175,10 @@ private:
             const MeshesBefore before = meshes_before(*shading_points.around, {ox.at[l], oy.at[l], oz.at[l]},
                 {dx.at[l], dy.at[l], dz.at[l]}, nearest.at[l], aimed.at[l]);
             if (before.hidden) seen.at[l] = 0;
-            if (before.triangle != no_triangle) triangle.at[l] = before.triangle, nearest.at[l] = before.distance;
+            if (before.triangle != no_triangle) {
+                triangle.at[l] = before.triangle;
+                nearest.at[l] = before.distance;
+            }
         }
     }
 
@@ -210,7 +222,9 @@ private:
                     triangle_radiance(*shading_points.around, seen.triangle.at[l], rgb);
                 else texel_radiance(*shading_points.around, seen.texel.at[l], rgb);
             }
-            r.at[l] = rgb[0], g.at[l] = rgb[1], b.at[l] = rgb[2];
+            r.at[l] = rgb[0];
+            g.at[l] = rgb[1];
+            b.at[l] = rgb[2];
         }
         return {r.pack(), g.pack(), b.pack()};
     }

@@ -42,8 +42,11 @@ std::vector<LocalLight<float>> local_others(const ShadingPoints& shading_points)
     for (const LightArrays& from : shading_points.others) {
         LocalLight<float>& light = out.emplace_back();
         const auto& n = from.numbers;
-        light.kind = from.kind, light.power = from.power;
-        light.a = at(n[0], n[1], n[2]), light.b = at(n[3], n[4], n[5]), light.c = at(n[6], n[7], n[8]);
+        light.kind = from.kind;
+        light.power = from.power;
+        light.a = at(n[0], n[1], n[2]);
+        light.b = at(n[3], n[4], n[5]);
+        light.c = at(n[6], n[7], n[8]);
         for (std::size_t k = 0; k < light.number.size(); ++k) light.number[k] = n[9 + k][0];
     }
     return out;
@@ -79,12 +82,14 @@ template <class D> Seen seen_by(const ShadingPoints& shading_points, const Local
         float v;
         if (!meets_disk(facing, drawn, k, shading_points.light_count() == 1, v) || !is_nearer(facing.k / v, nearest))
             continue;
-        nearest = facing.k / v, met = static_cast<int>(k);
+        nearest = facing.k / v;
+        met = static_cast<int>(k);
     }
     for (std::size_t k = 0; k < others.size(); ++k) {
         float t;
         if (!meets_light(others[k], drawn, disks.size() + k, t) || !is_nearer(t, nearest)) continue;
-        nearest = t, met = static_cast<int>(disks.size() + k);
+        nearest = t;
+        met = static_cast<int>(disks.size() + k);
     }
     const Surroundings* const around = shading_points.around.get();
     if (met < 0 && !around) return {};
@@ -98,7 +103,10 @@ template <class D> Seen seen_by(const ShadingPoints& shading_points, const Local
         if constexpr (requires { drawn.triangle; }) aimed = drawn.triangle;
         const MeshesBefore before = meshes_before(*around, o, d, nearest, aimed);
         if (before.hidden) return {};
-        if (before.triangle != no_triangle) triangle = before.triangle, nearest = before.distance;
+        if (before.triangle != no_triangle) {
+            triangle = before.triangle;
+            nearest = before.distance;
+        }
     }
     const bool met_one = nearest < far;
     if (!met_one && !has_sky(*around)) return {};
@@ -155,12 +163,17 @@ public:
 
     template <class D> PixelSample operator()(Vec2<float> u, const D& drawn, float weight, int technique) const {
         PixelSample out;
-        out.u = u, out.wi = drawn.wi, out.pdf = drawn.pdf.v, out.cos = drawn.wi.z;
-        out.weight = weight, out.technique = technique;
+        out.u = u;
+        out.wi = drawn.wi;
+        out.pdf = drawn.pdf.v;
+        out.cos = drawn.wi.z;
+        out.weight = weight;
+        out.technique = technique;
         if (out.cos <= 0 || is_below_face(shading_points_, out.wi) || out.pdf == 0) return out;
         const float g = weight * (out.cos / out.pdf), lobe = lobe_of(shading_points_, out.wi);
         const Seen seen = seen_by(shading_points_, lights_, drawn);
-        out.disk = seen.disk, out.around = seen.around;
+        out.disk = seen.disk;
+        out.around = seen.around;
         const Worth w = seen.around ? worth(shading_points_, seen.radiance, lobe) : worth(shading_points_, out.disk);
         out.x = g * (w.d + lobe * w.s);
         out.light = static_cast<float>(seen.around ? luminance_of(seen.radiance)
@@ -234,7 +247,8 @@ ShadingPoint<float> OpenPixel::aimed_from() const {
     ShadingPoint<float> out{at(p.wox, p.woy, p.woz), p.s[0], p.alpha[0], p.diffuse[0], p.rho_s[0], local_.data(),
         static_cast<int>(local_.size()), others_.data(), static_cast<int>(others_.size())};
     if (!p.around) return out;
-    out.around = p.around.get(), out.position = at(p.px, p.py, p.pz);
+    out.around = p.around.get();
+    out.position = at(p.px, p.py, p.pz);
     out.frame = {at(p.tx, p.ty, p.tz), at(p.bx, p.by, p.bz), at(p.nx, p.ny, p.nz)};
     return out;
 }

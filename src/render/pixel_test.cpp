@@ -38,8 +38,11 @@ Experiment with_surroundings() {
         MeshObject& ball = e.meshes.emplace_back();
         ball.name = x < 0 ? "glossy" : "shining";
         ball.pack = make_pack(test::sphere_mesh(14, 9));
-        ball.placement.translate = {x, 0.6, 0.9}, ball.placement.scale = {0.3, 0.3, 0.3};
-        ball.material.rho_d = {0.3, 0.2, 0.1}, ball.material.rho_s = 0.4, ball.material.s = 20;
+        ball.placement.translate = {x, 0.6, 0.9};
+        ball.placement.scale = {0.3, 0.3, 0.3};
+        ball.material.rho_d = {0.3, 0.2, 0.1};
+        ball.material.rho_s = 0.4;
+        ball.material.s = 20;
         if (x > 0) ball.emission = {3, 2, 1};
     }
     return e;

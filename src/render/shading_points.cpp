@@ -19,7 +19,9 @@ double reflected(const Rgb& light, const Rgb& albedo) {
 }
 
 void put(std::vector<float>& x, std::vector<float>& y, std::vector<float>& z, std::size_t i, Vec3d v) {
-    x[i] = static_cast<float>(v.x), y[i] = static_cast<float>(v.y), z[i] = static_cast<float>(v.z);
+    x[i] = static_cast<float>(v.x);
+    y[i] = static_cast<float>(v.y);
+    z[i] = static_cast<float>(v.z);
 }
 
 std::size_t whole_packs(std::size_t shading_points) {
@@ -134,8 +136,10 @@ void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit
         others[k].d[i] = shading.disk_d[light];
         others[k].s[i] = shading.disk_s[light];
     }
-    for (std::size_t c = 0; around && c < 3; ++c)
-        around_d[c][i] = shading.around_d[c], around_s[c][i] = shading.around_s[c];
+    for (std::size_t c = 0; around && c < 3; ++c) {
+        around_d[c][i] = shading.around_d[c];
+        around_s[c][i] = shading.around_s[c];
+    }
     lambert[i] = shading.lambert;
     rho_s_exact[i] = shading.surface.rho_s;
     tint[i] = shading.surface.tint;
@@ -226,7 +230,10 @@ public:
         const Texels texels = scene_.texels(hit);
         if (!shading_ || hit.shape != shape_ || hit.reveal != reveal_ || hit.below != below_ || texels != texels_) {
             shading_.emplace(scene_, scene_.surface(hit));
-            shape_ = hit.shape, reveal_ = hit.reveal, below_ = hit.below, texels_ = texels;
+            shape_ = hit.shape;
+            reveal_ = hit.reveal;
+            below_ = hit.below;
+            texels_ = texels;
         }
         const int lobe = shading_->surface.rho_s > 0 ? static_cast<int>(shading_->surface.brdf) : -1;
         auto group = std::find_if(groups.begin(), groups.end(), [&](const ShadingPoints& g) { return g.lobe == lobe; });

@@ -35,8 +35,11 @@ MeshObject two_triangles(const lights::Rectangle& r, const Rgb& radiance) {
         mesh.positions.push_back(as<float>(p));
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     MeshObject out;
-    out.name = "panel", out.pack = make_pack(std::move(mesh)), out.emission = radiance;
-    out.material.rho_d = {0.2, 0.2, 0.2}, out.material.s = 1;
+    out.name = "panel";
+    out.pack = make_pack(std::move(mesh));
+    out.emission = radiance;
+    out.material.rho_d = {0.2, 0.2, 0.2};
+    out.material.s = 1;
     return out;
 }
 
@@ -72,7 +75,8 @@ double worth(const Scene& scene, const Hit& hit, const Surface& on, Vec3d wi) {
         const double along = dot(c, disk.normal), v = dot(d, disk.normal), t = along / v;
         const Vec3d off = t * d - c;
         if (!(t > 0) || (along > 0 && !disk.two_sided) || dot(off, off) > sqr(disk.radius) || t >= nearest) continue;
-        nearest = t, radiance = light.radiance;
+        nearest = t;
+        radiance = light.radiance;
     }
     const SkyTable& sky = *scene.surroundings()->sky;
     if (nearest == 1e300) radiance = sky.radiance(sky.texel_at(d));
@@ -151,7 +155,8 @@ TEST(Surroundings, AreHiddenByABall) {
             "shapes.floor.rho_d=[0.6,0.6,0.6]", "shapes.ball.center=[0.3,1.5,0.2]", "shapes.ball.radius=0.6",
             "shapes.ball.occludes=true"});
     SceneData data = e;
-    data.fill = {}, data.sky = test::constant_sky(1, 1, 1);
+    data.fill = {};
+    data.sky = test::constant_sky(1, 1, 1);
     const Scene scene(data);
     const ReferenceFilm film = paired(scene, 16384);
     for (int i = 0; i < 9; ++i) {
@@ -175,7 +180,8 @@ TEST(LightTriangles, ShineLikeARectangle) {
     const ReferenceFilm film = paired(Scene(e), 1024);
     double squares = 0, stated = 0, y = 0;
     for (std::size_t k = 0; k < film.size(); ++k) {
-        squares += sqr(double(film.y[k]) - double(exact.y[k])), stated += sqr(double(film.error[k]));
+        squares += sqr(double(film.y[k]) - double(exact.y[k]));
+        stated += sqr(double(film.error[k]));
         y += sqr(double(exact.y[k]));
     }
     EXPECT_GT(y / double(film.size()), 0.01);
@@ -209,8 +215,10 @@ Agreement against_quadrature(const Scene& scene, std::uint64_t n) {
     ProgressMonitor monitor;
     const ReferenceFilm exact = quadrature_reference(scene, {scene.s()}, monitor)[0], film = paired(scene, n, 3);
     Agreement out;
-    for (std::size_t k = 0; k < film.size(); ++k)
-        out.squares += sqr(double(film.y[k]) - double(exact.y[k])), out.stated += sqr(double(film.error[k]));
+    for (std::size_t k = 0; k < film.size(); ++k) {
+        out.squares += sqr(double(film.y[k]) - double(exact.y[k]));
+        out.stated += sqr(double(film.error[k]));
+    }
     return out;
 }
 
@@ -243,7 +251,9 @@ TEST(PairedReference, EstimatesSquaredErrorsWithoutBias) {
     for (std::uint32_t k = 0; k < repeats; ++k) {
         const ReferenceFilm reference = paired(scene, 16, 10 + k);
         const double estimate = mse(reference, true);
-        sum += estimate, square += estimate * estimate, with_bias += mse(reference, false) / repeats;
+        sum += estimate;
+        square += estimate * estimate;
+        with_bias += mse(reference, false) / repeats;
     }
     const double mean = sum / repeats, error = std::sqrt((square / repeats - mean * mean) / (repeats - 1));
     EXPECT_NEAR(mean, truth, 5 * error);

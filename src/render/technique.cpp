@@ -28,7 +28,10 @@ public:
             for (std::size_t i = 0; i < run.rows; ++i, ++row) {
                 const auto d = arm.sample(run.wo, {as_float(u[2 * row]), as_float(u[2 * row + 1])});
                 out[row] = {d.wi, static_cast<double>(d.pdf.v)};
-                if constexpr (requires { d.met; }) out[row].light = d.disk, out[row].met = d.met;
+                if constexpr (requires { d.met; }) {
+                    out[row].light = d.disk;
+                    out[row].met = d.met;
+                }
                 if constexpr (requires { d.texel; }) out[row].texel = d.texel;
                 if constexpr (requires { d.triangle; }) out[row].triangle = d.triangle;
             }
@@ -66,15 +69,18 @@ template <class Work> void in_batches(const ExternalSampler& sampler, const Poin
     std::size_t first = 0, rows = 0;
     const auto flush = [&] {
         if (rows > 0) work(ExternalBatch{runs, {}, lights, lights_at}, first, rows);
-        first += rows, rows = 0;
-        runs.clear(), lights_at.clear();
+        first += rows;
+        rows = 0;
+        runs.clear();
+        lights_at.clear();
     };
     for (const PointRun& run : at.runs)
         for (std::size_t done = 0; done < run.rows;) {
             const std::size_t part = std::min(run.rows - done, sampler.batch_rows() - rows);
             runs.push_back(run_at(p, run.point, widen(run.wo), part));
             if (!lights.empty()) add_lights_at(p, run.point, lights_at);
-            done += part, rows += part;
+            done += part;
+            rows += part;
             if (rows == sampler.batch_rows()) flush();
         }
     flush();
@@ -90,7 +96,8 @@ public:
         std::vector<Vec3<double>> wi;
         std::vector<double> pdf;
         in_batches(*sampler_, at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
-            wi.resize(rows), pdf.resize(rows);
+            wi.resize(rows);
+            pdf.resize(rows);
             ExternalBatch with_numbers = batch;
             with_numbers.u = u.subspan(first * count, rows * count);
             sampler_->draw(with_numbers, {wi, pdf});
@@ -207,8 +214,10 @@ std::shared_ptr<const Technique> mixture_technique(Techniques parts, WeightList 
 
 FormulaInputs formula_inputs(const ShadingPoints& points, const PointRun& run) {
     FormulaInputs in;
-    in.s = double(points.s[run.point]), in.alpha = double(points.alpha[run.point]);
-    in.rho_d = double(points.diffuse[run.point]), in.rho_s = points.rho_s_exact[run.point];
+    in.s = double(points.s[run.point]);
+    in.alpha = double(points.alpha[run.point]);
+    in.rho_d = double(points.diffuse[run.point]);
+    in.rho_s = points.rho_s_exact[run.point];
     in.cos_o = double(run.wo.z);
     return in;
 }
@@ -247,13 +256,16 @@ void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const d
     std::vector<Vec3<float>> wi;
     /// Collects the rows that have the part, or have not.
     const auto select_rows = [&](std::size_t k, bool chosen) {
-        mine.clear(), runs.clear();
+        mine.clear();
+        runs.clear();
         std::size_t row = 0;
         for (const PointRun& run : at.runs) {
             runs.push_back({run.point, run.wo, 0});
             for (std::size_t i = 0; i < run.rows; ++i, ++row)
-                if ((choices.part[row] == k) == chosen && (chosen || out[row].pdf != 0))
-                    mine.push_back(row), ++runs.back().rows;
+                if ((choices.part[row] == k) == chosen && (chosen || out[row].pdf != 0)) {
+                    mine.push_back(row);
+                    ++runs.back().rows;
+                }
             if (runs.back().rows == 0) runs.pop_back();
         }
         return !mine.empty();
@@ -268,7 +280,10 @@ void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const d
         }
         drawn.resize(mine.size());
         parts[k]->draw({at.points, runs}, numbers_of_part, drawn);
-        for (std::size_t i = 0; i < mine.size(); ++i) out[mine[i]] = drawn[i], p[k][mine[i]] = drawn[i].pdf;
+        for (std::size_t i = 0; i < mine.size(); ++i) {
+            out[mine[i]] = drawn[i];
+            p[k][mine[i]] = drawn[i].pdf;
+        }
     }
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (!select_rows(k, false)) continue;
@@ -303,7 +318,9 @@ template <class Kind> ExternalLightAt light_at(const LocalLight<double>& light) 
     ExternalLightAt out{light.a, {}, {}, {}, Kind::shines(light)};
     if constexpr (requires { Kind::half_edges(light); }) {
         const auto [u, v] = Kind::half_edges(light);
-        out.edge_u = u, out.edge_v = v, out.normal = normalize(cross(u, v));
+        out.edge_u = u;
+        out.edge_v = v;
+        out.normal = normalize(cross(u, v));
     }
     return out;
 }

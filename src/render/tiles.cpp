@@ -22,7 +22,10 @@ void TiledScene::keep_points() { kept_ = std::make_shared<std::vector<Kept>>(til
 TiledScene TiledScene::with_s(double s) const {
     TiledScene other = *this;
     other.scene_ = scene_.with_s(s);
-    if (kept_) other.other_s_ = std::make_shared<const TiledScene>(*this), other.kept_ = nullptr;
+    if (kept_) {
+        other.other_s_ = std::make_shared<const TiledScene>(*this);
+        other.kept_ = nullptr;
+    }
     return other;
 }
 

@@ -42,7 +42,8 @@ Json run_json(const RunMetrics& run, bool paired) {
         if (r.tail) at["tail"] = tail_json(*r.tail);
         if (!r.is_paired()) continue;
         at["rmse"] = number_or_null(r.rmse, true);
-        at["mse"] = number(r.mse), at["mse_error"] = number(r.mse_error);
+        at["mse"] = number(r.mse);
+        at["mse_error"] = number(r.mse_error);
         at["mse_interval"] = numbers({r.mse_low(), r.mse_high()});
         at["reference_error"] = number(r.reference_error);
     }
@@ -291,7 +292,10 @@ namespace {
 
 JunitCase case_of(const AssertionResult& a, const std::string& group) {
     JunitCase out{group, a.name, JunitCase::State::passed, "", "", {}};
-    if (!a.skipped.empty()) out.state = JunitCase::State::skipped, out.message = a.skipped;
+    if (!a.skipped.empty()) {
+        out.state = JunitCase::State::skipped;
+        out.message = a.skipped;
+    }
     if (!a.failed()) return out;
     out.state = JunitCase::State::failed;
     out.message = fmt::format("measured {}, must be {} {}{}", shortest(a.measured), a.op, shortest(a.bound),

@@ -31,10 +31,14 @@ TEST(ReportHtml, EscapesEveryNameOfTheExperiment) {
     s.metrics.assertions[0].name = s.metrics.assertions[0].text = s.provenance.command = s.provenance.experiment_file =
         bad;
     s.metrics.furnaces[0].name = s.metrics.references[0].region = s.evidence.furnace[0].arithmetic = bad;
-    for (RunMetrics& run : s.metrics.runs)
-        run.key.arm = run.key.arm == "cosine" ? bad : run.key.arm, run.regions[0].region = bad;
-    for (SeedSpread& b : s.metrics.bands)
-        b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm, b.metric = b.metric == "rmse.H" ? "rmse." + bad : b.metric;
+    for (RunMetrics& run : s.metrics.runs) {
+        run.key.arm = run.key.arm == "cosine" ? bad : run.key.arm;
+        run.regions[0].region = bad;
+    }
+    for (SeedSpread& b : s.metrics.bands) {
+        b.key.arm = b.key.arm == "cosine" ? bad : b.key.arm;
+        b.metric = b.metric == "rmse.H" ? "rmse." + bad : b.metric;
+    }
     for (Ladder& l : s.metrics.ladders) l.arm = l.region = bad;
     EXPECT_EQ(xml_error(s.html()), "");
     EXPECT_THAT(s.html(), Not(HasSubstr("<script")));
@@ -186,7 +190,9 @@ TEST(ReportHtml, ShowsTheValueOfEveryLobeInTheScene) {
     Sample s;
     EXPECT_THAT(s.html(), Not(HasSubstr("<th>GGX")));
     Shape other = s.experiment.shapes[0];
-    other.name = "metal", other.material.brdf = lobe_named("ggx"), other.material.alpha = 0.2;
+    other.name = "metal";
+    other.material.brdf = lobe_named("ggx");
+    other.material.alpha = 0.2;
     s.experiment.shapes.push_back(other);
     const std::string html = s.html();
     const std::size_t lobes = html.find("Lobes of this scene");
@@ -199,14 +205,19 @@ TEST(ReportHtml, HasTheValuesOfSectionsThatAreRare) {
     Sample s;
     s.experiment.sky = SkyLight{"<sky>.exr", 30, 2, {}, {}, {}};
     MeshObject mesh;
-    mesh.name = "<mesh>", mesh.file = "<file>.mesh", mesh.rho_d_texture.file = "<rho>.exr", mesh.emission = {1, 2, 3};
+    mesh.name = "<mesh>";
+    mesh.file = "<file>.mesh";
+    mesh.rho_d_texture.file = "<rho>.exr";
+    mesh.emission = {1, 2, 3};
     mesh.material = s.experiment.shapes[0].material;
     s.experiment.meshes = {mesh};
     s.experiment.overrides = {"a=<1>", "b=2"};
     s.provenance.backend_details = {{"<driver>", "<message>"}};
-    s.provenance.places = {1}, s.provenance.series = 3;
+    s.provenance.places = {1};
+    s.provenance.series = 3;
     RegionMetrics& paired = s.metrics.runs[0].regions[0];
-    paired.mse = -1, paired.mse_error = 0.5;
+    paired.mse = -1;
+    paired.mse_error = 0.5;
     s.metrics.references[0].error_share = 1;
     s.metrics.references[0].max_relative_rmse_change = 0.25;
     for (const ReferenceKind kind : {ReferenceKind::quadrature, ReferenceKind::paired}) {
@@ -225,7 +236,8 @@ TEST(ReportHtml, HasTheValuesOfSectionsThatAreRare) {
 TEST(ReportHtml, MarksUnfailingAndSkippedAssertions) {
     Sample s;
     s.metrics.assertions[0].cannot_fail = true;
-    s.metrics.assertions[1].pass = false, s.metrics.assertions[1].skipped = "no plates were drawn";
+    s.metrics.assertions[1].pass = false;
+    s.metrics.assertions[1].skipped = "no plates were drawn";
     EXPECT_THAT(s.html(), HasSubstr("for any measurements"));
     EXPECT_THAT(s.html(), HasSubstr("skipped: no plates were drawn"));
     EXPECT_TRUE(s.metrics.all_hold());
@@ -259,9 +271,19 @@ TEST(ReportHtml, HeavyTailReplacesTheInterval) {
 TEST(ReportHtml, NumbersThatAreNoneDoNotBreakThePage) {
     Sample s;
     const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-    for (RunMetrics& run : s.metrics.runs) run.regions[0].rmse = nan, run.regions[1].rmse = inf, run.bad = 5;
-    for (SeedSpread& b : s.metrics.bands) b.measured = nan, b.band.median = inf;
-    for (Ladder& l : s.metrics.ladders) l.rmse = {nan, 0}, l.slope = nan;
+    for (RunMetrics& run : s.metrics.runs) {
+        run.regions[0].rmse = nan;
+        run.regions[1].rmse = inf;
+        run.bad = 5;
+    }
+    for (SeedSpread& b : s.metrics.bands) {
+        b.measured = nan;
+        b.band.median = inf;
+    }
+    for (Ladder& l : s.metrics.ladders) {
+        l.rmse = {nan, 0};
+        l.slope = nan;
+    }
     const std::string html = s.html();
     EXPECT_EQ(xml_error(html), "");
     EXPECT_THAT(html, HasSubstr("30 samples"));

@@ -40,12 +40,15 @@ RunMetrics run_of(const Json& json) {
     frame(run);
     for (const auto& [name, region] : json.at("regions").items()) {
         RegionMetrics m;
-        m.region = name, m.pixels = region.at("pixels").get<std::uint64_t>(), m.tail = tail_of(region);
+        m.region = name;
+        m.pixels = region.at("pixels").get<std::uint64_t>();
+        m.tail = tail_of(region);
         const auto metrics = [](const Json& json, RegionMetrics& to) { CRESCENT_REGION_METRICS(CRESCENT_READ) };
         metrics(region, m);
         if (region.contains("flip")) m.flip = read_number(region.at("flip"));
         if (region.contains("mse")) {
-            m.mse = read_number(region.at("mse")), m.reference_error = read_number(region.at("reference_error"));
+            m.mse = read_number(region.at("mse"));
+            m.reference_error = read_number(region.at("reference_error"));
             m.mse_error = read_number(region.at("mse_error"));
         }
         run.regions.push_back(std::move(m));
@@ -56,18 +59,23 @@ RunMetrics run_of(const Json& json) {
 
 FurnaceResult furnace_of(const Json& json) {
     FurnaceResult out;
-    out.name = json.at("name").get<std::string>(), out.arm = json.at("arm").get<std::string>();
-    out.part = json.at("part").get<std::string>(), out.n = json.at("n").get<std::uint64_t>();
-    out.measured = read_number(json.at("measured")), out.expected = read_number(json.at("expected"));
+    out.name = json.at("name").get<std::string>();
+    out.arm = json.at("arm").get<std::string>();
+    out.part = json.at("part").get<std::string>();
+    out.n = json.at("n").get<std::uint64_t>();
+    out.measured = read_number(json.at("measured"));
+    out.expected = read_number(json.at("expected"));
     out.tail = tail_of(json);
     if (!out.tail || !out.tail->heavy()) out.se = read_number(json.at("se"));
-    out.bad = json.at("bad").get<std::uint64_t>(), out.published = read_optional(json.at("published"));
+    out.bad = json.at("bad").get<std::uint64_t>();
+    out.published = read_optional(json.at("published"));
     return out;
 }
 
 ReferenceQuality reference_of(const Json& json) {
     ReferenceQuality out;
-    out.s = read_number(json.at("s")), out.region = json.at("region").get<std::string>();
+    out.s = read_number(json.at("s"));
+    out.region = json.at("region").get<std::string>();
     out.error_share = read_number(json.at("error_share"));
     if (json.contains("paired_error")) {
         out.paired_error = read_number(json.at("paired_error"));
@@ -82,17 +90,24 @@ ReferenceQuality reference_of(const Json& json) {
 
 AssertionResult assertion_of(const Json& json) {
     AssertionResult out;
-    out.name = json.at("name").get<std::string>(), out.pass = json.at("pass").get<bool>();
-    out.measured = read_number(json.at("measured")), out.bound = read_number(json.at("bound"));
-    out.op = json.at("op").get<std::string>(), out.text = json.at("text").get<std::string>();
-    out.cannot_fail = json.value("cannot_fail", false), out.skipped = json.value("skipped", "");
+    out.name = json.at("name").get<std::string>();
+    out.pass = json.at("pass").get<bool>();
+    out.measured = read_number(json.at("measured"));
+    out.bound = read_number(json.at("bound"));
+    out.op = json.at("op").get<std::string>();
+    out.text = json.at("text").get<std::string>();
+    out.cannot_fail = json.value("cannot_fail", false);
+    out.skipped = json.value("skipped", "");
     return out;
 }
 
 Evidence evidence_of(const Json& json) {
     Evidence e;
-    e.s = read_number(json.at("s")), e.rho_d = read_number(json.at("rho_d")), e.rho_s = read_number(json.at("rho_s"));
-    e.expected = read_number(json.at("expected")), e.alpha = read_number(json.at("alpha"));
+    e.s = read_number(json.at("s"));
+    e.rho_d = read_number(json.at("rho_d"));
+    e.rho_s = read_number(json.at("rho_s"));
+    e.expected = read_number(json.at("expected"));
+    e.alpha = read_number(json.at("alpha"));
     e.furnace = list_of<FurnaceQuantiles>(json.at("furnace"), [](const Json& q) {
         return FurnaceQuantiles{q.at("arithmetic").get<std::string>(), q.at("u_bits").get<int>(),
             q.at("n").get<std::uint64_t>(), read_number(q.at("q05")), read_number(q.at("q25")),
@@ -113,8 +128,10 @@ Evidence evidence_of(const Json& json) {
 
 Provenance provenance_of(const Json& json) {
     Provenance p;
-    p.version = json.at("version").get<std::string>(), p.commit = json.at("commit").get<std::string>();
-    p.compiler = json.at("compiler").get<std::string>(), p.backend = json.at("instrument").get<std::string>();
+    p.version = json.at("version").get<std::string>();
+    p.commit = json.at("commit").get<std::string>();
+    p.compiler = json.at("compiler").get<std::string>();
+    p.backend = json.at("instrument").get<std::string>();
     p.command = json.at("command").get<std::string>();
     const Json& experiment = json.at("experiment");
     p.experiment_file = experiment.at("file").get<std::string>();
@@ -142,7 +159,8 @@ Experiment experiment_of(const Provenance& p, const Json& json, const std::strin
         throw InputError({name, 0, 0},
             "the experiment in it does not have the stated hash; expected the file as it was "
             "written, by this version of crescent");
-    e.seed = p.seeds.at(0), e.seeds = static_cast<int>(p.seeds.size());
+    e.seed = p.seeds.at(0);
+    e.seeds = static_cast<int>(p.seeds.size());
     return e;
 }
 

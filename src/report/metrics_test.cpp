@@ -42,16 +42,22 @@ TEST(MetricsJson, IsReadBackToTheSameBytes) {
     Sample s;
     s.experiment = parse("seeds = 3\nseed = 7\n" + test::room_text, "a.toml", {"ball.radius=0.9"});
     s.experiment.figures.emplace();
-    s.experiment.figures->source = "elsewhere", s.experiment.figures->seed = 7;
+    s.experiment.figures->source = "elsewhere";
+    s.experiment.figures->seed = 7;
     s.experiment.figures->runs[{"cosine", 4, 1, "rmse.H"}] = 0.1 + 0.2;
     s.provenance.experiment_text = canonical_text(s.experiment);
     s.provenance.experiment_hash = fmt::format("{:016x}", hash(s.experiment));
-    s.provenance.places = {1, 2, 3}, s.provenance.series = 3;
-    s.metrics.runs[0].largest = inf, s.metrics.runs[0].y_mean = 5e-324, s.metrics.runs[1].bad = ~std::uint64_t{0};
-    s.region("cosine", "H", 7).rmse = nan, s.region("cosine", "H", 7).var = -0.0;
+    s.provenance.places = {1, 2, 3};
+    s.provenance.series = 3;
+    s.metrics.runs[0].largest = inf;
+    s.metrics.runs[0].y_mean = 5e-324;
+    s.metrics.runs[1].bad = ~std::uint64_t{0};
+    s.region("cosine", "H", 7).rmse = nan;
+    s.region("cosine", "H", 7).var = -0.0;
     const std::string text = metrics_json(s.inputs());
     MetricsFile read = read_metrics(text, "part/metrics.json");
-    read.metrics.bands = s.metrics.bands, read.metrics.ladders = s.metrics.ladders;
+    read.metrics.bands = s.metrics.bands;
+    read.metrics.ladders = s.metrics.ladders;
     EXPECT_EQ(metrics_json({read.experiment, read.metrics, read.evidence, read.provenance, s.plates}), text);
     keep("with-its-experiment", nlohmann::json::parse(text), true);
 
@@ -71,13 +77,21 @@ TEST(MetricsJson, HasNullForAnRmseBelowAPairedReference) {
     Sample s;
     s.experiment.reference.kind = ReferenceKind::paired;
     for (RunMetrics& run : s.metrics.runs)
-        for (RegionMetrics& region : run.regions)
-            region.mse = 0.25, region.rmse = 0.5, region.mse_error = 0.125, region.reference_error = 0.1;
+        for (RegionMetrics& region : run.regions) {
+            region.mse = 0.25;
+            region.rmse = 0.5;
+            region.mse_error = 0.125;
+            region.reference_error = 0.1;
+        }
     RegionMetrics& below = s.region("cosine", "H", 7);
-    below.mse = -0.01, below.rmse = nan;
+    below.mse = -0.01;
+    below.rmse = nan;
     s.metrics.references.clear();
     ReferenceQuality& quality = s.metrics.references.emplace_back();
-    quality.s = 32, quality.region = "H", quality.paired_error = 0.1, quality.error_share = inf;
+    quality.s = 32;
+    quality.region = "H";
+    quality.paired_error = 0.1;
+    quality.error_share = inf;
     const auto json = parsed(s);
     const auto run = json["runs"][0]["regions"]["H"];
     EXPECT_TRUE(run["rmse"].is_null());

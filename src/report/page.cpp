@@ -86,7 +86,8 @@ std::string metric_html(const std::string& metric) {
     };
     const RegionMetrics of_region;
     const RunMetrics of_frame;
-    for_each_metric(of_region, look), for_each_metric(of_frame, look);
+    for_each_metric(of_region, look);
+    for_each_metric(of_frame, look);
     return label + region;
 }
 
@@ -131,7 +132,8 @@ void add_story(const Page& page, Json& to) {
                 {"times", times(c.ratio)}, {"end", ";"}});
         }
     if (!story.empty()) story.back()["end"] = ".";
-    to["story"] = story, to["story_n"] = pair.n;
+    to["story"] = story;
+    to["story_n"] = pair.n;
 }
 
 }  // namespace
@@ -228,8 +230,12 @@ ArmPair arm_pair(const Page& page) {
         if (!ran(n)) continue;
         const double error = error_of(page, *arm, n);
         const std::ptrdiff_t sample_counts = shared_sample_counts(*arm, *pair.narrow);
-        if (!pair.broad || sample_counts > most || (sample_counts == most && error < least))
-            pair.broad = arm, pair.n = n, least = error, most = sample_counts;
+        if (!pair.broad || sample_counts > most || (sample_counts == most && error < least)) {
+            pair.broad = arm;
+            pair.n = n;
+            least = error;
+            most = sample_counts;
+        }
     }
     return pair ? pair : ArmPair{};
 }

@@ -167,7 +167,8 @@ LadderBand band_of(const Page& page, const Ladder& l) {
         if (const SeedSpread* spread = page.find.band(l.arm, n, "rmse." + l.region, l.s);
             spread && spread->band.seeds > 1 && spread->band.q05 > 0) {
             out.n.push_back(static_cast<double>(n));
-            out.low.push_back(spread->band.q05), out.high.push_back(spread->band.q95);
+            out.low.push_back(spread->band.q05);
+            out.high.push_back(spread->band.q95);
         }
     return out;
 }
@@ -181,7 +182,10 @@ std::string ladder_chart(const Page& page, const std::string& region) {
     const auto all = ladders_in(page, region);
     std::vector<double> ns, values;
     for (const Ladder* l : all)
-        for (const Point& p : points_of(*l)) ns.push_back(p.x), values.push_back(p.y);
+        for (const Point& p : points_of(*l)) {
+            ns.push_back(p.x);
+            values.push_back(p.y);
+        }
     for (const Ladder* l : all)
         for (const Point& p : published_of(page, *l)) values.push_back(p.y);
     for (const Ladder* l : all) {
@@ -257,7 +261,9 @@ bool is_heavy(const FurnaceResult& f) { return f.tail && f.tail->heavy(); }
 /// Whether the reading is the expected one, by its standard error.
 void add_verdict(const FurnaceResult& f, Json& to) {
     const double off = std::fabs(f.measured - f.expected);
-    to["heavy"] = is_heavy(f), to["differs"] = false, to["remark"] = "";
+    to["heavy"] = is_heavy(f);
+    to["differs"] = false;
+    to["remark"] = "";
     if (is_heavy(f)) return;
     if (!(f.se > 0)) {
         to["remark"] = off == 0 ? "exact" : "no standard error";

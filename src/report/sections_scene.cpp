@@ -74,7 +74,7 @@ Json shapes_of(const Page& page) {
         if (!mesh.instances.empty()) where += fmt::format(", {} instances", mesh.instances.size());
         if (mesh.emits()) where += fmt::format(", emits {} W/(sr m²)", rgb(mesh.emission));
         Json row = shape_of(page, mesh.name, "mesh", where, mesh.material, true);
-        row["rho_d_file"] = mesh.rho_d_texture.file.value_or(""),
+        row["rho_d_file"] = mesh.rho_d_texture.file.value_or("");
         row["alpha_file"] = mesh.alpha_texture.file.value_or("");
         out.push_back(row);
     }
@@ -124,8 +124,10 @@ Json density_of(const ArmPlan& arm, const Experiment& e) {
     }
     if (arm.name == arm.sampler) out["name"] = info->label;
     else out["sampler"] = arm.sampler;
-    out["missed"] = missed_light(arm, e), out["density"] = formula::mathml(info->density);
-    out["draw"] = formula::html(info->draw), out["axis"] = formula::html(info->axis);
+    out["missed"] = missed_light(arm, e);
+    out["density"] = formula::mathml(info->density);
+    out["draw"] = formula::html(info->draw);
+    out["axis"] = formula::html(info->axis);
     return out;
 }
 

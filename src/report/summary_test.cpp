@@ -35,9 +35,20 @@ TEST(Summary, StaysWithinEightyColumnsWhateverTheNames) {
     const std::string name =
         "Äöüß: ein sehr langer Name, der mit Umlauten beginnt und nirgends auf der Welt in eine Zeile passt";
     for (ArmPlan& arm : s.experiment.arms) arm.name += name;
-    for (SeedSpread& b : s.metrics.bands) b.key.arm += name, b.band.q05 = -1.2345678e-123, b.band.q95 = 9.87e200;
-    for (RunMetrics& r : s.metrics.runs) r.key.arm += name, r.bad = 1'000'000'000'000;
-    for (AssertionResult& a : s.metrics.assertions) a.name = name + a.name, a.pass = false, a.bound = -1.2345e-300;
+    for (SeedSpread& b : s.metrics.bands) {
+        b.key.arm += name;
+        b.band.q05 = -1.2345678e-123;
+        b.band.q95 = 9.87e200;
+    }
+    for (RunMetrics& r : s.metrics.runs) {
+        r.key.arm += name;
+        r.bad = 1'000'000'000'000;
+    }
+    for (AssertionResult& a : s.metrics.assertions) {
+        a.name = name + a.name;
+        a.pass = false;
+        a.bound = -1.2345e-300;
+    }
     s.metrics.film_hashes[name] = name;
     s.timing.isa = name;
     const std::string text = summary(s, "/" + name + name);

@@ -53,7 +53,8 @@ protected:
         std::vector<Vec3<float>> wi;
         for (std::size_t first = 0; first < at.size(); first += most_rows) {
             const std::size_t rows = std::min(most_rows, at.size() - first);
-            runs.clear(), wi.clear();
+            runs.clear();
+            wi.clear();
             for (const Pair& pair : at.subspan(first, rows)) {
                 const Vec3<float> wo = as<float>(pair.wo);
                 const bool same =
@@ -77,7 +78,8 @@ protected:
         std::vector<PointDraw> drawn;
         for (std::size_t first = 0; first < u.size(); first += most_rows) {
             const std::size_t rows = std::min(most_rows, u.size() - first);
-            numbers.clear(), drawn.assign(rows, {});
+            numbers.clear();
+            drawn.assign(rows, {});
             for (const PrimarySample& row : u.subspan(first, rows))
                 for (std::size_t k = 0; k < count_of; ++k) numbers.push_back(row[static_cast<int>(k)]);
             const PointRun run{0, as<float>(wo), rows};
@@ -167,7 +169,9 @@ public:
         const std::size_t rows_a_batch = 512;
         for (std::size_t first = 0; first < u.size(); first += rows_a_batch) {
             const std::size_t rows = std::min(rows_a_batch, u.size() - first);
-            drawn.assign(rows, {}), at.clear(), value.resize(rows);
+            drawn.assign(rows, {});
+            at.clear();
+            value.resize(rows);
             const PointRun run{0, as<float>(wo), rows};
             combination_->sample(
                 {points(), {&run, 1}},
@@ -303,18 +307,21 @@ private:
         t.lighting = fmt::format("pixel {} {}", pixel % width, pixel / width);
         t.wo = wo;
         const auto rounded = [](double v) { return std::round(v * 1e4) / 1e4; };
-        t.theta_deg = rounded(theta), t.azimuth_deg = theta > 0 ? rounded(azimuth) : 0;
+        t.theta_deg = rounded(theta);
+        t.azimuth_deg = theta > 0 ? rounded(azimuth) : 0;
         if (lobe && lobe->parameter == LobeParameter::s) t.parameters.emplace_back("s", double(point->s[0]));
         if (lobe && lobe->parameter == LobeParameter::alpha)
             t.parameters.emplace_back("alpha", double(point->alpha[0]));
         t.light = lighting_at(scene_, *point);
         for (const char* peer : {"uniform", "cosine"}) {
             if (sampler_ == peer) continue;
-            t.arm = peer, t.baseline = true;
+            t.arm = peer;
+            t.baseline = true;
             t.adapter = std::make_shared<OneTechnique>(peer, point, false, built_in_technique(peer));
             peers_.push_back(t);
         }
-        t.arm = sampler_, t.baseline = false;
+        t.arm = sampler_;
+        t.baseline = false;
         t.adapter = adapter_at(point);
         cases_.push_back(std::move(t));
         std::ranges::move(peers_, std::back_inserter(cases_));
@@ -343,7 +350,8 @@ private:
         const std::string name = arm ? arm->sampler : sampler_;
         if (name == "mis-balance" || name == "mis-power") {
             CombinationPlan plan;
-            plan.kind = CombinationKind::mis, plan.of = {"mixture", "light-area"};
+            plan.kind = CombinationKind::mis;
+            plan.of = {"mixture", "light-area"};
             plan.heuristic = name == "mis-power" ? MisHeuristic::power : MisHeuristic::balance;
             if (!built_in_) {
                 Techniques parts = {built_in_technique("mixture"), built_in_technique("light-area")};

@@ -93,8 +93,10 @@ TEST(ArmCases, UnknownNamesAndEmptyViewsAreRefused) {
 TEST(ArmCases, OfACombinationEndWithItsTime) {
     Experiment e = scene();
     ArmPlan ris;
-    ris.name = "ris", ris.combination.kind = CombinationKind::ris;
-    ris.combination.of = {"cosine", "uniform"}, ris.combination.candidates = 4096;
+    ris.name = "ris";
+    ris.combination.kind = CombinationKind::ris;
+    ris.combination.of = {"cosine", "uniform"};
+    ris.combination.candidates = 4096;
     e.arms.push_back(ris);
     ExternalSamplers outside;
     add_combinations(e, outside);
@@ -112,10 +114,13 @@ TEST(ArmCases, OfACombinationEndWithItsTime) {
 TEST(ArmCases, KeepTheArmsThatAnArmCombines) {
     Experiment e = scene();
     ArmPlan both;
-    both.name = "both", both.combination.of = {"cosine", "inner"};
+    both.name = "both";
+    both.combination.of = {"cosine", "inner"};
     ArmPlan inner;
-    inner.name = "inner", inner.combination.of = {"phong"};
-    e.arms.push_back(both), e.arms.push_back(inner);
+    inner.name = "inner";
+    inner.combination.of = {"phong"};
+    e.arms.push_back(both);
+    e.arms.push_back(inner);
     std::vector<std::string> names;
     for (const ArmPlan& arm : with_arms_of(e, {"both"}).arms) names.push_back(arm.name);
     EXPECT_EQ(names, (std::vector<std::string>{"cosine", "phong", "both", "inner"}));

@@ -96,8 +96,10 @@ void add_view(Prepared& prepared, Measured& out) {
     for (std::size_t k = 0; k < prepared.shape_pixels.size(); ++k)
         out.metrics.shape_pixels[out.experiment.surface_name(k)] = prepared.shape_pixels[k];
     out.metrics.geometry_pixels = prepared.geometry_pixels;
-    out.shapes = std::move(prepared.shapes), out.outside = std::move(prepared.outside);
-    out.quadrature = std::move(prepared.quadrature), out.monte_carlo = std::move(prepared.monte_carlo);
+    out.shapes = std::move(prepared.shapes);
+    out.outside = std::move(prepared.outside);
+    out.quadrature = std::move(prepared.quadrature);
+    out.monte_carlo = std::move(prepared.monte_carlo);
     out.paired = std::move(prepared.paired);
 }
 
@@ -132,7 +134,8 @@ Provenance provenance_of(const RunPlan& plan, const Backend& backend, const std:
     p.compiler = compiler();
     p.experiment_file = plan.experiment.file;
     p.experiment_hash = fmt::format("{:016x}", plan.hash);
-    p.backend = backend.name(), p.backend_details = backend.details();
+    p.backend = backend.name();
+    p.backend_details = backend.details();
     p.command = command.empty() ? "crescent run " + plan.experiment.file : command;
     p.seeds = plan.seeds;
     for (int place = plan.range.first; place <= plan.range.last; ++place) p.places.push_back(place);
@@ -146,7 +149,8 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
     const Engine with = settled(engine);
     Measured out;
     out.experiment = plan.experiment;
-    out.timing.threads = with.threads, out.timing.isa = with.isa;
+    out.timing.threads = with.threads;
+    out.timing.isa = with.isa;
     out.stopped = prepared.stopped;
     sort_results(plan, results);
     take_results(std::move(results), out);

@@ -19,7 +19,8 @@ TEST(Collect, RunsAreInTheOrderOfThePlan) {
     Prepared prepared = prepare(all, {}, monitor);
     std::vector<JobResult> results;
     for (const std::size_t k : {2, 0}) results.push_back(execute(all, prepared, all.jobs[k], {}, monitor, k == 2));
-    results.emplace_back().job = all.jobs[1], results.back().stopped = false;
+    results.emplace_back().job = all.jobs[1];
+    results.back().stopped = false;
     results.back().metrics.resize(1);
     results.back().metrics[0].key = {"cosine", 16, 24, 11};
     results.back().metrics[0].regions.resize(1);
@@ -45,7 +46,9 @@ TEST(Collect, AStoppedJobStopsTheRun) {
     const RunPlan all = plan(test::small_experiment({"seeds=1"}));
     Prepared prepared = prepare(all, {}, monitor);
     std::vector<JobResult> results(1);
-    results[0].job = all.jobs[0], results[0].stopped = true, results[0].metrics.resize(1);
+    results[0].job = all.jobs[0];
+    results[0].stopped = true;
+    results[0].metrics.resize(1);
     const Measured out =
         collect(all, std::move(prepared), std::move(results), {}, monitor, {.command = "c", .studies = false});
     EXPECT_TRUE(out.stopped);

@@ -98,7 +98,8 @@ void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine
     if (!out.metrics.empty()) return monitor.skip(samples);
     const Stopwatch start;
     std::vector<Film> films = engine.backend->films(view_at(prepared, out.job.s), out.job, monitor);
-    out.samples = samples, out.seconds = start.seconds();
+    out.samples = samples;
+    out.seconds = start.seconds();
     out.metrics = metrics_of(plan, prepared, out.job, films, engine.isa);
     if (keep_films) out.films = std::move(films);
     else if (checkpoint) checkpoint->add(out.metrics);
@@ -112,7 +113,8 @@ void finish_points(const RunPlan& plan, Prepared& prepared, ProgressMonitor& mon
         (void)view.points(k);
         return 0.0;
     });
-    view.forget_hits(), prepared.scene.forget_hits();
+    view.forget_hits();
+    prepared.scene.forget_hits();
     prepared.views = views_at(view, plan.exponents);
 }
 

@@ -130,7 +130,8 @@ public:
             for (RegionMetrics& region : run.regions) {
                 Json& at = row.at("regions").at(region.region);
                 if (region.tail) add_tail(part, run, region, at);
-                at.erase("tail"), region.tail.reset();
+                at.erase("tail");
+                region.tail.reset();
             }
             const auto [known, is_new] =
                 text_.try_emplace({run.key.arm, run.key.n, run.key.s, run.key.seed}, std::pair(row.dump(), part.name));
@@ -196,7 +197,9 @@ Measured join_parts(const std::vector<Part>& parts, const Rows& rows, const std:
     Measured out;
     out.experiment = of_longest_series->file.experiment;
     out.provenance = of_longest_series->file.provenance;
-    out.provenance.command = command, out.provenance.seeds.clear(), out.provenance.places.clear();
+    out.provenance.command = command;
+    out.provenance.seeds.clear();
+    out.provenance.places.clear();
     Experiment whole = parse(out.provenance.experiment_text, "experiment");
     out.metrics.series = seeds_of(whole);
     for (std::size_t k = 0; k < out.metrics.series.size(); ++k) {
@@ -219,9 +222,12 @@ Measured join_parts(const std::vector<Part>& parts, const Rows& rows, const std:
         throw InputError({parts.front().name, 0, 0},
             fmt::format("cannot be joined: no part begins with the seed {}, the first of all", out.experiment.seed));
     const Metrics& of_first = begins->file.metrics;
-    out.metrics.film_hashes = of_first.film_hashes, out.metrics.references = of_first.references;
-    out.metrics.furnaces = of_first.furnaces, out.metrics.shape_pixels = of_first.shape_pixels;
-    out.metrics.geometry_pixels = of_first.geometry_pixels, out.evidence = begins->file.evidence;
+    out.metrics.film_hashes = of_first.film_hashes;
+    out.metrics.references = of_first.references;
+    out.metrics.furnaces = of_first.furnaces;
+    out.metrics.shape_pixels = of_first.shape_pixels;
+    out.metrics.geometry_pixels = of_first.geometry_pixels;
+    out.evidence = begins->file.evidence;
     add_spreads(out);
     std::ranges::move(backend_claims(parts), std::back_inserter(out.metrics.assertions));
     return out;

@@ -30,7 +30,8 @@ std::vector<std::string> mis_warnings(const Experiment& experiment, const Extern
             const check::StreamKey key{1, 0, 0, 1, check::Purpose::light, 0};
             const std::optional<check::SmallFault> fault = check::mis_weights(*c.adapter, c.wo, key);
             if (!fault || !(fault->first.expected > 0)) continue;
-            directions += fault->of, lost += fault->times;
+            directions += fault->of;
+            lost += fault->times;
             least = std::min(least, 1 + fault->size);
             sampler = static_cast<int>(fault->first.expected);
         }

@@ -30,7 +30,10 @@ TEST(Jobs, AreEachArmAtTheExperimentsOwnExponent) {
 TEST(Jobs, AddOnlyMissingExponentControlRuns) {
     Experiment e = test::small_scene();
     e.exponent.emplace();
-    e.exponent->arm = "phong", e.exponent->shape = "ball", e.exponent->n = 64, e.exponent->s = {8, 24, 128};
+    e.exponent->arm = "phong";
+    e.exponent->shape = "ball";
+    e.exponent->n = 64;
+    e.exponent->s = {8, 24, 128};
     std::vector<std::string> all = describe(e);
     ASSERT_EQ(all.size(), 7u);
     EXPECT_EQ(all[5], "phong n=64 s=8");

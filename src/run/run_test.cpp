@@ -104,7 +104,8 @@ TEST(RunSteps, ChangeNothingThatBelongsToTheProcess) {
     Looker monitor;
     const std::string out = fs::path(testing::TempDir()) / ("steps-" + std::to_string(getpid()));
     RunOptions options;
-    options.out = out, options.threads = 3;
+    options.out = out;
+    options.threads = 3;
     run(tiny({"seeds=1"}), options, monitor);
     EXPECT_TRUE(fs::exists(out + "/films/reference.exr"));
     EXPECT_EQ(monitor.changed, 0) << "while it ran";

@@ -59,7 +59,8 @@ TEST_F(Written, AStopLeavesTheFormerOutputs) {
 TEST_F(Written, HeadersNameSeedAndExperiment) {
     Measured m;
     m.experiment.seed = 11;
-    m.provenance.experiment_file = "e.toml", m.provenance.experiment_hash = "0123";
+    m.provenance.experiment_file = "e.toml";
+    m.provenance.experiment_hash = "0123";
     EXPECT_THAT(attributes_of(m), Contains(Pair("seed", "11")));
     EXPECT_THAT(attributes_of(m), Contains(Pair("experiment", "e.toml 0123")));
 }

@@ -38,7 +38,9 @@ template <class F> struct LightArea {
         explicit Aim(const LocalDisk<F>& d) {
             const Frame<F> frame = frame_about(d.normal);
             const auto lit = d.faces();
-            center = d.to_center, t = frame.t * d.radius, b = frame.b * d.radius;
+            center = d.to_center;
+            t = frame.t * d.radius;
+            b = frame.b * d.radius;
             scale = select(
                 lit, number<F>(1 / pi) / (sqr(d.radius) * select(lit, abs(d.along), number<F>(1))), number<F>(0));
         }

@@ -69,8 +69,10 @@ private:
         for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
             const TriangleDraw drawn = sample_triangles(*around, {double(px.at[l]), double(py.at[l]), double(pz.at[l])},
                 double(ux.at[l]), double(uy.at[l]), whole);
-            x.at[l] = static_cast<Scalar>(drawn.w.x), y.at[l] = static_cast<Scalar>(drawn.w.y);
-            z.at[l] = static_cast<Scalar>(drawn.w.z), p.at[l] = static_cast<Scalar>(drawn.pdf);
+            x.at[l] = static_cast<Scalar>(drawn.w.x);
+            y.at[l] = static_cast<Scalar>(drawn.w.y);
+            z.at[l] = static_cast<Scalar>(drawn.w.z);
+            p.at[l] = static_cast<Scalar>(drawn.pdf);
             triangle.at[l] = drawn.triangle;
         }
         return {{frame.to_local({x.pack(), y.pack(), z.pack()}), {p.pack()}}, triangle.pack()};

@@ -97,7 +97,10 @@ template <class F> struct ShadingPoint {
 inline constexpr std::string_view light_arm_misses = "the fill";
 inline ExpectedBehaviour theory_of_light_arm(const CasePoint& at) {
     ExpectedBehaviour t;
-    if (at.fill > 0) t.wrong = "support", t.why = "an arm that aims at lights alone cannot find the fill";
+    if (at.fill > 0) {
+        t.wrong = "support";
+        t.why = "an arm that aims at lights alone cannot find the fill";
+    }
     return t;
 }
 

@@ -43,8 +43,10 @@ template <class F> struct SkyByTexel {
         LaneIntegers<F> texel;
         for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
             const SkyDraw drawn = sample_sky(*around, double(ux.at[l]), double(uy.at[l]));
-            x.at[l] = static_cast<Scalar>(drawn.w.x), y.at[l] = static_cast<Scalar>(drawn.w.y);
-            z.at[l] = static_cast<Scalar>(drawn.w.z), p.at[l] = static_cast<Scalar>(drawn.pdf);
+            x.at[l] = static_cast<Scalar>(drawn.w.x);
+            y.at[l] = static_cast<Scalar>(drawn.w.y);
+            z.at[l] = static_cast<Scalar>(drawn.w.z);
+            p.at[l] = static_cast<Scalar>(drawn.pdf);
             texel.at[l] = drawn.texel;
         }
         return {{frame.to_local({x.pack(), y.pack(), z.pack()}), {p.pack()}}, texel.pack()};

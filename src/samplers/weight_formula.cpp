@@ -62,18 +62,26 @@ private:
         if (++depth_ > deepest) return fail("expected fewer nested brackets");
         product();
         for (bool more = true; more && mistake.message.empty();) {
-            if (take('+')) product(), add(Code::add, -1);
-            else if (take('-')) product(), add(Code::subtract, -1);
-            else more = false;
+            if (take('+')) {
+                product();
+                add(Code::add, -1);
+            } else if (take('-')) {
+                product();
+                add(Code::subtract, -1);
+            } else more = false;
         }
         --depth_;
     }
     void product() {
         power();
         for (bool more = true; more && mistake.message.empty();) {
-            if (take('*')) power(), add(Code::multiply, -1);
-            else if (take('/')) power(), add(Code::divide, -1);
-            else more = false;
+            if (take('*')) {
+                power();
+                add(Code::multiply, -1);
+            } else if (take('/')) {
+                power();
+                add(Code::divide, -1);
+            } else more = false;
         }
     }
     void power() {
@@ -233,7 +241,10 @@ void WeightList::evaluate(const FormulaInputs& in, std::span<double> out) const 
     }
     double sum = 0;
     for (std::size_t i = 0; i < formulas_.size(); ++i) sum += out[i] = formulas_[i](in);
-    if (rest_) out[count_ - 1] = 1 - sum, sum = 1;
+    if (rest_) {
+        out[count_ - 1] = 1 - sum;
+        sum = 1;
+    }
     const bool good = std::ranges::all_of(out, [](double w) { return w >= -sum_tolerance && w <= 1 + sum_tolerance; });
     if (good && std::fabs(sum - 1) <= sum_tolerance) {
         for (double& w : out) w = std::clamp(w, 0.0, 1.0);

@@ -53,12 +53,16 @@ Azimuths azimuths_of_corners(std::span<const Vec3d> points, Vec3d x, const Frame
     std::array<Flat, 8> corners;
     for (std::size_t k = 0; k < points.size(); ++k) corners[k] = flat(points[k] - x, frame);
     Flat middle = {0, 0};
-    for (std::size_t k = 0; k < points.size(); ++k) middle.x += corners[k].x, middle.y += corners[k].y;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        middle.x += corners[k].x;
+        middle.y += corners[k].y;
+    }
     if (middle.x == 0 && middle.y == 0) return {};  // the axis meets their hull, and the azimuth is undefined
     double lo = pi, hi = -pi;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const double off = math::atan2(cross(middle, corners[k]), dot(middle, corners[k]));
-        lo = std::min(lo, off), hi = std::max(hi, off);
+        lo = std::min(lo, off);
+        hi = std::max(hi, off);
     }
     if (!(hi - lo < pi)) return {};
     return {math::atan2(middle.y, middle.x) + 0.5 * (lo + hi), 0.5 * (hi - lo)};

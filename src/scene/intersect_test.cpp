@@ -56,7 +56,10 @@ constexpr std::array kinds = {
 Sample some_shape(ShapeKind kind, PrimarySample& next) {
     Sample q;
     q.kind = kind;
-    q.center = next.vec(), q.point = next.vec(), q.corner = next.vec(), q.min = next.vec();
+    q.center = next.vec();
+    q.point = next.vec();
+    q.corner = next.vec();
+    q.min = next.vec();
     q.radius = 0.2 + 0.6 * std::fabs(next());
     const Vec3d size = next.vec();
     q.max = q.min + Vec3d{0.1 + std::fabs(size.x), 0.1 + std::fabs(size.y), 0.1 + std::fabs(size.z)};
@@ -178,7 +181,8 @@ TEST(IntersectConformance, ASmallSphereFarAwayIsMetWhereItIs) {
             const double radius = 1e-8 * far, off = std::fabs(next());
             const Vec3d way = normalize(next.vec()), x = next.vec();
             Sample q;
-            q.center = x + far * way, q.radius = radius;
+            q.center = x + far * way;
+            q.radius = radius;
             const Vec3d aim = q.center + 2 * off * radius * frame_about(way).t;
             if (std::fabs(2 * off - 1) < 1e-3) continue;
             EXPECT_EQ(intersect(q, x, normalize(aim - x)).t < far + 1, 2 * off < 1) << far << " m, " << 2 * off;

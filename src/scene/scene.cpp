@@ -54,7 +54,8 @@ std::shared_ptr<const Surroundings> Scene::Made::surroundings() const {
         EmittingTriangle& to = emitting.emplace_back();
         for (std::size_t c = 0; c < 3; ++c) to.corner[c] = light.corner[c] - origin;
         to.radiance = data.meshes[static_cast<std::size_t>(light.mesh)].emission;
-        to.instance = light.instance, to.triangle = light.triangle;
+        to.instance = light.instance;
+        to.triangle = light.triangle;
     }
     if (!emitting.empty()) out->triangles.emplace(std::move(emitting));
     out->rays = rays;
@@ -99,7 +100,10 @@ Vec3d Scene::Made::nearest_seen() const {
             const std::optional<Hit> hit = trace(middle(i, image.width), middle(j, image.height));
             if (!hit) continue;
             const Vec3d to = hit->x - c.eye;
-            if (dot(to, to) < least) least = dot(to, to), nearest = hit->x;
+            if (dot(to, to) < least) {
+                least = dot(to, to);
+                nearest = hit->x;
+            }
         }
     }
     return nearest;
@@ -131,12 +135,16 @@ void Scene::forget_hits() {
     auto all = std::make_shared<std::vector<std::int32_t>>();
     all->reserve(hits_->size());
     for (const Hit& hit : *hits_) all->push_back(hit.shape);
-    shapes_ = std::move(all), hits_ = nullptr;
+    shapes_ = std::move(all);
+    hits_ = nullptr;
 }
 
 Scene Scene::with_s(double s) const {
     Scene other = *this;
-    if (made_->s_shape >= 0) other.s_ = s, other.other_s_ = true;
+    if (made_->s_shape >= 0) {
+        other.s_ = s;
+        other.other_s_ = true;
+    }
     return other;
 }
 
@@ -163,7 +171,10 @@ std::optional<Hit> Scene::Made::trace(int i, int j) const {
     int shape = -1;
     for (std::size_t k = 0; k < data.shapes.size(); ++k) {
         const Intersection c = intersect(data.shapes[k], data.camera.eye, d);
-        if (c.order < best.order) best = c, shape = static_cast<int>(k);
+        if (c.order < best.order) {
+            best = c;
+            shape = static_cast<int>(k);
+        }
     }
     if (!rays.empty()) {
         const Vec3d from = data.camera.eye - origin;
@@ -188,14 +199,24 @@ Hit Scene::Made::hit(const MeshHit& met, Vec3d d) const {
     // Cramer's rule for from + t d = u e1 + v e2; a ray along the plane keeps the weights that were found.
     const double det = -dot(across, d);
     double u = static_cast<double>(met.u), v = static_cast<double>(met.v);
-    if (det != 0) u = dot(cross(e2, d), from) / det * -1, v = dot(cross(d, e1), from) / det * -1;
-    u = std::clamp(u, 0.0, 1.0), v = std::clamp(v, 0.0, 1.0);
-    if (u + v > 1) u /= u + v, v = 1 - u;
+    if (det != 0) {
+        u = dot(cross(e2, d), from) / det * -1;
+        v = dot(cross(d, e1), from) / det * -1;
+    }
+    u = std::clamp(u, 0.0, 1.0);
+    v = std::clamp(v, 0.0, 1.0);
+    if (u + v > 1) {
+        u /= u + v;
+        v = 1 - u;
+    }
     Hit out;
     out.shape = static_cast<int>(data.shapes.size()) + instance.mesh;
     out.x = a + u * e1 + v * e2;
     out.wo = -d;
-    out.instance = met.instance, out.triangle = met.triangle, out.u = u, out.v = v;
+    out.instance = met.instance;
+    out.triangle = met.triangle;
+    out.u = u;
+    out.v = v;
     const Vec3d face = normalize(across);
     out.face = dot(face, d) < 0 ? face : -face;
     out.n = out.face;
@@ -255,7 +276,10 @@ Surface Scene::surface(const Hit& hit) const {
     const Texels factor = texels(hit);
     for (std::size_t c = 0; c < 3; ++c) out.rho_d[c] *= factor.rho_d[c];
     out.alpha *= factor.alpha;
-    if (hit.below) out.rho_d = {}, out.rho_s = 0;
+    if (hit.below) {
+        out.rho_d = {};
+        out.rho_s = 0;
+    }
     if (hit.reveal) {
         out.rho_d = albedo_of_reveal(shapes()[shape]).value_or(out.rho_d);
         out.rho_s = 0;

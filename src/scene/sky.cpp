@@ -190,8 +190,13 @@ SkyDraw SkyTable::sample(double u, double v) const {
     const double along = inside(v, column > 0 ? double(first[column - 1]) : 0, double(first[column]));
     const RowEdges at = edges_of(static_cast<int>(row));
     double h, y;
-    if (at.across) y = (1 - at.polar) * (1 - 2 * down), h = 1 - std::fabs(y);
-    else h = at.polar + (at.equatorial - at.polar) * (at.below ? 1 - down : down), y = at.below ? h - 1 : 1 - h;
+    if (at.across) {
+        y = (1 - at.polar) * (1 - 2 * down);
+        h = 1 - std::fabs(y);
+    } else {
+        h = at.polar + (at.equatorial - at.polar) * (at.below ? 1 - down : down);
+        y = at.below ? h - 1 : 1 - h;
+    }
     const double across = std::sqrt(h * (2 - h));
     const math::SinCos phi = math::sincos(2 * pi * ((static_cast<double>(column) + along) / width() - turns_));
     const auto texel = static_cast<std::uint32_t>(row * columns + column);

@@ -81,7 +81,8 @@ TEST(SkyTable, HasTheTexelsOfAPlainSearch) {
             const double small = k % 4 == 0 ? 1e-9 : 1, low = k % 8 == 0 ? 0 : 1;
             Vec3d w = {small * coordinate(random), coordinate(random), coordinate(random)};
             EXPECT_EQ(int(sky.texel_at(w)), plain(w)) << height;
-            w.z = 0, w.y *= low;
+            w.z = 0;
+            w.y *= low;
             EXPECT_EQ(int(sky.texel_at(w)), plain(w)) << height;
             // On the edge of a column, within rounding, and on that of a row.
             const double turn = std::floor(number(random) * sky.width()) / sky.width() - light.rotation / 360;
@@ -105,7 +106,8 @@ TEST(SkyTable, DrawsTexelsByMassAndDirectionsEvenly) {
     std::vector<double> count(texels), sum_y(texels);
     for (int k = 0; k < draws; ++k) {
         const SkyDraw drawn = sky.sample(number(random), number(random));
-        ++count[drawn.texel], sum_y[drawn.texel] += drawn.w.y;
+        ++count[drawn.texel];
+        sum_y[drawn.texel] += drawn.w.y;
     }
     double chi2 = 0;
     for (std::size_t t = 0; t < texels; ++t) {
@@ -185,7 +187,8 @@ TEST(Skies, AreRefusedWithTheTexel) {
     EXPECT_THAT(why(2e6f, 1e3), HasSubstr("texel (5, 2)"));
     EXPECT_THAT(why_no_sky(*test::sky_of(8, std::vector<float>(96)).image, 1), HasSubstr("every texel is 0"));
     RgbImage square;
-    square.width = square.height = 8, square.rgb.assign(192, 1.0f);
+    square.width = square.height = 8;
+    square.rgb.assign(192, 1.0f);
     EXPECT_THAT(why_no_sky(square, 1), HasSubstr("8 x 8"));
 }
 

@@ -28,7 +28,10 @@ MeshesBefore meshes_before(const Surroundings& around, Vec3f x, Vec3f d, float l
     }
     if (aimed != no_triangle) {
         out.distance = static_cast<float>(around.triangles->distance(aimed, widen(x), widen(d)));
-        if (out.distance > 0 && out.distance < light) out.triangle = aimed, end = std::min(end, out.distance * before);
+        if (out.distance > 0 && out.distance < light) {
+            out.triangle = aimed;
+            end = std::min(end, out.distance * before);
+        }
     }
     const MeshHit hit = around.rays.closest(x, d, end);
     if (!hit.found()) return out;

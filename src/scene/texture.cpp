@@ -98,7 +98,8 @@ ImageSize read_image_size(std::string_view head, std::uint64_t size, const std::
 std::shared_ptr<const RgbImage> read_image_file(std::string_view bytes, const std::string& name) {
     const ImageSize size = read_image_size(bytes, bytes.size(), name);
     auto out = std::make_shared<RgbImage>();
-    out->width = static_cast<int>(size.width), out->height = static_cast<int>(size.height);
+    out->width = static_cast<int>(size.width);
+    out->height = static_cast<int>(size.height);
     out->rgb.resize(3 * out->texels());
     std::memcpy(out->rgb.data(), bytes.data() + sizeof(ImageHeader), out->rgb.size() * sizeof(float));
     out->hash = hash_of_texels(out->width, out->height, out->rgb);

@@ -111,7 +111,10 @@ std::uint32_t TriangleLights::nearest(Vec3d x, Vec3d w) const {
     std::uint32_t out = no_triangle;
     double least = std::numeric_limits<double>::infinity();
     each_met(x, w, [&](std::uint32_t k, double distance) {
-        if (distance < least || (distance == least && k < out)) least = distance, out = k;
+        if (distance < least || (distance == least && k < out)) {
+            least = distance;
+            out = k;
+        }
     });
     return out;
 }

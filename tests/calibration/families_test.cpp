@@ -52,7 +52,9 @@ TEST(Families, SinglePrecisionKeepsTheIntegralBelowTheDetectionFloor) {
             for (std::size_t i = 0; i < draws.wi.size(); ++i) {
                 if (!(draws.pdf[i] > 0)) continue;
                 const double off = pdf_at(in_float, wo, draws.wi[i]) / pdf_at(in_double, wo, draws.wi[i]) - 1;
-                sum += off, squares += off * off, ++count;
+                sum += off;
+                squares += off * off;
+                ++count;
             }
             const double mean = sum / count, error = std::sqrt(squares) / count;
             EXPECT_LT(std::fabs(mean), 1e-4 + 4 * error) << f.name << " (" << member.text << "): " << error;

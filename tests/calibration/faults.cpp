@@ -39,7 +39,10 @@ template <class F> std::array<F, PrimarySample::most> others(const F* u, std::ui
         h = mixed(h ^ bits);
     }
     std::array<F, PrimarySample::most> out{};
-    for (F& v : out) h = mixed(h), v = F(h >> 40) * F(0x1p-24);
+    for (F& v : out) {
+        h = mixed(h);
+        v = F(h >> 40) * F(0x1p-24);
+    }
     return out;
 }
 

@@ -202,10 +202,18 @@ TEST(Cases, PowerHasTenOfEachKindAndSizeInTwoHundred) {
 
 TEST(Records, CsvRoundTripKeepsTheTables) {
     Case c;
-    c.family = "glass, rough", c.kind = "leak", c.size = 0.01, c.expected = State::wrong, c.cause = "constant";
+    c.family = "glass, rough";
+    c.kind = "leak";
+    c.size = 0.01;
+    c.expected = State::wrong;
+    c.cause = "constant";
     Result result;
-    result.state = State::wrong, result.wrong = {"density", "mean"}, result.causes = {"a constant", "cos theta_i"};
-    result.cpu_seconds = 0.25, result.evaluations = 1234, result.wo = 3;
+    result.state = State::wrong;
+    result.wrong = {"density", "mean"};
+    result.causes = {"a constant", "cos theta_i"};
+    result.cpu_seconds = 0.25;
+    result.evaluations = 1234;
+    result.wo = 3;
     const auto r = record_of({"power", 1, 2, 3, false}, {"0.1", false, true}, c, result);
     const std::string path = testing::TempDir() + "calibration_records.csv";
     std::ofstream(path) << csv_of({r});

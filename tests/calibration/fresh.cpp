@@ -52,14 +52,18 @@ struct AliasTable {
         for (double m : mass) sum += m;
         std::vector<std::size_t> small, large;
         for (std::size_t k = 0; k < mass.size(); ++k) {
-            keep[k] = mass[k] / sum * double(mass.size()), other[k] = k;
+            keep[k] = mass[k] / sum * double(mass.size());
+            other[k] = k;
             (keep[k] < 1 ? small : large).push_back(k);
         }
         while (!small.empty() && !large.empty()) {
             const std::size_t s = small.back(), l = large.back();
             small.pop_back();
             other[s] = l;
-            if ((keep[l] -= 1 - keep[s]) < 1) large.pop_back(), small.push_back(l);
+            if ((keep[l] -= 1 - keep[s]) < 1) {
+                large.pop_back();
+                small.push_back(l);
+            }
         }
         for (std::size_t k : small) keep[k] = 1;
         for (std::size_t k : large) keep[k] = 1;
@@ -117,7 +121,8 @@ template <class F, Choosing how> Sampler lights_by_cone(Rng& d) {
         else if (how == Choosing::search) k = entry_of(sums, double(u[2])).first;
         else {
             const auto [entry, rest] = entry_of(sums, double(u[0]));
-            k = entry, across = F(rest);
+            k = entry;
+            across = F(rest);
         }
         const Vec3<F> w = off_axis(all[k].axis(o), all[k].profile.t(across), u[1]);
         return Drawn<F>{w, pdf(o, w)};
@@ -138,7 +143,8 @@ template <class F> std::pair<F, F> square_of_sphere(Vec3<F> w) {
     F v = phi * r, u = r - v;
     if (w.z < 0) {
         std::swap(u, v);
-        u = 1 - u, v = 1 - v;
+        u = 1 - u;
+        v = 1 - v;
     }
     return {(std::copysign(u, w.x) + 1) / 2, (std::copysign(v, w.y) + 1) / 2};
 }
@@ -169,11 +175,13 @@ template <class F, bool by_alias> Sampler sparse_sky(Rng& d) {
         F y = 0, x = 0;
         if (by_alias) {
             const auto k = int(alias.choice(double(u[2]), double(u[3])));
-            y = F(k / n) + u[0], x = F(k % n) + u[1];
+            y = F(k / n) + u[0];
+            x = F(k % n) + u[1];
         } else {
             const auto [i, dy] = entry_of(rows, double(u[0]));
             const auto [j, dx] = entry_of(columns[i], double(u[1]));
-            y = F(i) + F(dy), x = F(j) + F(dx);
+            y = F(i) + F(dy);
+            x = F(j) + F(dx);
         }
         const Vec3<F> w = sphere_of_square(x / F(n), y / F(n));
         return Drawn<F>{w, pdf(o, w)};
@@ -235,7 +243,8 @@ template <class F> Sampler triangle_by_solid_angle(Rng& d) {
     Vec3d a, b, c;
     double solid_angle = 0, alpha = 0;
     do {
-        a = unit(middle + d.direction(-1, 1) * spread), b = unit(middle + d.direction(-1, 1) * spread);
+        a = unit(middle + d.direction(-1, 1) * spread);
+        b = unit(middle + d.direction(-1, 1) * spread);
         c = unit(middle + d.direction(-1, 1) * spread);
         if (dot(cross(a, b), c) < 0) std::swap(b, c);
         const Vec3d ab = unit(cross(a, b)), bc = unit(cross(b, c)), ca = unit(cross(c, a));
@@ -270,7 +279,8 @@ template <class F> F fresnel(F c, F eta) {
 template <class F> Sampler coat(Rng& d) {
     const F eta = F(d.uniform(1.2, 1.9)), rho = F(d.uniform(0.1, 0.9));
     Traits t;
-    t.numbers = 3, t.delta = true;
+    t.numbers = 3;
+    t.delta = true;
     const auto pdf = [eta](Vec3<F> o, Vec3<F> i) {
         return o.z > 0 && i.z > 0 ? (1 - fresnel(o.z, eta)) * i.z / pi_of<F> : F(0);
     };
@@ -280,11 +290,15 @@ template <class F> Sampler coat(Rng& d) {
             const F q = fresnel(o.z, eta);
             Draw out;
             if (u[2] < q) {
-                out.wi = widened(Vec3<F>{-o.x, -o.y, o.z}), out.delta = double(q), out.weight = 1;
+                out.wi = widened(Vec3<F>{-o.x, -o.y, o.z});
+                out.delta = double(q);
+                out.weight = 1;
                 return out;
             }
             const Vec3<F> i = cosine_weighted(u[0], u[1]);
-            out.wi = widened(i), out.pdf = double(pdf(o, i)), out.weight = double(rho * (1 - fresnel(i.z, eta)));
+            out.wi = widened(i);
+            out.pdf = double(pdf(o, i));
+            out.weight = double(rho * (1 - fresnel(i.z, eta)));
             return out;
         },
         pdf,
@@ -297,7 +311,9 @@ template <class F> Sampler pane(Rng& d) {
     const F mirror = F(d.uniform(0.05, 0.4)), through = F(d.uniform(0.05, 0.5)), rho = F(d.uniform(0.1, 0.9));
     const F rest = 1 - mirror - through;
     Traits t;
-    t.numbers = 3, t.delta = true, t.wo = Wo::both;
+    t.numbers = 3;
+    t.delta = true;
+    t.wo = Wo::both;
     const auto pdf = [rest](Vec3<F> o, Vec3<F> i) { return o.z * i.z > 0 ? rest * std::fabs(i.z) / pi_of<F> : F(0); };
     return weighted<F>(
         fmt::format("{:.3f}, {:.3f}", double(mirror), double(through)), t,
@@ -306,12 +322,15 @@ template <class F> Sampler pane(Rng& d) {
             if (u[2] < mirror + through) {
                 const bool reflects = u[2] < mirror;
                 out.wi = reflects ? widened(Vec3<F>{-o.x, -o.y, o.z}) : widened(-o);
-                out.delta = double(reflects ? mirror : through), out.weight = 1;
+                out.delta = double(reflects ? mirror : through);
+                out.weight = 1;
                 return out;
             }
             Vec3<F> i = cosine_weighted(u[0], u[1]);
             if (o.z < 0) i.z = -i.z;
-            out.wi = widened(i), out.pdf = double(pdf(o, i)), out.weight = double(rho);
+            out.wi = widened(i);
+            out.pdf = double(pdf(o, i));
+            out.weight = double(rho);
             return out;
         },
         pdf, [=](Vec3<F> o, Vec3<F> i) { return o.z * i.z > 0 ? rest * rho / pi_of<F> : F(0); });
@@ -335,13 +354,18 @@ template <class F, Method method> Sampler only_weights(Rng& d) {
             Draw out;
             Vec3<F> i = cosine_weighted(u[0], u[1]);
             F weight = rho;
-            if (method == Method::uniform) i = off_axis(Vec3<F>{0, 0, 1}, u[0], u[1]), weight = 2 * rho * i.z;
+            if (method == Method::uniform) {
+                i = off_axis(Vec3<F>{0, 0, 1}, u[0], u[1]);
+                weight = 2 * rho * i.z;
+            }
             if (method == Method::visible_normals) {
                 i = reflected(o, g.visible_normal(o, u[0], u[1]));
                 if (!(i.z > 0)) return out;
                 weight = (1 + g.lambda(o)) / (1 + g.lambda(o) + g.lambda(i));
             }
-            out.wi = widened(i), out.pdf = 1, out.weight = double(weight);
+            out.wi = widened(i);
+            out.pdf = 1;
+            out.weight = double(weight);
             return out;
         },
         nullptr, f);

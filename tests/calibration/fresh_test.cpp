@@ -43,12 +43,15 @@ TEST(FreshFamilies, WeightsAverageToTheReflectedShare) {
                 Draw draw;
                 s.given->sample(0, wo, {&u, 1}, {&draw, 1});
                 const double x = draw.pdf > 0 ? draw.weight.value() : 0;
-                mean += x / n, square += x * x / n, delta += draw.delta > 0 ? 1.0 / n : 0;
+                mean += x / n;
+                square += x * x / n;
+                delta += draw.delta > 0 ? 1.0 / n : 0;
                 const Pair at{wo, d.direction(-1, 1)};
                 double y = 0;
                 s.given->f({&at, 1}, {&y, 1});
                 y *= 4 * pi_of<double> * std::fabs(at.wi.z);
-                integral += y / n, integral_square += y * y / n;
+                integral += y / n;
+                integral_square += y * y / n;
             }
             const double error = std::sqrt((square - mean * mean + integral_square - integral * integral) / n);
             EXPECT_NEAR(mean, integral, 5 * error) << s.family << " " << s.parameters;

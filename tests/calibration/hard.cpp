@@ -168,7 +168,11 @@ Sampler cascade(Rng&) {
     return cells("cascade", 243, 243, [](int x, int y) {
         constexpr double weight[3] = {0.2, 1.7, 1.1};
         double m = 1;
-        for (int k = 0; k < 5; ++k) m *= weight[x % 3] * weight[(y + x) % 3], x /= 3, y /= 3;
+        for (int k = 0; k < 5; ++k) {
+            m *= weight[x % 3] * weight[(y + x) % 3];
+            x /= 3;
+            y /= 3;
+        }
         return m;
     });
 }

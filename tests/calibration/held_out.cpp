@@ -226,7 +226,8 @@ struct QuadTree {
             int i = 0, j = 0;
             for (int l = 1; l <= depth; ++l) {
                 const auto& s = (*sums)[std::size_t(l)];
-                i *= 2, j *= 2;
+                i *= 2;
+                j *= 2;
                 const auto at = [&](int dy, int dx) { return s[std::size_t((i + dy) * (1 << l) + j + dx)]; };
                 const double top = at(0, 0) + at(0, 1), upper = top / (top + at(1, 0) + at(1, 1));
                 const int dy = y < upper ? 0 : 1;
@@ -234,7 +235,8 @@ struct QuadTree {
                 const double left = at(dy, 0) / (at(dy, 0) + at(dy, 1));
                 const int dx = x < left ? 0 : 1;
                 x = dx ? (x - left) / (1 - left) : x / left;
-                i += dy, j += dx;
+                i += dy;
+                j += dx;
             }
             const double t = 2 * (i + y) / n, s = std::sqrt(std::max(t * (2 - t), 0.0));
             const double phi = 2 * pi_of<double> * (j + x) / n;

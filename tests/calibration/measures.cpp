@@ -38,8 +38,14 @@ Cut cut_of(const Cell& c, bool along_t) {
         const auto [least, most] = std::ranges::minmax(c.inside, {}, coordinate);
         const double low = t ? c.t0 : c.f0, high = t ? c.t1 : c.f1;
         const double below = coordinate(least) - low, above = high - coordinate(most);
-        if (below > widest * (high - low)) widest = below / (high - low), best = {t, coordinate(least) - 0.02 * below};
-        if (above > widest * (high - low)) widest = above / (high - low), best = {t, coordinate(most) + 0.02 * above};
+        if (below > widest * (high - low)) {
+            widest = below / (high - low);
+            best = {t, coordinate(least) - 0.02 * below};
+        }
+        if (above > widest * (high - low)) {
+            widest = above / (high - low);
+            best = {t, coordinate(most) + 0.02 * above};
+        }
     }
     if (widest > 0.25) return best;
     std::vector<double> v;

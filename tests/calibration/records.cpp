@@ -28,16 +28,31 @@ std::string identity_of(const Json& r) {
 
 Json record_of(const CaseKey& key, const RunOf& run, const Case& c, const Result& result) {
     Json r;
-    r["set"] = key.set, r["seed"] = key.seed, r["index"] = key.index, r["wo"] = key.wo;
-    r["engine"] = run.engine, r["mode"] = run.full ? "full" : "quick", r["by"] = run.pipe ? "pipe" : "process";
-    r["family"] = c.family, r["parameters"] = c.parameters, r["real"] = c.real == Real::f32 ? "f32" : "f64";
-    r["held_out"] = c.held_out, r["kind"] = c.kind, r["size"] = c.size;
-    r["expected"] = word(c.expected), r["state"] = word(result.state);
-    r["wrong"] = result.wrong, r["open"] = result.open;
-    r["cause"] = c.cause, r["causes"] = result.causes;
-    r["stated"] = result.stated, r["p"] = result.p;
-    r["cpu"] = std::round(result.cpu_seconds * 1e4) / 1e4, r["evaluations"] = result.evaluations;
-    r["directions"] = result.wo, r["message"] = result.message.substr(0, 300);
+    r["set"] = key.set;
+    r["seed"] = key.seed;
+    r["index"] = key.index;
+    r["wo"] = key.wo;
+    r["engine"] = run.engine;
+    r["mode"] = run.full ? "full" : "quick";
+    r["by"] = run.pipe ? "pipe" : "process";
+    r["family"] = c.family;
+    r["parameters"] = c.parameters;
+    r["real"] = c.real == Real::f32 ? "f32" : "f64";
+    r["held_out"] = c.held_out;
+    r["kind"] = c.kind;
+    r["size"] = c.size;
+    r["expected"] = word(c.expected);
+    r["state"] = word(result.state);
+    r["wrong"] = result.wrong;
+    r["open"] = result.open;
+    r["cause"] = c.cause;
+    r["causes"] = result.causes;
+    r["stated"] = result.stated;
+    r["p"] = result.p;
+    r["cpu"] = std::round(result.cpu_seconds * 1e4) / 1e4;
+    r["evaluations"] = result.evaluations;
+    r["directions"] = result.wo;
+    r["message"] = result.message.substr(0, 300);
     return r;
 }
 
@@ -77,7 +92,8 @@ Causes causes_of(const Json& r) {
     // If no cause must be named, a named cause must be true.
     const auto kind = r.at("kind").get<std::string>(), family = r.at("family").get<std::string>();
     const auto is_true = [&](const std::string& one) { return is_true_of(kind, family, one); };
-    out.named = std::ranges::any_of(all, is_true), out.others = !std::ranges::all_of(all, is_true);
+    out.named = std::ranges::any_of(all, is_true);
+    out.others = !std::ranges::all_of(all, is_true);
     return out;
 }
 
@@ -136,7 +152,9 @@ std::string csv_of(const std::vector<Json>& records) {
     for (const Column& c : columns) out += fmt::format("{}{}", out.empty() ? "" : ",", c.name);
     for (Json r : records) {
         const Causes causes = causes_of(r);
-        r["given"] = causes.given, r["named"] = causes.named, r["others"] = causes.others;
+        r["given"] = causes.given;
+        r["named"] = causes.named;
+        r["others"] = causes.others;
         out += "\n";
         for (const Column& c : columns) out += (&c == columns ? "" : ",") + cell_of(c, r);
     }
@@ -156,7 +174,8 @@ std::vector<Json> read_csv(const std::string& path) {
         for (std::size_t k = 0; k < cells.size(); ++k)
             if (!cells[k].empty() || columns[k].kind == Column::text || columns[k].kind == Column::list)
                 r[columns[k].name] = value_of(columns[k], cells[k]);
-        r["parameters"] = "", r["p"] = Json::object();
+        r["parameters"] = "";
+        r["p"] = Json::object();
         out.push_back(std::move(r));
     }
     return out;

@@ -23,7 +23,8 @@ template <class F> struct SkyMap {
         if (broken == Broken::mirrored_table) j = columns - 1 - j;
         if (broken == Broken::transposed_table) {
             const int row = j * rows / columns;
-            j = i * columns / rows, i = row;
+            j = i * columns / rows;
+            i = row;
         }
         return mass[std::size_t(i * columns + j)] * F(rows) * F(columns) / (2 * sqr(pi_of<F>) * sin);
     }

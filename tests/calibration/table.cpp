@@ -251,7 +251,10 @@ std::string p_values(const Records& all) {
 std::string table_of(const std::vector<Json>& records) {
     Records all;
     std::set<std::string> runs;
-    for (const Json& r : records) all.push_back(&r), runs.insert(run_of(r));
+    for (const Json& r : records) {
+        all.push_back(&r);
+        runs.insert(run_of(r));
+    }
     const Records wrong = only(all, [](const Json& j) { return !right(j); });
     std::string out;
     const auto section = [&](const char* title, const std::string& body) {

@@ -17,7 +17,8 @@ struct Radiance {
     double sun;
     static Radiance drawn(Rng& d) {
         Radiance r;
-        r.rows = d.whole(8, 96), r.columns = 2 * r.rows;
+        r.rows = d.whole(8, 96);
+        r.columns = 2 * r.rows;
         const double noise = d.log(1.05, 8), gradient = d.uniform(0, 2), phase = d.uniform(0, 1);
         for (int i = 0; i < r.rows; ++i)
             for (int j = 0; j < r.columns; ++j)

@@ -163,7 +163,8 @@ std::shared_ptr<const SamplerAdapter> written_samples(double albedo, bool with_f
     for (int i = 0; i < 128; ++i)
         for (int k = 0; k < 8; ++k)
             t << fmt::format("{:.9g},{:.9g},{:.9g}\n", i / 127.0, 2 * pi * k / 8, i / 127.0 / pi);
-    s.close(), t.close();
+    s.close();
+    t.close();
     return std::make_shared<SampleFile>(samples, table);
 }
 

@@ -80,7 +80,8 @@ TEST(CompareJudges, AlarmsAreRareWhereTheRareEventsWereMet) {
     for (std::uint32_t seed = 1; calls < 40; ++seed) {
         const SyntheticScene w{{Kind::events, 1e-4, 0}, fine, 8, 24};
         if (!have_events(w, seed)) continue;
-        ++calls, alarms += compare_synthetic(w, seed).differs();
+        ++calls;
+        alarms += compare_synthetic(w, seed).differs();
     }
     EXPECT_LE(alarms, 7);
 }
@@ -155,7 +156,8 @@ TEST(CompareJudges, AHeavyTailHasNoIntervalOfSquares) {
         for (const CompareResult* r : {&events, &skewed}) {
             const RegionResult& a = r->arms[0].region(whole_frame);
             if (!a.heavy()) continue;
-            ++heavy, numbered += a.renders_needed.has_value();
+            ++heavy;
+            numbered += a.renders_needed.has_value();
             if (a.renders_needed) EXPECT_GE(*a.renders_needed, 6);
             EXPECT_FALSE(a.metric("rmse").interval);
             ASSERT_TRUE(a.metric("fireflies").interval);

@@ -112,7 +112,8 @@ TEST(Estimates, AreRecognisedAndNotAccused) {
 TEST(Estimates, OfFAloneOrOfPdfAloneAreTold) {
     for (bool of_pdf : {false, true}) {
         const auto adapter = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, Walk::own);
-        adapter->of_pdf = of_pdf, adapter->of_f = !of_pdf;
+        adapter->of_pdf = of_pdf;
+        adapter->of_f = !of_pdf;
         const CheckResult j = checked(adapter);
         EXPECT_EQ(j.state, State::right) << all_messages(j);
         EXPECT_NE(
@@ -134,7 +135,8 @@ TEST(Estimates, OfAnFOffTheWeightAreFound) {
         for (bool of_pdf : {false, true}) {
             const auto adapter = std::make_shared<Estimating>(recipe_of(Layers{}), Factor{}, walk);
             // If f is an estimate and pdf(w) is not, few points of f are evaluated: the integral is known to 3 %.
-            adapter->f_off = walk == Walk::hashed && !of_pdf ? 1.25 : 1.1, adapter->of_pdf = of_pdf;
+            adapter->f_off = walk == Walk::hashed && !of_pdf ? 1.25 : 1.1;
+            adapter->of_pdf = of_pdf;
             const CheckResult j = checked(adapter);
             EXPECT_EQ(named(j, "mean").state, State::wrong) << all_messages(j);
             EXPECT_NE(named(j, "physics").state, State::wrong)

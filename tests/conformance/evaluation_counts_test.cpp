@@ -301,7 +301,8 @@ TEST(WoDomain, PicturesTakeNoQuestionsOfTheirOwn) {
         ProgressMonitor monitor;
         CheckResult result = run_checks({&check_case, 1}, settings, monitor);
         EXPECT_EQ(result.maps.empty(), !pictures);
-        result.maps.clear(), result.weights.clear();
+        result.maps.clear();
+        result.weights.clear();
         return verdict_json(result, {});
     };
     EXPECT_EQ(answers(true), answers(false));

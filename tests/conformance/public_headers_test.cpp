@@ -53,7 +53,8 @@ struct ChooserFirst : Own {
 struct Written : Own {
     bool sample(V3, const std::array<double, 4>& u, V3& wi, float& pdf) {
         const Drawn d = cosine({static_cast<float>(u[0]), static_cast<float>(u[1])});
-        wi = d.wi, pdf = d.pdf;
+        wi = d.wi;
+        pdf = d.pdf;
         return true;
     }
 };

@@ -24,7 +24,9 @@ constexpr int draws = 1500;
 struct Comparison {
     double apart = 0, stated = 0, variance = 0, largest = 0;
     void add(const Comparison& other) {
-        apart += other.apart, stated += other.stated, variance += other.variance;
+        apart += other.apart;
+        stated += other.stated;
+        variance += other.variance;
         largest = std::max(largest, other.largest);
     }
     /// A draw in a thousand may be larger than all others: the part not drawn may be as large as the largest few.
@@ -73,7 +75,8 @@ TEST_P(ReferenceOfRandomScenes, MatchesOracleAndArmsWithinErrors) {
         EXPECT_EQ(differences(scene, film, seed), "") << "scene " << seed << "\n" << draw.what;
         const test::Compared arms = test::compare_scene(scene, film, seed);
         EXPECT_EQ(arms.off, 0) << "scene " << seed << arms.describe << "\n" << draw.what;
-        known += arms.known, pixels += arms.pixels;
+        known += arms.known;
+        pixels += arms.pixels;
     }
     EXPECT_GT(known, pixels / 2);
 }
@@ -111,10 +114,13 @@ TEST(ReferencesOfOtherScenes, DisagreeWithTheArms) {
         const test::Compared all = test::compare_scene(scene, wrong, seed);
         if (all.known == 0) continue;
         double y = 0, stated = 0;
-        for (std::size_t at = 0; at < wrong.y.size(); ++at)
-            y += static_cast<double>(wrong.y[at]), stated += static_cast<double>(wrong.error[at]);
+        for (std::size_t at = 0; at < wrong.y.size(); ++at) {
+            y += static_cast<double>(wrong.y[at]);
+            stated += static_cast<double>(wrong.error[at]);
+        }
         if (!(stated < 0.005 * y)) continue;
-        ++lit, found += all.off > 0;
+        ++lit;
+        found += all.off > 0;
     }
     EXPECT_GE(10 * found, 9 * lit) << found << " of " << lit;
     EXPECT_GE(lit, static_cast<int>(brighter_scenes) / 8);

@@ -37,7 +37,8 @@ std::shared_ptr<const SamplerAdapter> lobe_in_files(Vec3d axis) {
             const double z = (i + 0.5) / 64 - 1, phi = 2 * pi * (k + 0.5) / 64, r = std::sqrt(1 - z * z);
             t << fmt::format("{:.9g},{:.9g},{:.9g}\n", z, phi, p({r * std::cos(phi), r * std::sin(phi), z}));
         }
-    s.close(), t.close();
+    s.close();
+    t.close();
     return std::make_shared<SampleFile>(samples, table);
 }
 

@@ -85,7 +85,8 @@ TEST(Primaries, AreTheSameWhereTheyAreRemembered) {
 
 TEST(Primaries, OfALargeImageAreRememberedToTheLastBit) {
     Experiment e = test::small_scene();
-    e.image.width = 1340, e.image.height = 900;
+    e.image.width = 1340;
+    e.image.height = 900;
     const Scene plain(e);
     Scene kept = plain;
     kept.remember_primaries();
@@ -103,13 +104,16 @@ TEST(Primaries, OfALargeImageAreRememberedToTheLastBit) {
 
 TEST(Surfaces, DefaultToCommonExponentAndEqualWidth) {
     Material m;
-    m.rho_d = {0.1, 0.2, 0.3}, m.rho_s = 0.4, m.brdf = lobe_named("blinn-phong");
+    m.rho_d = {0.1, 0.2, 0.3};
+    m.rho_s = 0.4;
+    m.brdf = lobe_named("blinn-phong");
     const Surface bare = surface_of(m, 48);
     EXPECT_EQ(bare.s, 48);
     EXPECT_DOUBLE_EQ(bare.alpha, 0.2);
     EXPECT_EQ(bare.rho_s, 0.4);
     EXPECT_EQ(bare.brdf, lobe_named("blinn-phong"));
-    m.s = 6, m.alpha = 0.7;
+    m.s = 6;
+    m.alpha = 0.7;
     EXPECT_EQ(surface_of(m, 48).s, 6);
     EXPECT_EQ(surface_of(m, 48).alpha, 0.7);
     m.alpha.reset();
@@ -120,7 +124,9 @@ TEST(Surfaces, RecessSidesHaveTheirAlbedoAndNoLobe) {
     Experiment e = wall();
     Shape panel;
     panel.form = shapes::Panel{};
-    panel.material.rho_d = {0.3, 0.3, 0.3}, panel.material.rho_s = 0.2, panel.material.s = 9;
+    panel.material.rho_d = {0.3, 0.3, 0.3};
+    panel.material.rho_s = 0.2;
+    panel.material.s = 9;
     e.shapes.push_back(panel);
     const Scene scene(e);
     Hit hit;

@@ -55,7 +55,8 @@ TEST(SyntheticRenders, OwnNoiseFailuresAndFiltersAreAsStated) {
     noise.filter = 2;
     const Render filtered = synthetic_render("r", noise, 1, {.a = noise, .b = noise, .width = side});
     EXPECT_NEAR(spread(std::vector<double>(filtered.r.begin(), filtered.r.end())).sd, 0.1, 0.005);
-    noise.filter = 1, noise.failing = 0.01;
+    noise.filter = 1;
+    noise.failing = 0.01;
     const Render failing = synthetic_render("r", noise, 1, {.a = noise, .b = noise, .width = side});
     EXPECT_NEAR(static_cast<double>(std::count_if(failing.g.begin(), failing.g.end(), [](float x) { return x != x; })),
         0.01 * side * side, 4 * std::sqrt(0.01) * side);

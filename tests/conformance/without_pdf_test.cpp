@@ -152,7 +152,8 @@ TEST(WithoutAPdf, TheImpliedDensityIntegratesToOne) {
     for (const auto& row : named(j, "density").evidence["implied_bins"]["rows"]) {
         const auto at = [&](int k) { return row[static_cast<std::size_t>(k)].get<double>(); };
         const double solid_angle = (at(1) - at(0)) * (at(3) - at(2));
-        area += solid_angle, mass += solid_angle * at(4);
+        area += solid_angle;
+        mass += solid_angle * at(4);
     }
     EXPECT_NEAR(area, 4 * pi, 1e-9);
     EXPECT_NEAR(mass, 1, 1e-9);

@@ -55,21 +55,25 @@ void print_functions() {
 /// A sky of 32 x 16 texels over five orders of magnitude.
 SkyLight some_sky() {
     auto image = std::make_shared<RgbImage>();
-    image->width = 32, image->height = 16;
+    image->width = 32;
+    image->height = 16;
     for (std::uint32_t k = 0; k < 32 * 16; ++k)
         for (std::uint32_t c = 0; c < 3; ++c) {
             const std::uint32_t hash = pcg4d(Vec4u<std::uint32_t>{k, c, 1, 2}).x;
             image->rgb.push_back(static_cast<float>(hash >> 8) * (k % 61 == 0 ? 0x1p-10f : 0x1p-24f));
         }
     SkyLight sky;
-    sky.rotation = 77, sky.image = std::move(image);
+    sky.rotation = 77;
+    sky.image = std::move(image);
     return sky;
 }
 
 /// 24 pixels of the same view under a sky in place of the fill.
 void print_under_a_sky(Experiment e) {
-    e.image.height = std::max(1, e.image.height * 24 / e.image.width), e.image.width = 24;
-    e.fill = {}, e.sky = some_sky();
+    e.image.height = std::max(1, e.image.height * 24 / e.image.width);
+    e.image.width = 24;
+    e.fill = {};
+    e.sky = some_sky();
     const Scene scene(e);
     ProgressMonitor monitor;
     for (const std::string& isa : isas())
@@ -113,7 +117,8 @@ void print(const Experiment& experiment) {
 
 /// 24 pixels across, at most 16 samples.
 [[maybe_unused]] void make_small(Experiment& e) {
-    e.image.height = std::max(1, e.image.height * 24 / e.image.width), e.image.width = 24;
+    e.image.height = std::max(1, e.image.height * 24 / e.image.width);
+    e.image.width = 24;
     for (ArmPlan& arm : e.arms) {
         std::erase_if(arm.n, [](std::uint64_t n) { return n > 16; });
         if (arm.n.empty()) arm.n = {16};

@@ -43,7 +43,11 @@ struct Reader {
 };
 
 template <class V, class T> void visit(V& v, T& x) { v.item(x); }
-template <class V> void visit(V& v, Vec3d& x) { v.item(x.x), v.item(x.y), v.item(x.z); }
+template <class V> void visit(V& v, Vec3d& x) {
+    v.item(x.x);
+    v.item(x.y);
+    v.item(x.z);
+}
 template <class V> void visit(V& v, Rgb& x) {
     for (double& c : x) v.item(c);
 }

@@ -36,7 +36,11 @@ inline Explained checked(FunctionSampler made, const std::vector<std::pair<doubl
     Explained out;
     for (const auto& [theta, azimuth] : directions) {
         CheckCase& t = out.check_cases.emplace_back();
-        t.arm = "made", t.wo = tilt(theta, azimuth), t.theta_deg = theta, t.azimuth_deg = azimuth, t.adapter = adapter;
+        t.arm = "made";
+        t.wo = tilt(theta, azimuth);
+        t.theta_deg = theta;
+        t.azimuth_deg = azimuth;
+        t.adapter = adapter;
     }
     CheckSettings settings;
     settings.budget = CheckBudget::limited();
@@ -54,7 +58,10 @@ inline Explained explained(
 inline FunctionSampler made(decltype(FunctionSampler::draw) draw, decltype(FunctionSampler::p) p, int numbers = 2,
     Traits::WoDomain wo = Traits::WoDomain::upper) {
     FunctionSampler out;
-    out.draw = std::move(draw), out.p = std::move(p), out.of.numbers = numbers, out.of.wo = wo;
+    out.draw = std::move(draw);
+    out.p = std::move(p);
+    out.of.numbers = numbers;
+    out.of.wo = wo;
     return out;
 }
 

@@ -44,7 +44,10 @@ struct FunctionSampler : SamplerAdapter {
         for (std::size_t i = 0; i < u.size(); ++i) {
             const Vec3d w = draw(wo, u[i]);
             out[i] = dot(w, w) > 0 ? Draw{w, p(wo, w)} : Draw{{0, 0, 1}, 0};
-            if (weights && out[i].pdf > 0) out[i].weights = weights(wo, w), out[i].weight = out[i].weights.x;
+            if (weights && out[i].pdf > 0) {
+                out[i].weights = weights(wo, w);
+                out[i].weight = out[i].weights.x;
+            }
             if (change) change(u[i], out[i]);
         }
     }

@@ -31,7 +31,8 @@ struct Difference {
 
 inline void compare(const Scene& scene, const ShapeMap& shapes, const Film& cpu, const Film& gl, Difference& out) {
     const int width = scene.image().width;
-    out.bad_cpu += cpu.invalid, out.bad_gl += gl.invalid;
+    out.bad_cpu += cpu.invalid;
+    out.bad_gl += gl.invalid;
     for (std::size_t at = 0; at < cpu.size(); ++at) {
         if (shapes.shape[at] < 0) continue;
         ++out.pixels;

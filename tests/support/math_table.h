@@ -69,7 +69,9 @@ template <class F> MathTable math_table() {
     t.normalize = [](const float* a, float* unit, std::size_t n) {
         each_pack<F>(n, [=](std::size_t k) {
             const Vec3<F> v = normalize(load_three<F>(a, k, n));
-            store(v.x, unit + k), store(v.y, unit + n + k), store(v.z, unit + 2 * n + k);
+            store(v.x, unit + k);
+            store(v.y, unit + n + k);
+            store(v.z, unit + 2 * n + k);
         });
     };
     return t;

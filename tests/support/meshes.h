@@ -28,7 +28,8 @@ inline Mesh sphere_mesh(std::uint32_t around, std::uint32_t up) {
             const Vec3d p = {math::sin(theta) * math::cos(phi), math::cos(theta), -math::sin(theta) * math::sin(phi)};
             const bool pole = j == 0 || j == up;
             const Vec3f at = pole ? Vec3f{0, j == 0 ? 1.0f : -1.0f, 0} : as<float>(p);
-            mesh.positions.push_back(at), mesh.normals.push_back(at);
+            mesh.positions.push_back(at);
+            mesh.normals.push_back(at);
             mesh.uv.push_back({static_cast<float>(i) / static_cast<float>(around),
                 1 - static_cast<float>(j) / static_cast<float>(up)});
         }

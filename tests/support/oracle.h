@@ -35,9 +35,12 @@ struct Crosses {
         double near = -1e300, far = 1e300;
         const auto slab = [&](double a, double b, double from, double v) {
             const double t0 = (a - from) / v, t1 = (b - from) / v;  // v = 0 has probability 0
-            near = std::max(near, std::min(t0, t1)), far = std::min(far, std::max(t0, t1));
+            near = std::max(near, std::min(t0, t1));
+            far = std::min(far, std::max(t0, t1));
         };
-        slab(o.min.x, o.max.x, x.x, d.x), slab(o.min.y, o.max.y, x.y, d.y), slab(o.min.z, o.max.z, x.z, d.z);
+        slab(o.min.x, o.max.x, x.x, d.x);
+        slab(o.min.y, o.max.y, x.y, d.y);
+        slab(o.min.z, o.max.z, x.z, d.z);
         return near < far && (in(near) || in(far));
     }
     bool operator()(const shapes::Quad& o) const {
@@ -79,10 +82,12 @@ public:
             for (int j = 0; j < n; ++j) {
                 const Direction drawn = draw(k);
                 const double x = drawn.density > 0 ? drawn.worth / drawn.density : 0;
-                mean += x / n, square += x * x / n;
+                mean += x / n;
+                square += x * x / n;
                 out.largest = std::max(out.largest, std::fabs(x) / n);
             }
-            out.y += mean, out.variance += (square - mean * mean) / n;
+            out.y += mean;
+            out.variance += (square - mean * mean) / n;
         }
         out.y += pi * lambert_under_fill();
         return out;
@@ -226,7 +231,10 @@ private:
         for (const Light& light : scene_.lights()) {
             const auto [t, density] = lit(light, d);
             pdf += density;
-            if (t < nearest * (1 - 1e-5)) nearest = t, met = &light;
+            if (t < nearest * (1 - 1e-5)) {
+                nearest = t;
+                met = &light;
+            }
         }
         for (const Occluder& o : scene_.occluders())
             if (met && o.shape != hit_.shape &&

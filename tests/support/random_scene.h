@@ -30,12 +30,17 @@ public:
         floor(e);
         const double up = std::pow(10, between(-1.5, 0));  // the sine of the camera's height
         const Vec3d view = turned(std::sqrt(1 - up * up), up);
-        e.camera.eye = between(1, 4) * view, e.camera.up = {0, 1, 0.1}, e.camera.vfov_deg = between(0.5, 15);
+        e.camera.eye = between(1, 4) * view;
+        e.camera.up = {0, 1, 0.1};
+        e.camera.vfov_deg = between(0.5, 15);
         area_lights(e, {-view.x, view.y, -view.z});
         const int bodies = static_cast<int>(between(0, 3.5));
         for (int k = 0; k < bodies; ++k) body(e);
         if (newcomers_) newcomer(e);
-        if (far_) large_body(e), move(e, scale(1, 1e6) * direction());
+        if (far_) {
+            large_body(e);
+            move(e, scale(1, 1e6) * direction());
+        }
         return e;
     }
     std::string what;  // of the last scene, for messages
@@ -58,7 +63,8 @@ private:
         Material m;
         const double d = once_in(3) ? 0 : between(0.05, 0.6);
         m.rho_d = {d, d * 0.8, d * 0.5};
-        m.s = scale(0.01, 1e6), m.alpha = scale(1e-4, 1);
+        m.s = scale(0.01, 1e6);
+        m.alpha = scale(1e-4, 1);
         constexpr int lobes = static_cast<int>(Lobes::count);
         const int lobe = static_cast<int>(between(0, lobes + 1));
         m.rho_s = lobe < lobes ? between(0.1, 0.4) : 0;
@@ -72,7 +78,9 @@ private:
         what.clear();
         Shape s;
         const bool flat = once_in(2);
-        s.name = "floor", s.material = material(), s.occludes = once_in(2);
+        s.name = "floor";
+        s.material = material();
+        s.occludes = once_in(2);
         if (flat) s.form = shapes::Plane{{}, {0, 1, 0}};
         else {
             const double radius = scale(0.3, 30);
@@ -82,13 +90,15 @@ private:
     }
     void area_lights(Experiment& e, Vec3d mirror) {
         DiskLight l;
-        l.name = "lamp", l.radius = once_in(4) ? scale(1e-6, 1e-2) : scale(1e-2, 3);
+        l.name = "lamp";
+        l.radius = once_in(4) ? scale(1e-6, 1e-2) : scale(1e-2, 3);
         const double far = scale(0.2, 4);
         const Vec3d way = once_in(4) ? unit(mirror + 0.5 * direction())
                                      : unit(mirror + scale(1e-3, 1) * l.radius / far * direction());
         l.center = far * Vec3d{way.x, std::fabs(way.y), way.z};
         l.normal = once_in(3) ? Vec3d{0, -1, 0} : unit(0.5 * direction() - way);
-        l.radiance = {between(1, 20), between(1, 20), between(1, 20)}, l.two_sided = once_in(3);
+        l.radiance = {between(1, 20), between(1, 20), between(1, 20)};
+        l.two_sided = once_in(3);
         e.disks.push_back(l);
         what += ", lamp r " + std::to_string(l.radius);
         if (!once_in(3)) return;
@@ -109,7 +119,9 @@ private:
         const Vec3d middle =
             between(0.1, 0.95) * area_light.center + between(0, 1) * (area_light.radius + size) * direction();
         Shape s;
-        s.name = "body" + std::to_string(e.shapes.size()), s.occludes = true, s.material.rho_d = {0.3, 0.3, 0.3},
+        s.name = "body" + std::to_string(e.shapes.size());
+        s.occludes = true;
+        s.material.rho_d = {0.3, 0.3, 0.3};
         s.material.s = 10;
         const int kind = static_cast<int>(between(0, 12));
         const auto ball = [&](Vec3d c, double r) { s.form = shapes::Sphere{c, r}; };
@@ -130,7 +142,10 @@ private:
             case 8:
                 box(area_light.center + Vec3d{0, size, 0}, {2 * size, size, 2 * size});
                 break;  // its lower face at the area light
-            case 9: disk({0, 0, 0}, {0, 1, 0}, scale(0.001, 1)), s.material = e.shapes[0].material; break;  // a mat
+            case 9:
+                disk({0, 0, 0}, {0, 1, 0}, scale(0.001, 1));
+                s.material = e.shapes[0].material;
+                break;  // a mat
             case 10: quad({0, 0, 0}, scale(0.01, 1) * turned(1, 0), scale(0.01, 1) * turned(1, 0)); break;
             default:
                 quad(area_light.center, 3 * size * frame_about(area_light.normal).t,
@@ -164,7 +179,10 @@ private:
         const Vec3d p = between(0.2, 0.9) * area_light, n = direction();
         const Frame<double> frame = frame_about(n);
         Shape s;
-        s.name = "large", s.occludes = true, s.material.rho_d = {0.3, 0.3, 0.3}, s.material.s = 10;
+        s.name = "large";
+        s.occludes = true;
+        s.material.rho_d = {0.3, 0.3, 0.3};
+        s.material.s = 10;
         const int kind = static_cast<int>(between(0, 4));
         if (kind == 0) s.form = shapes::Sphere{p - size * n, size};
         if (kind == 1) s.form = shapes::Disk{p - size * frame.t, n, size};

@@ -46,7 +46,10 @@ public:
         for (std::size_t k = 0; k < arms_.size(); ++k) {
             double moment = 0;
             for (const Direction& d : drawn_) moment += d.F > 0 ? sqr(d.F) / (d.p[k] + d.other[k]) * d.share : 0;
-            if (moment < least) least = moment, out = arms_[k];
+            if (moment < least) {
+                least = moment;
+                out = arms_[k];
+            }
         }
         return out;
     }

@@ -13,7 +13,9 @@ namespace crescent::test {
 /// A sky of these texels, twice as wide as high.
 inline SkyLight sky_of(int width, std::vector<float> rgb) {
     auto image = std::make_shared<RgbImage>();
-    image->width = width, image->height = width / 2, image->rgb = std::move(rgb);
+    image->width = width;
+    image->height = width / 2;
+    image->rgb = std::move(rgb);
     SkyLight light;
     light.image = std::move(image);
     return light;

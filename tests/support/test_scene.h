@@ -89,7 +89,10 @@ inline void shift(Experiment& e, Vec3d by) {
     for (Vec3d* at : {&e.camera.eye, &e.camera.target}) *at = *at + by;
     const auto moved = [&]<class Form>(Form& form) {
         if constexpr (requires { form.center; }) form.center = form.center + by;
-        if constexpr (requires { form.min; }) form.min = form.min + by, form.max = form.max + by;
+        if constexpr (requires { form.min; }) {
+            form.min = form.min + by;
+            form.max = form.max + by;
+        }
         if constexpr (requires { form.corner; }) form.corner = form.corner + by;
         if constexpr (requires { form.point; }) form.point = form.point + by;
     };

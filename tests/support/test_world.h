@@ -66,7 +66,8 @@ struct World {
 
     PlatePlan plan(PlateKind kind, std::size_t runs) const {
         PlatePlan p;
-        p.name = "plate", p.kind = kind;
+        p.name = "plate";
+        p.kind = kind;
         p.caption =
             "A caption that stands alone under the picture, long enough to need a second line of the sheet, so "
             "that wrapping is seen to work and nothing runs off.";

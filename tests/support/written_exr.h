@@ -46,8 +46,10 @@ struct WrittenExr {
                 for (int x = data.min.x; x <= data.max.x; ++x)
                     planes.back().push_back(value(static_cast<int>(c), x, y));
         }
-        for (const auto& [name, x] : constant)
-            names.push_back(name), planes.emplace_back(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), x);
+        for (const auto& [name, x] : constant) {
+            names.push_back(name);
+            planes.emplace_back(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), x);
+        }
         std::vector<std::vector<half>> halves;
         Imf::FrameBuffer buffer;
         for (std::size_t c = 0; c < names.size(); ++c) {

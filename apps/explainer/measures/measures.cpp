@@ -46,7 +46,8 @@ double solid_angle(const PixelLight& disk) {
 
 ArmAtPixel arm_at(const Data& data, const OpenPixel& pixel, const std::string& arm) {
     ArmAtPixel out;
-    out.arm = arm, out.sampler = data.experiment.find_arm(arm)->sampler;
+    out.arm = arm;
+    out.sampler = data.experiment.find_arm(arm)->sampler;
     const RunKey key = data.key(arm);
     out.samples = pixel.samples(out.sampler, key.n, key.seed);
     out.mean = running_mean(out.samples);
@@ -55,7 +56,8 @@ ArmAtPixel arm_at(const Data& data, const OpenPixel& pixel, const std::string& a
     for (std::size_t k = 0; k < out.samples.size(); ++k) {
         const PixelSample& sample = out.samples[k];
         if (sample.x > out.largest_sample().x) out.largest = k;
-        out.hits += sample.meets_light(), out.below_horizon += sample.cos <= 0;
+        out.hits += sample.meets_light();
+        out.below_horizon += sample.cos <= 0;
     }
     out.long_series = long_series;
     std::uint64_t hits = 0;
@@ -136,7 +138,10 @@ std::pair<int, int> worst_pixel(
         for (int i = box.x0; i <= box.x1; ++i) {
             const std::size_t at = std::size_t(j) * std::size_t(film.width) + std::size_t(i);
             const double error = std::fabs(static_cast<double>(film.y[at]) - static_cast<double>(reference.y[at]));
-            if (shapes.shape[at] >= 0 && error > most) most = error, worst = {i, j};
+            if (shapes.shape[at] >= 0 && error > most) {
+                most = error;
+                worst = {i, j};
+            }
         }
     }
     return worst;
@@ -156,9 +161,13 @@ double WeightTail::expected(std::size_t bin) const {
 
 WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed) {
     WeightTail out;
-    out.s = s, out.k = (s - 1) / (s + 1), out.least = 2 / (s + 1), out.n = n;
+    out.s = s;
+    out.k = (s - 1) / (s + 1);
+    out.least = 2 / (s + 1);
+    out.n = n;
     ShadingPoint<float> shading_point{};
-    shading_point.wo = {0, 0, 1}, shading_point.s = static_cast<float>(s);
+    shading_point.wo = {0, 0, 1};
+    shading_point.s = static_cast<float>(s);
     const Phong<float> arm(shading_point);
     std::vector<double> weights;
     for (std::uint64_t k = 0; k < n; ++k) {
@@ -178,7 +187,8 @@ WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed) {
     }
     const std::size_t length = tail_length(n);
     std::sort(weights.begin(), weights.end(), std::greater<>());
-    out.largest = weights.front(), out.median = weights[weights.size() / 2];
+    out.largest = weights.front();
+    out.median = weights[weights.size() / 2];
     if (length > 0) out.fit = fit_tail(std::span<const double>(weights.data(), length + 1));
     return out;
 }

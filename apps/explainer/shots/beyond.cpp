@@ -30,7 +30,9 @@ Shot beyond(const Data& data) {
     const bool both = mix_h < h.high_value && mix_s < s.high_value;
 
     Shot shot;
-    shot.name = "beyond", shot.title = Words("Both at once"), shot.kind = Kind::photograph;
+    shot.name = "beyond";
+    shot.title = Words("Both at once");
+    shot.kind = Kind::photograph;
     shot.seen = Words(
         "Four columns of one view: cosine, Phong, their mixture, and multiple importance sampling with the light; "
         "under each its error in both regions.");
@@ -42,7 +44,8 @@ Shot beyond(const Data& data) {
         {21.4,
             Words("It costs two rays a sample. At half the N, as many rays: ", data.rmse(half, c.highlight), " and ",
                 data.rmse(half, c.surround), ".")}};
-    shot.seconds = 27, shot.still = 26;
+    shot.seconds = 27;
+    shot.still = 26;
     shot.draw = [=](Frame& f) {
         const double starts[] = {0.4, 0.4, 10, 15.8};
         for (std::size_t k = 0; k < cols.size(); ++k) {

@@ -18,7 +18,8 @@ std::vector<Words> claims_of(const Data& data) {
     std::uint64_t of = 0, held = 0;
     for (const AssertionResult& a : data.metrics.assertions) {
         if (a.text.find("plate_bytes") != std::string::npos) continue;
-        ++of, held += a.pass;
+        ++of;
+        held += a.pass;
     }
     if (of > 0)
         out.push_back(Words(count(held, "assertions that hold"), " of ", count(of, "assertions on numbers"),
@@ -40,11 +41,13 @@ std::vector<Words> limits_of(const Data& data) {
 Shot claims(const Data& data) {
     const std::vector<Words> can = claims_of(data), cannot = limits_of(data);
     Shot shot;
-    shot.name = "claims", shot.title = Words("What this can claim, and what it cannot");
+    shot.name = "claims";
+    shot.title = Words("What this can claim, and what it cannot");
     shot.seen = Words("Two lists, what the run can claim and what it cannot.");
     shot.cues = {{0.5, Words("The integral never changed. Where the rays went decided where the noise went.")},
         {6.5, Words("Cosine rarely finds the small light. Phong rarely leaves its lobe.")}};
-    shot.seconds = 13.5, shot.still = 12.5;
+    shot.seconds = 13.5;
+    shot.still = 12.5;
     shot.draw = [=](Frame& f) {
         const auto list = [&](double x, const Words& heading, const std::vector<Words>& lines, Colour ink,
                               double from) {

@@ -18,12 +18,14 @@ Shot closing(const Data& data) {
         lines.push_back({Words("film ", name(to_string(key))), Words(name(hash->second))});
 
     Shot shot;
-    shot.name = "closing", shot.title = Words("Make it again");
+    shot.name = "closing";
+    shot.title = Words("Make it again");
     shot.seen = Words(
         "The command that makes the film again, with the experiment, its hash, the commit, the seed and the hash of a "
         "film.");
     shot.cues = {{0.5, Words("Every picture, curve and number came out of this one command.")}};
-    shot.seconds = 8, shot.still = 7;
+    shot.seconds = 8;
+    shot.still = 7;
     const Words command(name(p.command));
     shot.draw = [=](Frame& f) {
         f.fill({90, 200, 1740, 116}, panel, f.ease(0.3, 0.8));

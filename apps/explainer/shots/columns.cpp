@@ -65,12 +65,15 @@ Shot columns(const Data& data) {
     const Box box_h = data.box(c.highlight), box_s = data.box(c.surround);
 
     Shot shot;
-    shot.name = "columns", shot.title = Words("Same light, same N"), shot.kind = Kind::photograph;
+    shot.name = "columns";
+    shot.title = Words("Same light, same N");
+    shot.kind = Kind::photograph;
     shot.seen = Words(
         "The converged picture with two regions outlined, the highlight and the surround. Then three columns of the "
         "same view, aimed three ways; under each its error in both regions.");
     shot.cues = cues_of(data);
-    shot.seconds = 35, shot.still = 34;
+    shot.seconds = 35;
+    shot.still = 34;
     shot.draw = [=](Frame& f) {
         const double before = 1 - f.ease(17.2, 17.7), now = f.ease(17.8, 18.5);
         if (before > 0) {

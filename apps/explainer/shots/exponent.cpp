@@ -18,7 +18,8 @@ std::vector<Point> lobe_of(const plates::Density& density, Point foot, double ra
     std::vector<std::pair<double, double>> values;
     for (int k = -360; k <= 360; ++k) {
         const double angle = k * 0.25 * 3.14159265358979 / 180, p = density.in_plane(angle);
-        peak = std::max(peak, p), values.emplace_back(angle, p);
+        peak = std::max(peak, p);
+        values.emplace_back(angle, p);
     }
     std::vector<Point> out{foot};
     for (const auto& [angle, p] : values) {
@@ -73,7 +74,9 @@ Shot exponent(const Data& data) {
     const Colour ink = data.ink(control->arm);
     const auto best = std::size_t(std::ranges::min_element(cols, {}, &Column::error) - cols.begin());
 
-    shot.name = "exponent", shot.title = Words("A sharper lobe"), shot.kind = Kind::photograph;
+    shot.name = "exponent";
+    shot.title = Words("A sharper lobe");
+    shot.kind = Kind::photograph;
     shot.seen = Words(
         "Three columns, one for each exponent: the lobe as a curve, narrower and narrower, and under it the highlight "
         "as it comes out.");
@@ -83,7 +86,8 @@ Shot exponent(const Data& data) {
     if (best + 1 == cols.size())
         shot.cues[2].words =
             Words("Error in the highlight: lowest at ", cols[best].name, ", the sharpest, at this seed.");
-    shot.seconds = 18, shot.still = 17;
+    shot.seconds = 18;
+    shot.still = 17;
     shot.draw = [=](Frame& f) {
         for (std::size_t k = 0; k < cols.size(); ++k) {
             const Column& col = cols[k];

@@ -36,7 +36,10 @@ std::vector<Bar> bars_of(const Data& data) {
     double most = 0;
     for (const auto& [bar, value] : all) most = std::max(most, value);
     std::vector<Bar> out;
-    for (auto& [bar, value] : all) bar.part = most > 0 ? value / most : 0, out.push_back(bar);
+    for (auto& [bar, value] : all) {
+        bar.part = most > 0 ? value / most : 0;
+        out.push_back(bar);
+    }
     return out;
 }
 
@@ -98,14 +101,16 @@ Shot failure_b(const Data& data) {
     const bool starved = is_starved(data);
 
     Shot shot;
-    shot.name = "failure-b", shot.kind = Kind::photograph;
+    shot.name = "failure-b";
+    shot.kind = Kind::photograph;
     shot.title = starved ? Words("Failure B: Phong starves the surround") : Words("The surround, both ways");
     shot.seen = Words(
         "The whole picture by the Phong arm. Then the surround enlarged, cosine next to Phong; then the mean of the "
         "frame as bars: "
         "reference, cosine, Phong.");
     shot.cues = cues_of(data);
-    shot.seconds = 27.5, shot.still = 26.5;
+    shot.seconds = 27.5;
+    shot.still = 26.5;
     shot.draw = [=](Frame& f) {
         const double before = f.ease(0.2, 0.9) * (1 - f.ease(9.8, 10.3)), now = f.ease(10.4, 11.1);
         if (before > 0) show(f, whole, all.times, whole_slot, before);

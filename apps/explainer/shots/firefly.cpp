@@ -109,7 +109,7 @@ private:
             Words("× ", formulas::one_over_density), Words("= X")};
         double lit[5] = {};
         for (int k = 0; k < 3; ++k) lit[k] = f.during(apart + 0.4 + 0.9 * k, apart + 0.9 + 0.9 * k);
-        lit[3] = f.ease(sharp, sharp + 0.4),
+        lit[3] = f.ease(sharp, sharp + 0.4);
         lit[4] = std::max(f.during(giant + 1.4, apart), f.ease(other, other + 0.4));
         for (int k = 0; k < 5; ++k)
             f.text({table.x - 20, table.y + row * (k + 1), 160, row}, names[k], label_text, shown);

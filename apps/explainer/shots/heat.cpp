@@ -55,7 +55,9 @@ Shot heat(const Data& data) {
     for (int j = 0; j < 128; ++j) bar.set(0, j, turbo(1 - j / 127.0));
 
     Shot shot;
-    shot.name = "heat", shot.title = Words("Where the error sits"), shot.kind = Kind::backend;
+    shot.name = "heat";
+    shot.title = Words("Where the error sits");
+    shot.kind = Kind::backend;
     shot.seen = Words(
         "Two maps of the same crop around the highlight: how far each pixel of luminance is from the reference, blue "
         "for little, red for much, "
@@ -68,7 +70,8 @@ Shot heat(const Data& data) {
         {11.5,
             Words("Off by ", data.rmse(h.low, c.highlight), " inside the frame with ", data.arm(h.low.arm), ", by ",
                 data.rmse(h.high, c.highlight), " with ", data.arm(h.high.arm), ".")}};
-    shot.seconds = 17, shot.still = 16;
+    shot.seconds = 17;
+    shot.still = 16;
     shot.draw = [=](Frame& f) {
         for (std::size_t k = 0; k < maps.size(); ++k) {
             const double in = k == 0 ? f.ease(0.3, 1) : f.ease(7.2, 8);

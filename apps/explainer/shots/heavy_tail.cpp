@@ -28,7 +28,8 @@ std::vector<FurnaceQuantiles> readings(const Evidence& evidence, const std::stri
 class HeavyTail {
 public:
     explicit HeavyTail(const Data& data) : data_(data), tail_(data.measures->tail), phong_(data.cast.phong) {
-        single_ = readings(data.evidence, "float32", 24), twofold_ = readings(data.evidence, "float64", 53);
+        single_ = readings(data.evidence, "float32", 24);
+        twofold_ = readings(data.evidence, "float64", 53);
         const double most = double(*std::max_element(tail_.bins.begin(), tail_.bins.end()));
         histogram_ = {left, {tail_.edge(0), tail_.edge(tail_.bins.size()), true}, {0.7, 40 * most, true}};
         double top = data.evidence.expected;

@@ -20,7 +20,8 @@ Shot ladder_cosine(const Data& data) {
             ? Words("It falls like one over the root of N. To halve it you need four times the rays.")
             : Words("Its slope here is ", figure(l.slope, 3, source), "; independent samples give minus a half.")};
     Shot shot = ladder_shot(data, text);
-    shot.name = "ladder-cosine", shot.title = Words("Failure A: cosine, and the highlight sparkles");
+    shot.name = "ladder-cosine";
+    shot.title = Words("Failure A: cosine, and the highlight sparkles");
     shot.seen = Words(
         "The highlight enlarged at four values of N, and the error against N on two logarithmic axes, point "
         "by point.");

@@ -56,7 +56,8 @@ public:
         const Box at{pixel_.i(), pixel_.j(), pixel_.i(), pixel_.j()};
         whole_ = around(data, data.box(data.cast.highlight), int(photo_slot.w), int(photo_slot.h));
         near_ = around(data, at, crop_side, crop_side);
-        photo_ = photograph_of(data, view, whole_), crop_ = photograph_of(data, view, near_);
+        photo_ = photograph_of(data, view, whole_);
+        crop_ = photograph_of(data, view, near_);
         const auto f = [&](Vec3d w) { return pixel_.f(w, pixel_.disk_met(w)); };
         fields_[0] = field_of(dome_, f);
         fields_[1] = field_of(dome_, [&](Vec3d w) { return pixel_.light(w); });

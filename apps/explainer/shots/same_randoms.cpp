@@ -38,8 +38,11 @@ public:
             const PixelSample& b = story_.phong.samples[k];
             MovingPoint t;
             t.from = {square.x + square.w * double(a.u.x), square.bottom() - square.h * double(a.u.y)};
-            t.cosine = disc_.at(wide(a.wi)), t.phong = disc_.at(wide(b.wi));
-            t.cosine_hit = a.meets_light(), t.phong_hit = b.meets_light(), t.phong_below_horizon = b.cos <= 0;
+            t.cosine = disc_.at(wide(a.wi));
+            t.phong = disc_.at(wide(b.wi));
+            t.cosine_hit = a.meets_light();
+            t.phong_hit = b.meets_light();
+            t.phong_below_horizon = b.cos <= 0;
             t.ink = plates::colour(turbo(0.1 + 0.8 * double(a.u.x)));
             points_.push_back(t);
         }

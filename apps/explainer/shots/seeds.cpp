@@ -91,7 +91,8 @@ Shot seeds(const Data& data) {
     const std::vector<Row> rows = rows_of(data);
     const bool published = std::ranges::any_of(rows, [](const Row& r) { return r.published.has_value(); });
     Shot shot;
-    shot.name = "seeds", shot.kind = Kind::backend;
+    shot.name = "seeds";
+    shot.kind = Kind::backend;
     const Number n = count(std::uint64_t(data.experiment.seeds), "seeds of the experiment");
     shot.title = Words("Other random numbers: ", n, data.experiment.seeds == 1 ? " seed" : " seeds");
     shot.seen = Words(
@@ -103,7 +104,8 @@ Shot seeds(const Data& data) {
             published ? Words("The diamond is the published figure, the bar the middle nine tenths of the seeds.")
                       : Words("The bar spans the middle nine tenths of the seeds.")}};
     if (published) shot.cues.push_back({11.8, counted(rows)});
-    shot.seconds = published ? 17 : 11.8, shot.still = shot.seconds - 1;
+    shot.seconds = published ? 17 : 11.8;
+    shot.still = shot.seconds - 1;
     const std::vector<Row> drawn = rows;
     shot.draw = [=](Frame& f) {
         const double bars = f.ease(6, 6.6), diamonds = f.ease(7, 7.6);

@@ -28,8 +28,10 @@ public:
           side_(side_centre, side_radius, 0, {-1, 0, 0}),
           disc_(disc_centre, disc_radius, 90, {-1, 0, 0}) {
         double top = 0;
-        for (const LostSupport& l : lost())
-            most_ = std::max(most_, l.theta_R_deg), top = std::max({top, l.theory, l.measured});
+        for (const LostSupport& l : lost()) {
+            most_ = std::max(most_, l.theta_R_deg);
+            top = std::max({top, l.theory, l.measured});
+        }
         const LostSupport& here = measures_.surround_lost;
         top = std::max({top, here.theory, here.measured});
         axes_ = {chart, {0, std::max(most_, here.theta_R_deg), false}, {0, 110 * top, false}};

@@ -74,8 +74,11 @@ public:
     Check(const SamplerAdapter& adapter, int technique, Vec3d wo, const CaseData& data, const CheckBudget& budget,
         std::uint32_t seed)
         : source_(adapter, technique, wo, data.light), budget_(budget), levels_(data.levels), reserved_(data.reserved) {
-        key_.seed = seed, key_.place = data.place, key_.technique = static_cast<std::uint8_t>(technique);
-        out_.wo = wo, out_.technique = technique;
+        key_.seed = seed;
+        key_.place = data.place;
+        key_.technique = static_cast<std::uint8_t>(technique);
+        out_.wo = wo;
+        out_.technique = technique;
         out_.traits = source_.traits;
     }
 
@@ -84,7 +87,8 @@ public:
         StreamKey looks = key_;
         looks.purpose = Purpose::pairs;
         out_.scatter = look_for_noise(source_, looks);
-        source_.estimates = out_.scatter.pdf(), source_.f_estimates = out_.scatter.f();
+        source_.estimates = out_.scatter.pdf();
+        source_.f_estimates = out_.scatter.f();
         if (!source_.f_estimates) source_.unscaled = both_ways(source_.adapter, key_) != BothWays::not_known;
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_));
         out_.small = small_tests(source_, key_);
@@ -193,7 +197,10 @@ private:
             const double d = std::fabs(a.difference);
             const double errors =
                 std::max(d - a.floor, 0.0) / std::sqrt(a.sd * a.sd + d / e.observations.independent + 1e-300);
-            if (errors > at->second.first) at->second.first = errors, at->second.second.answer = a;
+            if (errors > at->second.first) {
+                at->second.first = errors;
+                at->second.second.answer = a;
+            }
         });
         std::vector<Least> out;
         for (const auto& [family, chosen] : most) out.push_back(chosen.second);
@@ -270,7 +277,8 @@ private:
         const Observations& o = first_.observations;
         if (o.deltas.empty() || o.deltas.scattered()) return;
         StreamKey key = key_;
-        key.purpose = Purpose::light, key.part = 2;
+        key.purpose = Purpose::light;
+        key.part = 2;
         const std::vector<DeltaPart>& parts = o.deltas.parts(o.independent);
         std::optional<SmallFault> fault = refraction(source_, parts, key);
         if (!fault) fault = reverse_path(source_, parts, key);
@@ -315,7 +323,8 @@ private:
             out_.answers.back().p = least.p();
         }
         if (out_.wrong()) {
-            out_.sizes = {}, out_.inconclusive = false;
+            out_.sizes = {};
+            out_.inconclusive = false;
             const Estimate& p = first_.integrals.sums[mass];
             if (source_.has_density() && p.value > 0) out_.sizes.integral = half_interval(p) / p.value;
         }

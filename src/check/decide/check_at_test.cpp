@@ -27,7 +27,10 @@ struct Cosine : SamplerAdapter {
             const double z = leaks ? u[i].x : std::sqrt(u[i].x), r = std::sqrt(1 - z * z);
             const double phi = two_pi * turn * u[i].y;
             Vec3d w{r * std::cos(phi), r * std::sin(phi), z};
-            if (w.x * 0.48 + w.y * 0.36 + w.z * 0.8 > 1 - hole / 1.6) w.x = -w.x, w.y = -w.y;
+            if (w.x * 0.48 + w.y * 0.36 + w.z * 0.8 > 1 - hole / 1.6) {
+                w.x = -w.x;
+                w.y = -w.y;
+            }
             out[i] = {};
             if (!nothing) out[i] = {w, elsewhere ? 1.0 : value(w.z)};
         }
@@ -68,7 +71,11 @@ TEST(CheckAtOneWo, GivesTheSameNumbersAgain) {
 
 TEST(CheckAtOneWo, FindsFaultsAndNamesTheirVerdict) {
     Cosine constant, leak, hole, nothing, elsewhere;
-    constant.factor = 1.003, leak.leak = 0.02, hole.hole = 0.02, nothing.nothing = true, elsewhere.elsewhere = true;
+    constant.factor = 1.003;
+    leak.leak = 0.02;
+    hole.hole = 0.02;
+    nothing.nothing = true;
+    elsewhere.elsewhere = true;
     EXPECT_TRUE(has(checked(constant), "normalised"));
     EXPECT_TRUE(has(checked(leak), "density"));
     EXPECT_FALSE(has(checked(leak), "normalised"));

@@ -108,8 +108,10 @@ std::optional<SmallFault> fault_of_first_draws(const CheckCase& check_case, cons
         check_case.adapter->sample(t, check_case.wo, u, draws);
         out.of += few;
         for (std::size_t i = 0; i < u.size(); ++i)
-            if (const auto fault = fault_of(draws[i], traits); fault && out.times++ == 0)
-                out.first = {u[i], draws[i], draws[i].pdf, 0}, out.what = *fault;
+            if (const auto fault = fault_of(draws[i], traits); fault && out.times++ == 0) {
+                out.first = {u[i], draws[i], draws[i].pdf, 0};
+                out.what = *fault;
+            }
     }
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }
@@ -119,7 +121,9 @@ public:
     Call(std::span<const CheckCase> check_cases, const CheckSettings& settings, ProgressMonitor& monitor)
         : check_cases_(check_cases), settings_(settings), monitor_(monitor), outcomes_(grouped(check_cases)) {
         for (CheckOutcome& o : outcomes_) {
-            o.at.resize(o.check_cases.size()), o.cut.resize(o.check_cases.size()), o.tails.resize(o.check_cases.size());
+            o.at.resize(o.check_cases.size());
+            o.cut.resize(o.check_cases.size());
+            o.tails.resize(o.check_cases.size());
             for (std::size_t k = 0; k < o.check_cases.size(); ++k) jobs_.push_back({&o, k});
         }
         further_ = settings.further_in_all;
@@ -291,7 +295,10 @@ private:
             Spent& spent = spent_by[case_of(jobs_[j]).adapter.get()];
             const QueryUsage before = case_of(jobs_[j]).adapter->spending();
             if (has_time_for(jobs_[j], spent)) check(jobs_[j]);
-            else cut = Cut{Cut::Why::too_slow, "no time is left", true}, monitor_.advance(1);
+            else {
+                cut = Cut{Cut::Why::too_slow, "no time is left", true};
+                monitor_.advance(1);
+            }
             keep_first_fault(jobs_[j], first_faults[j]);
             const QueryUsage after = case_of(jobs_[j]).adapter->spending();
             const double answers = static_cast<double>(after.answers - before.answers);

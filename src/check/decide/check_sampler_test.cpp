@@ -26,7 +26,8 @@ std::vector<CheckOutcome> checked(const std::vector<CheckCase>& all, double case
 TEST(CheckedSamplers, AreGroupedByNameAndSurface) {
     const auto s = std::make_shared<FunctionSampler>();
     std::vector<CheckCase> all{case_of(s, 10), case_of(s, 40), case_of(s, 60), case_of(s, 70)};
-    all[1].brdf = "Lambert", all[2].baseline = true;
+    all[1].brdf = "Lambert";
+    all[2].baseline = true;
     const auto found = checked(all);
     ASSERT_EQ(found.size(), 2u);
     EXPECT_EQ(found[0].check_cases, (std::vector<std::size_t>{0, 3}));

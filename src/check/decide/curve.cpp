@@ -68,7 +68,10 @@ std::optional<SmallFault> draws_on_curve(Source& source, const StreamKey& key) {
     for (PrimarySample& x : u) {
         for (int k = 0; k < numbers; ++k) x[k] = std::clamp(x[k], 2 * step, 1 - 2 * step);
         for (int k = 0; k < numbers; ++k)
-            for (double by : {-step, step, -step / 2, step / 2}) around.push_back(x), around.back()[k] += by;
+            for (double by : {-step, step, -step / 2, step / 2}) {
+                around.push_back(x);
+                around.back()[k] += by;
+            }
     }
     std::vector<Draw> draws(around.size()), at(u.size());
     source.draw(around, draws);

@@ -53,7 +53,9 @@ bool turns_with_wo(const Source& source, Vec3d wi, const StreamKey& key) {
 
 SmallFault fault_at(const DeltaPart& p, const char* what) {
     SmallFault out{Family::delta_direction, static_cast<double>(p.drawn), static_cast<double>(p.drawn), 0, {}, what};
-    out.first.draw.wi = p.wi, out.first.draw.delta = p.q, out.first.draw.weights = p.weight;
+    out.first.draw.wi = p.wi;
+    out.first.draw.delta = p.q;
+    out.first.draw.weights = p.weight;
     return out;
 }
 
@@ -128,7 +130,8 @@ std::optional<SmallFault> reverse_power_fault(
     if (!std::ranges::all_of(back, [&](const Draw& d) { return alike_power(power_of(source, d), first); })) return {};
     if (alike_power(first, expected)) return {};
     SmallFault out = fault_at(p, "the reverse path of a delta part has another power: not reciprocal");
-    out.first.p = first.x, out.first.expected = expected.x;
+    out.first.p = first.x;
+    out.first.expected = expected.x;
     out.size = expected.x > 0 ? first.x / expected.x - 1 : 0;
     return out;
 }

@@ -17,7 +17,8 @@ struct Coat : SamplerAdapter {
     std::string name() const override { return "coat"; }
     Traits traits() const override {
         Traits t;
-        t.numbers = 3, t.delta = true;
+        t.numbers = 3;
+        t.delta = true;
         return t;
     }
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
@@ -102,7 +103,10 @@ struct Boundary : SamplerAdapter {
     std::string name() const override { return "boundary"; }
     Traits traits() const override {
         Traits t;
-        t.numbers = 3, t.delta = true, t.eta = 1.5, t.wo = Traits::WoDomain::both;
+        t.numbers = 3;
+        t.delta = true;
+        t.eta = 1.5;
+        t.wo = Traits::WoDomain::both;
         return t;
     }
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
@@ -112,9 +116,11 @@ struct Boundary : SamplerAdapter {
                          rest = 1 - (1 - wo.z * wo.z) / (e * e);
             out[i].delta = 0.1;
             if (rest < 0) out[i].delta = 1;
-            else if (u[i].x > 0.1)
-                out[i].wi = {-wo.x / e, -wo.y / e, -std::copysign(std::sqrt(rest), wo.z)}, out[i].delta = 0.9,
+            else if (u[i].x > 0.1) {
+                out[i].wi = {-wo.x / e, -wo.y / e, -std::copysign(std::sqrt(rest), wo.z)};
+                out[i].delta = 0.9;
                 out[i].weight = scale;
+            }
         }
     }
     void pdf(int, std::span<const Pair>, std::span<double> out) const override { std::ranges::fill(out, 0.0); }
@@ -122,7 +128,8 @@ struct Boundary : SamplerAdapter {
 
 TEST(DeltaPartsOfASampler, AreRefractedByTheStatedIndex) {
     Boundary right, inverted, other;
-    inverted.drawn = 1 / 1.5, other.drawn = 1.4;
+    inverted.drawn = 1 / 1.5;
+    other.drawn = 1.4;
     for (double theta : {0.0, 30.0, 150.0, 180.0}) EXPECT_FALSE(checked_delta(right, tilt(theta)).wrong()) << theta;
     const CheckAt wrong = checked_delta(inverted, tilt(30));
     ASSERT_FALSE(wrong.small.empty());

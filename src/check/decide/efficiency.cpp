@@ -42,7 +42,10 @@ std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKe
             std::vector<std::size_t> at;
             std::vector<Vec3d> wi;
             for (std::size_t i = 0; i < batch.size(); ++i)
-                if (batch[i].pdf > 0 && batch[i].wi.z > 0) at.push_back(i), wi.push_back(batch[i].wi);
+                if (batch[i].pdf > 0 && batch[i].wi.z > 0) {
+                    at.push_back(i);
+                    wi.push_back(batch[i].wi);
+                }
             std::vector<double> p(wi.size(), 1);
             std::vector<Vec3d> f(wi.size());
             source.f_cos(wi, f);
@@ -56,8 +59,10 @@ std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKe
 }
 
 void note_variance(const WeightTail& t, Efficiency& e) {
-    e.has_weights = t.has_weights, e.whole = t.whole;
-    e.variance = sqr(t.spread.sd), e.relative_se = t.variance_error;
+    e.has_weights = t.has_weights;
+    e.whole = t.whole;
+    e.variance = sqr(t.spread.sd);
+    e.relative_se = t.variance_error;
     e.heavy = t.heavy() || t.open() || t.has_unseen();
 }
 
@@ -207,14 +212,18 @@ std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std
     for (const Efficiency& e : all) {
         if (!check_cases[e.check_case].baseline) checked = e.check_case;
         Verdict& v = out[e.check_case];
-        v.arm = check_cases[e.check_case].arm, v.check_case = check_cases[e.check_case].text(), v.name = "efficiency";
+        v.arm = check_cases[e.check_case].arm;
+        v.check_case = check_cases[e.check_case].text();
+        v.name = "efficiency";
         v.state = State::skipped;
         v.message = "There are no weights, so there is no variance.";
         if (e.has_weights || !e.fault.empty())
             test_one_efficiency(e, check_cases, groups[group_of(check_cases[e.check_case])], v);
         // A program failed while its f was evaluated for a baseline: reported where it would be ranked.
-        if (check_cases[e.check_case].baseline && !e.fault.empty())
-            out[checked].state = State::error, out[checked].message = v.message;
+        if (check_cases[e.check_case].baseline && !e.fault.empty()) {
+            out[checked].state = State::error;
+            out[checked].message = v.message;
+        }
     }
     return out;
 }

@@ -29,7 +29,10 @@ TEST(EfficiencyOfSamplers, HasTheVarianceOfTheWeights) {
     EXPECT_NEAR(all[0].variance, 1.0 / 12, 4 * all[0].relative_se / 12);
     EXPECT_NEAR(all[2].variance, 1.0 / 12, 4 * all[2].relative_se / 12);
     EXPECT_LT(all[1].variance, 1e-9);
-    for (Efficiency& e : all) e.nanoseconds = 10, e.cost_se = 0.01;  // equal times: the variance decides the rank
+    for (Efficiency& e : all) {
+        e.nanoseconds = 10;
+        e.cost_se = 0.01;
+    }  // equal times: the variance decides the rank
     const std::vector<Verdict> v = test_efficiency(check_cases, all);
     EXPECT_EQ(v[0].state, State::right);
     EXPECT_NE(v[0].timed_message.find("higher than that of cosine"), std::string::npos) << v[0].timed_message;

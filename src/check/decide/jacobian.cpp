@@ -113,8 +113,14 @@ void find_branches(Source& source, std::vector<Point>& all, int k, const StreamK
             const std::size_t first = j;
             while (j + 1 < of.size() && of[j + 1].same) ++j;
             run.to = of[j].x;
-            if (first > 0) run.low_end = ends.size(), ends.push_back({i, run.from, of[first - 1].x});
-            if (j + 1 < of.size()) run.high_end = ends.size(), ends.push_back({i, run.to, of[j + 1].x});
+            if (first > 0) {
+                run.low_end = ends.size();
+                ends.push_back({i, run.from, of[first - 1].x});
+            }
+            if (j + 1 < of.size()) {
+                run.high_end = ends.size();
+                ends.push_back({i, run.to, of[j + 1].x});
+            }
             mine.push_back(run);
         }
         runs.insert(runs.end(), mine.begin(), mine.end());
@@ -139,7 +145,10 @@ std::optional<int> chooser(Source& source, const std::vector<PrimarySample>& u, 
         const std::vector<Draw> d = draws_at(source, v);
         int moved = 0, tested = 0;
         for (std::size_t i = 0; i < u.size(); ++i)
-            if (drawn(at[i])) ++tested, moved += !same_direction(d[i], at[i]);
+            if (drawn(at[i])) {
+                ++tested;
+                moved += !same_direction(d[i], at[i]);
+            }
         if (tested >= 16 && moved * 20 <= tested) return k;
     }
     return {};
@@ -204,7 +213,8 @@ void differentiate(Source& source, std::vector<Point>& all) {
             const double most = std::max({a->most_pdf, b->most_pdf, c->most_pdf});
             const double error = std::max(std::fabs(a->area - b->area), std::fabs(b->area - c->area)) / b->area;
             if (!(most <= smooth * least) || !(error < jacobian_error) || !is_linear_below(of[i], s + 1)) continue;
-            all[i].error = error, all[i].area = (4 * b->area - a->area) / 3;
+            all[i].error = error;
+            all[i].area = (4 * b->area - a->area) / 3;
             break;
         }
 }
@@ -213,7 +223,8 @@ void differentiate(Source& source, std::vector<Point>& all) {
 /// intervals does not, none of 9 / g values shows it with probability 1.2e-4; g is the shortfall of p that it explains.
 bool is_confirmed(Source& source, const MapDensity& x, double shortfall, Stream& stream) {
     std::vector<Point> one(1);
-    one[0].u = x.u, one[0].draw = x.draw;
+    one[0].u = x.u;
+    one[0].draw = x.draw;
     const double length = x.branch.length();
     std::vector<std::pair<std::size_t, double>> values(static_cast<std::size_t>(std::ceil(9 / shortfall)));
     for (auto& [point, value] : values) {
@@ -253,7 +264,10 @@ Round test_points(Source& source, const StreamKey& key) {
             if ((cost += 9 / (1 - ratio)) > most_confirming) break;
             if (!is_confirmed(source, *x, 1 - ratio, stream)) continue;
         }
-        if (out.broken++ == 0) out.first = {x->u, x->draw, x->p, x->drawn}, out.worst = ratio;
+        if (out.broken++ == 0) {
+            out.first = {x->u, x->draw, x->p, x->drawn};
+            out.worst = ratio;
+        }
     }
     return out;
 }
@@ -272,7 +286,8 @@ std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
     if (source.traits.numbers == 3) {
         choosing = chooser(source, u, draws);
         if (!choosing) return out;
-        first = *choosing == 0 ? 1 : 0, second = *choosing == 2 ? 1 : 2;
+        first = *choosing == 0 ? 1 : 0;
+        second = *choosing == 2 ? 1 : 2;
     }
     std::vector<Point> all;
     for (std::size_t i = 0; i < u.size(); ++i)

@@ -242,7 +242,9 @@ public:
             if (!(s.claimed > 0)) continue;
             leaves_.push_back({leaf.node, s.claimed, s.claimed * s.claimed / std::max(s.second, 1e-300)});
             const Vec3d middle = without_azimuth(from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5)));
-            x_.push_back(middle.x), y_.push_back(middle.y), z_.push_back(middle.z);
+            x_.push_back(middle.x);
+            y_.push_back(middle.y);
+            z_.push_back(middle.z);
         }
         cosine_.resize(leaves_.size());
     }
@@ -268,7 +270,8 @@ public:
                 for (int at = leaf.node; at >= 0; at = parent_[static_cast<std::size_t>(at)]) {
                     const auto i = static_cast<std::size_t>(at);
                     const double before = variance_[i] > 0 ? sqr(difference(i)) : 0;
-                    removed_[i] += leaf.claimed, touched.push_back(at);
+                    removed_[i] += leaf.claimed;
+                    touched.push_back(at);
                     found = found || shows(i, before);
                 }
             }
@@ -431,7 +434,8 @@ private:
                 if (in_a) to.nodes[i].add(gain.values[bridge]);
                 if (in_b) to.nodes[j].add(-loss.values[bridge]);
             }
-            in_a = in_a && step(i, gain.at), in_b = in_b && step(j, loss.at);
+            in_a = in_a && step(i, gain.at);
+            in_b = in_b && step(j, loss.at);
         }
     }
     /// Descends to the half that contains the place; false at the end.
@@ -533,7 +537,8 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
     // eight axes.
     std::ranges::sort(sizes, std::greater<>(), &Size::angle);
     const Size& stated = sizes[sizes.size() > axes / 2 ? 1 : 0];
-    out.rotation = stated.angle, out.by_rotation = stated.changed / target_rotation;
+    out.rotation = stated.angle;
+    out.by_rotation = stated.changed / target_rotation;
 }
 
 /// Draws by p^(1 + e) in place of p move E[h] by e times the covariance of h and ln p. They are modelled as draws of p
@@ -604,9 +609,13 @@ double worst_ratio(const Sizes& s) {
     const auto look = [&](const std::optional<double>& size, double target, double changed) {
         if (size) worst = std::max(worst, std::min(*size / target, *size * changed / target_leak));
     };
-    look(s.bias, target_bias_of_weights, 1e300), look(s.integral, target_constant, 1e300);
-    look(s.constant, target_constant, 1e300), look(s.cap, target_cap, 1e300), look(s.leak, target_leak, s.by_leak);
-    look(s.rotation, target_rotation, s.by_rotation), look(s.parameter, target_parameter, s.by_parameter);
+    look(s.bias, target_bias_of_weights, 1e300);
+    look(s.integral, target_constant, 1e300);
+    look(s.constant, target_constant, 1e300);
+    look(s.cap, target_cap, 1e300);
+    look(s.leak, target_leak, s.by_leak);
+    look(s.rotation, target_rotation, s.by_rotation);
+    look(s.parameter, target_parameter, s.by_parameter);
     return worst;
 }
 

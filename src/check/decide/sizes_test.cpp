@@ -24,7 +24,8 @@ TEST(SizesOfFaults, AreComparedWithTheirTargets) {
     EXPECT_DOUBLE_EQ(worst_ratio(s), 3);
     s.by_leak = 0.1;  // the density is nearly uniform: such a leak changes a tenth of that
     EXPECT_DOUBLE_EQ(worst_ratio(s), 2);
-    s.rotation = 100 * target_rotation, s.by_rotation = 0;  // a rotation changes nothing
+    s.rotation = 100 * target_rotation;
+    s.by_rotation = 0;  // a rotation changes nothing
     EXPECT_DOUBLE_EQ(worst_ratio(s), 2);
     s.cap = 5 * target_cap;
     EXPECT_DOUBLE_EQ(worst_ratio(s), 5);

@@ -45,7 +45,8 @@ std::vector<PrimarySample> corner_numbers(int count) {
             for (double x : ends)
                 for (double y : ends) {
                     out.push_back(middle);
-                    out.back()[i] = x, out.back()[j] = y;
+                    out.back()[i] = x;
+                    out.back()[j] = y;
                 }
     for (int bits = 0; n > 2 && bits < 1 << n; ++bits) {
         out.push_back(middle);
@@ -98,8 +99,11 @@ std::optional<SmallFault> rows_of_file(const Source& source) {
         const Draw& d = file->row(i);
         std::optional<const char*> fault = fault_of(d, source.traits);
         if (!fault && d.f && !(std::isfinite(*d.f) && *d.f >= 0)) fault = "f is not a number >= 0";
-        if (fault && out.times++ == 0)
-            out.first = {file->row_numbers(i), d, 0, 0}, out.what = *fault, out.place = file->place(i);
+        if (fault && out.times++ == 0) {
+            out.first = {file->row_numbers(i), d, 0, 0};
+            out.what = *fault;
+            out.place = file->place(i);
+        }
     }
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }
@@ -117,7 +121,10 @@ std::optional<SmallFault> corners_of_u(Source& source) {
             source.stated_pdf({&draws[i].wi, 1}, {&p, 1});
             if (!std::isfinite(p) || p < 0) fault = "pdf(w) there is not a number >= 0";
         }
-        if (fault && out.times++ == 0) out.first = {u[i], draws[i], p, 0}, out.what = *fault;
+        if (fault && out.times++ == 0) {
+            out.first = {u[i], draws[i], p, 0};
+            out.what = *fault;
+        }
     }
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }
@@ -148,13 +155,17 @@ std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
     const auto same = [&](const Draw& a, const Draw& b) {
         if (same_draw(a, b, random)) return true;
         Draw with_pdf = b;  // the weight is f cos / pdf
-        with_pdf.pdf = a.pdf, with_pdf.weight = a.weight;
+        with_pdf.pdf = a.pdf;
+        with_pdf.weight = a.weight;
         return same_draw(a, with_pdf) && a.delta == 0 && a.pdf > 0 && b.pdf > 0 &&
             differ_by_rounding(source, a.wi, a.pdf, b.pdf);
     };
     for (std::size_t i = 0; i < u.size(); ++i)
         if (!same(together[i], again[i]) || !same(together[i], backwards[i]))
-            if (out.times++ == 0) out.first = {u[i], together[i], 0, 0}, out.what = "the same u gives another draw";
+            if (out.times++ == 0) {
+                out.first = {u[i], together[i], 0, 0};
+                out.what = "the same u gives another draw";
+            }
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }
 
@@ -181,7 +192,9 @@ std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& ke
         });
         for (std::size_t i = 0; i < w.size(); ++i)
             if (differ(w[i], together[i], again[i]) && out.times++ == 0) {
-                out.first.u = u[i], out.first.draw.wi = w[i], out.what = what;
+                out.first.u = u[i];
+                out.first.draw.wi = w[i];
+                out.what = what;
             }
     };
     struct Pdf {
@@ -250,7 +263,10 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
             const bool smooth = b > 0 && a > 1.5 * b && a < 3 * b;
             if (!smooth || a * few_bits_step / 0x1p-10 < few_bits_move) continue;
             ++out.of;
-            if (moved(at[i], least[i]) == 0 && out.times++ == 0) out.first = {u[i], at[i], 0, 0}, out.size = k;
+            if (moved(at[i], least[i]) == 0 && out.times++ == 0) {
+                out.first = {u[i], at[i], 0, 0};
+                out.size = k;
+            }
         }
         if (out.of >= 16 && out.times > few_bits_share * out.of) return out;
     }

@@ -30,7 +30,8 @@ std::optional<SmallFault> map(Source& s) { return jacobian(s, key); }
 TEST(UsableDraws, HaveNumbersThatMeanSomething) {
     const auto is_usable = [](double pdf, Vec3d wi, double delta = 0, std::optional<double> weight = {}) {
         Draw d{wi, pdf};
-        d.delta = delta, d.weight = weight;
+        d.delta = delta;
+        d.weight = weight;
         return !fault_of(d, {});
     };
     constexpr Vec3d n{0, 0, 1};
@@ -225,17 +226,24 @@ FunctionSampler alias_lights(std::vector<double> powers) {
     std::vector<double> rest, share(n, 1);
     std::vector<std::size_t> alias(n), small, large;
     for (std::size_t i = 0; i < n; ++i) {
-        rest.push_back(powers[i] / sum * static_cast<double>(n)), alias[i] = i;
+        rest.push_back(powers[i] / sum * static_cast<double>(n));
+        alias[i] = i;
         (rest[i] < 1 ? small : large).push_back(i);
     }
     while (!small.empty() && !large.empty()) {
         const std::size_t low = small.back(), high = large.back();
         small.pop_back();
-        share[low] = rest[low], alias[low] = high, rest[high] -= 1 - rest[low];
-        if (rest[high] < 1) large.pop_back(), small.push_back(high);
+        share[low] = rest[low];
+        alias[low] = high;
+        rest[high] -= 1 - rest[low];
+        if (rest[high] < 1) {
+            large.pop_back();
+            small.push_back(high);
+        }
     }
     FunctionSampler s;
-    s.of.numbers = 3, s.of.wo = Traits::WoDomain::none;
+    s.of.numbers = 3;
+    s.of.wo = Traits::WoDomain::none;
     s.draw = [=](Vec3d, const PrimarySample& u) {
         const double at = u[2] * static_cast<double>(n);
         const auto entry = std::min(static_cast<std::size_t>(at), n - 1);

@@ -56,13 +56,18 @@ double find_unseen(const CheckAt& c, std::vector<WeightedPoint>& unseen) {
 
 void note_unseen(std::vector<WeightedPoint> unseen, WeightTail& to) {
     double square = 0;
-    for (const WeightedPoint& w : unseen)
-        to.unseen += w.light, to.unseen_chance += w.chance, square += w.light * w.light;
+    for (const WeightedPoint& w : unseen) {
+        to.unseen += w.light;
+        to.unseen_chance += w.chance;
+        square += w.light * w.light;
+    }
     to.unseen_error = std::sqrt(square);
     std::ranges::sort(unseen, std::greater<>(), &WeightedPoint::x);
     double light = 0;
-    for (std::size_t i = 0; i < unseen.size() && light < to.unseen / 2; ++i)
-        light += unseen[i].light, to.half_chance += unseen[i].chance;
+    for (std::size_t i = 0; i < unseen.size() && light < to.unseen / 2; ++i) {
+        light += unseen[i].light;
+        to.half_chance += unseen[i].chance;
+    }
 }
 
 double standard_error(const Spread& s) { return s.sd / std::sqrt(std::max(s.n, 1.0)); }
@@ -81,7 +86,9 @@ void describe_fit(const WeightTail& t, const CheckCase& check_case, Verdict& v) 
             : fmt::format("The largest weight was drawn {} times: there is no tail. ", t.times_largest);
         return;
     }
-    v.evidence["k"] = t.fit->k, v.evidence["se"] = t.fit->se, v.evidence["exceedances"] = t.fit->exceedances;
+    v.evidence["k"] = t.fit->k;
+    v.evidence["se"] = t.fit->se;
+    v.evidence["exceedances"] = t.fit->exceedances;
     v.message =
         fmt::format("k-hat = {:.3f} +- {:.3f} over the {} largest weights", t.fit->k, t.fit->se, t.fit->exceedances);
     if (check_case.theory.tail_k) v.message += fmt::format(" (theory: {:.3f})", *check_case.theory.tail_k);

@@ -43,7 +43,8 @@ struct CheckedTail {
 };
 CheckedTail tail_at(const PowerLobe& sampler) {
     CheckCase t;
-    t.wo = {0, 0, 1}, t.adapter = std::make_shared<PowerLobe>(sampler);
+    t.wo = {0, 0, 1};
+    t.adapter = std::make_shared<PowerLobe>(sampler);
     const CheckAt c = check_sampler_at(*t.adapter, 0, t.wo, {}, CheckBudget::limited(), 1);
     for (const Finding& f : c.findings) ADD_FAILURE() << info(f.first.family).name << f.first.difference;
     for (const SmallFault& f : c.small) ADD_FAILURE() << f.what << f.size;
@@ -89,7 +90,8 @@ TEST(TailOfWeights, ReportsThePlainMeanAndItsError) {
 /// One draw in 1e6 comes from the cosine, which contributes nearly all of the light; the draws contain none of them.
 TEST(TailOfWeights, IsFoundByThePointsIfNoDrawShowsIt) {
     PowerLobe lobe;
-    lobe.s = 1e4, lobe.share = 1e-6;
+    lobe.s = 1e4;
+    lobe.share = 1e-6;
     const CheckedTail t = tail_at(lobe);
     EXPECT_TRUE(t.of.has_unseen());
     EXPECT_EQ(t.tail.state, State::inconclusive);
@@ -103,7 +105,8 @@ TEST(TailOfWeights, IsFoundByThePointsIfNoDrawShowsIt) {
 /// The same cosine, drawn often enough: a step of the weights, not a tail.
 TEST(TailOfWeights, IsAbsentForAFrequentStep) {
     PowerLobe lobe;
-    lobe.s = 1e4, lobe.share = 0.02;
+    lobe.s = 1e4;
+    lobe.share = 0.02;
     EXPECT_EQ(tail_at(lobe).tail.state, State::right);
 }
 

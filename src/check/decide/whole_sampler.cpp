@@ -29,7 +29,11 @@ std::vector<PrimarySample> few_numbers(int count) {
 
 void note(
     SmallFault& to, const PrimarySample& u, const Draw& d, double p, const char* what, std::optional<Vec3d> wo = {}) {
-    if (to.times++ == 0) to.first = {u, d, p, 0}, to.what = what, to.wo = wo;
+    if (to.times++ == 0) {
+        to.first = {u, d, p, 0};
+        to.what = what;
+        to.wo = wo;
+    }
 }
 
 }  // namespace
@@ -155,7 +159,8 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const Strea
     std::vector<Pair> there, back;
     for (int i = 0; i < 256; ++i) {
         const Pair p{direction(both && (i & 1)), direction(both && (i & 2))};
-        there.push_back(p), back.push_back({p.wi, p.wo});
+        there.push_back(p);
+        back.push_back({p.wi, p.wo});
     }
     const std::vector<Vec3d> f = f_of(adapter, there), g = f_of(adapter, back), again = f_of(adapter, there);
     const int channels = traits.channels == 3 ? 3 : 1;
@@ -168,8 +173,10 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const Strea
             const bool across = p.wo.z * p.wi.z < 0;
             Draw at;
             at.wi = p.wi;
-            if ((!across || traits.eta) && differ(a * reciprocal_ratio(traits, p, c), b, reciprocity_tolerance))
-                note(out, {}, at, a, out.what), out.first.expected = b;
+            if ((!across || traits.eta) && differ(a * reciprocal_ratio(traits, p, c), b, reciprocity_tolerance)) {
+                note(out, {}, at, a, out.what);
+                out.first.expected = b;
+            }
         }
     // A few of 256 pairs may be at the edge of the support of f, where the half vector is rounded.
     if (out.times <= tolerated_breaks || both_ways(adapter, key) == BothWays::phase_function) return {};
@@ -191,8 +198,12 @@ struct WeightedDraws {
 
     WeightedDraws(const SamplerAdapter& adapter, Vec3d wo, const std::vector<Draw>& draws) {
         for (std::size_t i = 0; i < draws.size(); ++i)
-            if (draws[i].pdf > 0 && draws[i].wi.z > 0) at.push_back({wo, draws[i].wi}), of.push_back(i);
-        sum.resize(at.size()), empty.assign(at.size(), -1);
+            if (draws[i].pdf > 0 && draws[i].wi.z > 0) {
+                at.push_back({wo, draws[i].wi});
+                of.push_back(i);
+            }
+        sum.resize(at.size());
+        empty.assign(at.size(), -1);
         std::vector<double> w(at.size()), p(at.size());
         for (int k = 0; k < adapter.techniques(); ++k) {
             adapter.mis_weight(k, at, w);

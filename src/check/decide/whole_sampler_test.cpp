@@ -85,7 +85,8 @@ TEST(Reciprocity, IsTestedWithAndWithoutAnIndex) {
     s.of.reciprocal = false;
     EXPECT_FALSE(reciprocity(s, key));
     FunctionSampler glass;
-    glass.of.wo = Traits::WoDomain::both, glass.of.eta = Index(1.5);
+    glass.of.wo = Traits::WoDomain::both;
+    glass.of.eta = Index(1.5);
     glass.f_value = [](Vec3d o, Vec3d w) { return o.z * w.z < 0 && o.z < 0 ? 0.1 * 2.25 : 0.1; };
     EXPECT_FALSE(reciprocity(glass, key));
     glass.f_value = [](Vec3d, Vec3d) { return 0.1; };

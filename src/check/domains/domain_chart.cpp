@@ -87,7 +87,8 @@ struct Tail {
     /// Levels with equal quantiles, as of atoms, are kept apart.
     void add(double y, double value) {
         if (!x.empty()) value = std::max(value, x.back() + 1e-12 * std::max(std::fabs(x.back()), 1e-300));
-        level.push_back(y), x.push_back(value);
+        level.push_back(y);
+        x.push_back(value);
     }
 };
 
@@ -109,7 +110,8 @@ DomainChart::Knots DomainChart::Knots::fitted(std::vector<double> values, double
     Knots out;
     const auto n = values.size();
     if (std::isfinite(from)) {
-        out.y.push_back(0), out.x.push_back(from);
+        out.y.push_back(0);
+        out.x.push_back(from);
         for (int k = 1; k < body / 2; ++k) {
             out.y.push_back(k / static_cast<double>(body));
             out.x.push_back(values[n * static_cast<std::size_t>(k) / body]);
@@ -119,14 +121,18 @@ DomainChart::Knots DomainChart::Knots::fitted(std::vector<double> values, double
         for (double v : values) mirrored.push_back(-v);
         std::ranges::sort(mirrored);
         const Tail tail(mirrored);
-        for (std::size_t k = tail.x.size(); k-- > 1;) out.y.push_back(1 - tail.level[k]), out.x.push_back(-tail.x[k]);
+        for (std::size_t k = tail.x.size(); k-- > 1;) {
+            out.y.push_back(1 - tail.level[k]);
+            out.x.push_back(-tail.x[k]);
+        }
     }
     if (std::isfinite(to)) {
         for (int k = body / 2; k < body; ++k) {
             out.y.push_back(k / static_cast<double>(body));
             out.x.push_back(values[n * static_cast<std::size_t>(k) / body]);
         }
-        out.y.push_back(1), out.x.push_back(to);
+        out.y.push_back(1);
+        out.x.push_back(to);
     } else {
         const Tail tail(values);
         out.y.insert(out.y.end(), tail.level.begin(), tail.level.end());
@@ -210,7 +216,8 @@ void DomainChart::to_cube(std::span<const double> point, std::span<const double>
             default:
                 for (std::size_t i = 0; i < x.size(); ++i) y[d + i] = x[i];
         }
-        c += part.coordinates(), d += part.dimensions();
+        c += part.coordinates();
+        d += part.dimensions();
     }
     for (double& v : y) v = std::clamp(v, 0.0, below_one);
 }
@@ -226,20 +233,24 @@ double DomainChart::from_cube(std::span<const double> y, std::span<double> point
             case Kind::sphere: {
                 const double height = part.kind == Kind::sphere ? 2 : 1;
                 const Vec3d w = check::from_chart({height * y[d], two_pi * y[d + 1]});
-                x[0] = w.x, x[1] = w.y, x[2] = w.z;
+                x[0] = w.x;
+                x[1] = w.y;
+                x[2] = w.z;
                 measure *= height * two_pi;
                 break;
             }
             case Kind::disk: {
                 const double r = std::sqrt(y[d]);
                 const math::SinCos around = math::sincos(two_pi * y[d + 1]);
-                x[0] = r * around.cos, x[1] = r * around.sin;
+                x[0] = r * around.cos;
+                x[1] = r * around.sin;
                 measure *= two_pi / 2;
                 break;
             }
             case Kind::triangle: {
                 const double rest = std::sqrt(y[d]);
-                x[0] = 1 - rest, x[1] = rest * y[d + 1];
+                x[0] = 1 - rest;
+                x[1] = rest * y[d + 1];
                 measure *= 0.5;
                 break;
             }
@@ -258,7 +269,8 @@ double DomainChart::from_cube(std::span<const double> y, std::span<double> point
             default:
                 for (std::size_t i = 0; i < x.size(); ++i) x[i] = y[d + i];
         }
-        c += part.coordinates(), d += part.dimensions();
+        c += part.coordinates();
+        d += part.dimensions();
     }
     return measure;
 }
@@ -374,11 +386,16 @@ std::string DomainChart::text(const check::ChartRect& rect) const {
             high[d] = low[d] + std::ldexp(1.0, -same);
         }
     } else {
-        low[0] = rect.t0 / 2, high[0] = rect.t1 / 2;
-        if (dimensions == 2) low[1] = rect.phi0 / two_pi, high[1] = rect.phi1 / two_pi;
+        low[0] = rect.t0 / 2;
+        high[0] = rect.t1 / 2;
+        if (dimensions == 2) {
+            low[1] = rect.phi0 / two_pi;
+            high[1] = rect.phi1 / two_pi;
+        }
     }
     std::array<double, Domain::most_coordinates> from{}, to{};
-    from_cube(low, from), from_cube(high, to);
+    from_cube(low, from);
+    from_cube(high, to);
     std::vector<std::string> ranges;
     std::size_t c = 0, d = 0;
     for (const DomainPart& part : domain_.parts()) {
@@ -412,7 +429,8 @@ std::string DomainChart::text(const check::ChartRect& rect) const {
                 for (std::size_t k = 0; k < part.dimensions(); ++k)
                     add(k, range(std::array{"x", "y", "z"}[k], from[c + k], to[c + k]));
         }
-        c += part.coordinates(), d += part.dimensions();
+        c += part.coordinates();
+        d += part.dimensions();
     }
     return ranges.empty() ? "everywhere" : fmt::format("at {}", fmt::join(ranges, ", "));
 }
@@ -452,7 +470,8 @@ std::string DomainChart::label(std::size_t dimension, double share) const {
     std::size_t c = 0, d = dimension;
     for (const DomainPart& part : domain_.parts()) {
         if (d >= part.dimensions()) {
-            d -= part.dimensions(), c += part.coordinates();
+            d -= part.dimensions();
+            c += part.coordinates();
             continue;
         }
         const bool turns =

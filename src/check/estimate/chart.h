@@ -86,8 +86,13 @@ constexpr ChartRect rect_of_band(int member) {
     const double each = axis_length[axis] / static_cast<double>(count),
                  from = each * static_cast<double>(number - count);
     ChartRect out;
-    if (axis == 0) out.t0 = from, out.t1 = from + each;
-    else out.phi0 = from, out.phi1 = from + each;
+    if (axis == 0) {
+        out.t0 = from;
+        out.t1 = from + each;
+    } else {
+        out.phi0 = from;
+        out.phi1 = from + each;
+    }
     return out;
 }
 

@@ -14,15 +14,27 @@ namespace crescent::check {
 void LightIntegrals::scale(double by) {
     for (auto* by_channel : {&all, &mean, &albedo})
         for (Estimate& e : *by_channel) e.scale(by);
-    lost.scale(by), lost_again.scale(by), lit.scale(by), largest_lost *= by;
+    lost.scale(by);
+    lost_again.scale(by);
+    lit.scale(by);
+    largest_lost *= by;
     for (auto& by_channel : leaves)
         for (Estimate& e : by_channel) e.scale(by);
-    for (WeightedPoint& w : weighted_points) w.light *= by, w.chance *= by;
+    for (WeightedPoint& w : weighted_points) {
+        w.light *= by;
+        w.chance *= by;
+    }
 }
 
 void LightIntegrals::add(const LightIntegrals& o) {
-    for (std::size_t c = 0; c < 3; ++c) all[c].add(o.all[c]), mean[c].add(o.mean[c]), albedo[c].add(o.albedo[c]);
-    lost.add(o.lost), lost_again.add(o.lost_again), lit.add(o.lit);
+    for (std::size_t c = 0; c < 3; ++c) {
+        all[c].add(o.all[c]);
+        mean[c].add(o.mean[c]);
+        albedo[c].add(o.albedo[c]);
+    }
+    lost.add(o.lost);
+    lost_again.add(o.lost_again);
+    lit.add(o.lit);
     largest_lost = std::max(largest_lost, o.largest_lost);
     for (std::size_t l = 0; l < leaves.size(); ++l)
         for (std::size_t c = 0; c < 3; ++c) leaves[l][c].add(o.leaves[l][c]);
@@ -92,10 +104,12 @@ public:
     Integrals run(const std::vector<Grid>& grids) {
         std::size_t first = 0;
         while (first < grids.size()) {
-            w_.clear(), chart_.clear();
+            w_.clear();
+            chart_.clear();
             std::size_t last = first;
             for (; last < grids.size() && (last == first || w_.size() < batch_size); ++last) place_points(grids[last]);
-            p_.resize(w_.size()), f_.assign(w_.size(), {});
+            p_.resize(w_.size());
+            f_.assign(w_.size(), {});
             source_.density(w_, p_);
             if (of_f_) source_.f_cos(w_, f_, source_.adapter.has_true_f());
             mis_.assign(w_.size(), 1);
@@ -128,7 +142,10 @@ private:
         if (tabulated_ || !source_.has_density() || source_.estimates || !plan_.in_single(source_)) return;
         std::vector<std::size_t> first;  // point of each grid
         std::size_t at = 0;
-        for (const Grid& g : grids) first.push_back(at), at += g.points();
+        for (const Grid& g : grids) {
+            first.push_back(at);
+            at += g.points();
+        }
         const std::vector<double> at_first = rounding_at(first);
         for (std::size_t g = 0; g < grids.size(); ++g) {
             if (!(at_first[g] > same_number)) continue;
@@ -153,7 +170,10 @@ private:
         for (std::size_t i = 0; i < points.size(); ++i) {
             double least = p_[points[i]], most = least;
             for (const double p : {of_wo[i], of_wi[i]})
-                if (p >= 0 && std::isfinite(p)) least = std::min(least, p), most = std::max(most, p);
+                if (p >= 0 && std::isfinite(p)) {
+                    least = std::min(least, p);
+                    most = std::max(most, p);
+                }
             out.push_back(most > 0 ? std::min(1.0, (most / least - 1) / 4) : 0);
         }
         return out;
@@ -189,7 +209,8 @@ private:
             per_point.insert(per_point.end(), static_cast<std::size_t>(pairs), rect.area() / (2 * pairs));
         }
         if (w_.empty()) return;
-        p_.resize(w_.size()), f_.assign(w_.size(), {});
+        p_.resize(w_.size());
+        f_.assign(w_.size(), {});
         source_.density(w_, p_);
         source_.f_cos(w_, f_, source_.adapter.has_true_f());
         LightIntegrals& l = out_.light;
@@ -223,7 +244,8 @@ private:
             for (std::size_t a = 0; a < 2; ++a) {
                 const double p = p_[at + a];
                 h[a] = plan_.values(leaf, w_[at + a], p);
-                least = std::min(least, p), most = std::max(most, p);
+                least = std::min(least, p);
+                most = std::max(most, p);
                 lit = lit || (of_f_ && light_at(at + a) > 0);
                 if (k * p > heavy_point) out_.heavy.push_back({chart_[at + a], p});
                 second[a] = k * h[a][bridge] * h[a][bridge] * p;
@@ -231,14 +253,17 @@ private:
                 if (source_.may_draw(w_[at + a], p)) out_.domain += k;
                 if (p > 0) {
                     to.solid_angle += k * h[a][bridge];
-                    for (std::size_t q = 0; q < integrands; ++q)
-                        out_.even[q] += k * h[a][q], out_.even_square[q] += k * h[a][q] * h[a][q];
+                    for (std::size_t q = 0; q < integrands; ++q) {
+                        out_.even[q] += k * h[a][q];
+                        out_.even_square[q] += k * h[a][q] * h[a][q];
+                    }
                 }
                 if (tabulated_) allow_tabulation(h[a], w_[at + a], k, to);
                 for (double& v : h[a]) v *= p;
             }
             for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
-            to.mass.add_pair(h[0][mass], h[1][mass], k), to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
+            to.mass.add_pair(h[0][mass], h[1][mass], k);
+            to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
             if (source_.has_density()) add_to_bands(at, {h[0][bridge], h[1][bridge]}, second, k);
             if (of_f_) take_light(g.leaf, at, k);
         }
@@ -253,11 +278,13 @@ private:
     void add_to_bands(std::size_t at, std::array<double, 2> value, const double (&second)[2], double k) {
         for (std::size_t axis = 0; axis < chart_axes; ++axis) {
             const std::size_t i = band_of(chart_[at], axis), j = band_of(chart_[at + 1], axis);
-            out_.second_by_band[i] += second[0], out_.second_by_band[j] += second[1];
+            out_.second_by_band[i] += second[0];
+            out_.second_by_band[j] += second[1];
             if (i == j) {
                 out_.bridge_by_band[i].add_pair(value[0], value[1], k);
             } else {
-                out_.bridge_by_band[i].add_pair(value[0], 0, k), out_.bridge_by_band[j].add_pair(0, value[1], k);
+                out_.bridge_by_band[i].add_pair(value[0], 0, k);
+                out_.bridge_by_band[j].add_pair(0, value[1], k);
             }
         }
     }
@@ -318,8 +345,12 @@ void scale(Integrals& x, double by) {
     for (double& v : x.even) v *= by;
     for (double& v : x.even_square) v *= by;
     for (LeafIntegral& leaf : x.leaves) {
-        leaf.mass.scale(by), leaf.bridge.scale(by);
-        leaf.second *= by, leaf.solid_angle *= by, leaf.per_point *= by, leaf.known_to *= by;
+        leaf.mass.scale(by);
+        leaf.bridge.scale(by);
+        leaf.second *= by;
+        leaf.solid_angle *= by;
+        leaf.per_point *= by;
+        leaf.known_to *= by;
         leaf.rounding *= by;
     }
 }
@@ -335,24 +366,34 @@ void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f
     const double total = to.points + pass.points;
     if (pass.light.points > 0) {
         const double lit = to.light.points + pass.light.points;
-        to.light.scale(to.light.points / lit), pass.light.scale(pass.light.points / lit);
+        to.light.scale(to.light.points / lit);
+        pass.light.scale(pass.light.points / lit);
         to.light.add(pass.light);
         to.light.points = lit;
     }
-    scale(to, to.points / total), scale(pass, pass.points / total);
+    scale(to, to.points / total);
+    scale(pass, pass.points / total);
     for (std::size_t q = 0; q < integrands; ++q) {
-        to.sums[q].add(pass.sums[q]), to.known_to[q] += pass.known_to[q];
-        to.even[q] += pass.even[q], to.even_square[q] += pass.even_square[q];
+        to.sums[q].add(pass.sums[q]);
+        to.known_to[q] += pass.known_to[q];
+        to.even[q] += pass.even[q];
+        to.even_square[q] += pass.even_square[q];
     }
     for (std::size_t l = 0; l < to.leaves.size(); ++l) {
         LeafIntegral &a = to.leaves[l], &b = pass.leaves[l];
-        a.mass.add(b.mass), a.bridge.add(b.bridge);
-        a.second += b.second, a.solid_angle += b.solid_angle, a.known_to += b.known_to;
+        a.mass.add(b.mass);
+        a.bridge.add(b.bridge);
+        a.second += b.second;
+        a.solid_angle += b.solid_angle;
+        a.known_to += b.known_to;
         a.rounding += b.rounding;
-        a.top = std::max(a.top, b.top), a.per_point = std::max(a.per_point, b.per_point);
+        a.top = std::max(a.top, b.top);
+        a.per_point = std::max(a.per_point, b.per_point);
     }
-    for (std::size_t k = 0; k < to.bridge_by_band.size(); ++k)
-        to.bridge_by_band[k].add(pass.bridge_by_band[k]), to.second_by_band[k] += pass.second_by_band[k];
+    for (std::size_t k = 0; k < to.bridge_by_band.size(); ++k) {
+        to.bridge_by_band[k].add(pass.bridge_by_band[k]);
+        to.second_by_band[k] += pass.second_by_band[k];
+    }
     to.heavy.insert(to.heavy.end(), pass.heavy.begin(), pass.heavy.end());
     to.domain += pass.domain;
     to.points = total;

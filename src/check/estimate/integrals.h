@@ -21,8 +21,16 @@ struct Estimate {
         variance += v;
         doubt += 2.0 / 3 * v * v;  // for v = x^2, x normal: var(v) = 2 E[v]^2, of which v^2 2/3 is an unbiased estimate
     }
-    void scale(double by) { value *= by, variance *= by * by, doubt *= by * by * by * by; }
-    void add(const Estimate& other) { value += other.value, variance += other.variance, doubt += other.doubt; }
+    void scale(double by) {
+        value *= by;
+        variance *= by * by;
+        doubt *= by * by * by * by;
+    }
+    void add(const Estimate& other) {
+        value += other.value;
+        variance += other.variance;
+        doubt += other.doubt;
+    }
 };
 
 /// The integrals over one leaf.

@@ -62,7 +62,8 @@ TEST_F(CheckIntegralsOfPower, StatedVarianceOfAnIntegralIsItsVariance) {
     for (std::uint16_t k = 0; k < times; ++k) {
         Integrals one;
         integrate(source, plan, 1u << 14, false, {1, 0, 0, 1, Purpose::points, k}, one);
-        square += sqr(one.sums[mass].value - 1) / times, stated += one.sums[mass].variance / times;
+        square += sqr(one.sums[mass].value - 1) / times;
+        stated += one.sums[mass].variance / times;
     }
     EXPECT_NEAR(square / stated, 1, 0.6);  // 3 standard errors of 60 squares
 }
@@ -86,7 +87,8 @@ TEST(CheckIntegrals, KnowWhereSinglePrecisionDoesNotKnowP) {
         for (std::size_t l = 0; l < all.leaves.size(); ++l) {
             EXPECT_LE(all.leaves[l].rounding, 1);
             if (all.leaves[l].rounding < 0.1) continue;
-            ++unknown, mass_there += all.leaves[l].bridge.value;
+            ++unknown;
+            mass_there += all.leaves[l].bridge.value;
             const ChartRect& r = plan.tree.rect(plan.tree.leaves()[l]);
             const Vec3d off = from_chart(r.at(0.5, 0.5)) + wo;
             EXPECT_LT(std::sqrt(dot(off, off)), 0.002 + r.theta_width() + r.phi_width()) << "opposite to w_o";

@@ -60,7 +60,8 @@ constexpr std::uint64_t most_compared = 1024;
 
 std::uint64_t key_of(Vec3d w) {
     std::uint64_t a, b;
-    std::memcpy(&a, &w.x, 8), std::memcpy(&b, &w.y, 8);
+    std::memcpy(&a, &w.x, 8);
+    std::memcpy(&b, &w.y, 8);
     std::uint64_t h = a * 0x9e3779b97f4a7c15u ^ (b * 0xbf58476d1ce4e5b9u >> 3) ^ b << 32;
     return (h ^ h >> 31) * 0x94d049bb133111ebu ^ (w.z < 0);
 }
@@ -115,9 +116,13 @@ private:
     std::vector<double> rows_;  // the column of node_by_set of one set
 
     void process(std::span<const PrimarySample> u, int set, bool with_f) {
-        w_.clear(), at_.clear();
+        w_.clear();
+        at_.clear();
         for (std::size_t i = 0; i < u.size(); ++i)
-            if (usable(u[i], draws_[i], set)) w_.push_back(draws_[i].wi), at_.push_back(i);
+            if (usable(u[i], draws_[i], set)) {
+                w_.push_back(draws_[i].wi);
+                at_.push_back(i);
+            }
         p_.resize(w_.size());
         if (set >= 0 && pdf_is_confirmed()) {
             for (std::size_t k = 0; k < w_.size(); ++k) p_[k] = draws_[at_[k]].pdf;
@@ -126,7 +131,8 @@ private:
             if (source_.estimates) restore_zeros();
             compare_pdf(u);
         }
-        points_.resize(w_.size()), leaf_.resize(w_.size());
+        points_.resize(w_.size());
+        leaf_.resize(w_.size());
         for (std::size_t k = 0; k < w_.size(); ++k) points_[k] = to_chart(w_[k]);
         plan_.tree.find(points_, leaf_);
         if (with_f) compare_weights(u, set);
@@ -134,7 +140,10 @@ private:
         for (std::size_t k = 0; k < w_.size(); ++k) {
             fetch_leaf(k + fetched_before, set);
             if (is_direction(source_.traits, draws_[at_[k]], p_[k])) add_direction(k, set, u[at_[k]]);
-            else if (set < 0) ++to_.checks.nothing, to_.checks.outside += source_.traits.has_surface();
+            else if (set < 0) {
+                ++to_.checks.nothing;
+                to_.checks.outside += source_.traits.has_surface();
+            }
         }
     }
 
@@ -161,7 +170,10 @@ private:
         DrawChecks& c = to_.checks;
         if (set < 0) ++c.tested;
         if (d.delta != 0) {
-            if (set < 0) ++c.deltas, take_delta(d);
+            if (set < 0) {
+                ++c.deltas;
+                take_delta(d);
+            }
             const bool chosen = d.delta > 0 && d.delta <= 1;
             const double squared = dot(d.wi, d.wi);
             if (!chosen || !d.weight || !std::isfinite(*d.weight) || *d.weight < -negative_weight ||
@@ -203,7 +215,8 @@ private:
             if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <=
                     same_number * p_[k] + 2 * source_.adapter.tabulation_error(w_[k])))
                 differing.push_back(k);
-        to_.checks.followed += w_.size(), to_.checks.differing += differing.size();
+        to_.checks.followed += w_.size();
+        to_.checks.differing += differing.size();
         if (to_.checks.differing_compared >= most_compared) return;
         differing.resize(std::min<std::size_t>(differing.size(), most_compared - to_.checks.differing_compared));
         if (differing.empty()) return;
@@ -315,7 +328,8 @@ private:
         }
         if (p > 0) {
             const double log_p = v[bridge] > 0 ? v[slope] / v[bridge] : 0;
-            to_.log_p.add(log_p), to_.slope_log_p += v[slope] * log_p;
+            to_.log_p.add(log_p);
+            to_.slope_log_p += v[slope] * log_p;
         }
         to_.met.push_back({key_of(w), density});
         LeafIntegral& integral = integrals_.leaves[l];
@@ -328,7 +342,8 @@ private:
         const double draws = to_.independent;
         const auto add = [&](Estimate& e, double h) {
             const double x = leaf.per_point * p * h * h / draws;
-            e.variance += x, e.doubt += x * x;
+            e.variance += x;
+            e.doubt += x * x;
         };
         leaf.second += v[bridge] * v[bridge] / draws;
         add(leaf.bridge, v[bridge]);
@@ -341,7 +356,8 @@ private:
 void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t of_f, const StreamKey& key,
     Integrals& integrals, Observations& to) {
     if (to.leaves.empty()) {
-        to.leaves.resize(plan.tree.leaves().size()), to.counts.resize(plan.tree.leaves().size());
+        to.leaves.resize(plan.tree.leaves().size());
+        to.counts.resize(plan.tree.leaves().size());
         to.node_by_set.resize(plan.tree.rows());
         if (!source.has_density()) to.weight_leaves.resize(plan.tree.leaves().size());
     }

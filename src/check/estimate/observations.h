@@ -85,15 +85,26 @@ struct DrawChecks {
 /// Sum and sum of squares of a value per draw.
 struct Sums {
     double sum = 0, square = 0;
-    void add(double x) { sum += x, square += x * x; }
+    void add(double x) {
+        sum += x;
+        square += x * x;
+    }
 };
 
 /// Weights of the draws in one leaf.
 struct WeightSums {
     double count = 0, sum = 0, square = 0, largest = 0;
-    void add(double w) { ++count, sum += w, square += w * w, largest = std::max(largest, w); }
+    void add(double w) {
+        ++count;
+        sum += w;
+        square += w * w;
+        largest = std::max(largest, w);
+    }
     void add(const WeightSums& o) {
-        count += o.count, sum += o.sum, square += o.square, largest = std::max(largest, o.largest);
+        count += o.count;
+        sum += o.sum;
+        square += o.square;
+        largest = std::max(largest, o.largest);
     }
 };
 

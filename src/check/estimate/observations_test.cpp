@@ -102,13 +102,17 @@ TEST(CheckDraws, RingsAndLeavesCountThem) {
 
 Draw part(Vec3d wi, double q) {
     Draw out;
-    out.wi = wi, out.delta = q;
+    out.wi = wi;
+    out.delta = q;
     return out;
 }
 
 TEST(DeltaParts, AreTheDirectionsWithTheirProbability) {
     DeltaParts all;
-    for (int k = 0; k < 10; ++k) all.add(part({0, 0, 1}, 0.25), {2, 2, 2}), all.add(part({0, 0, -1}, 0.75), {1, 1, 1});
+    for (int k = 0; k < 10; ++k) {
+        all.add(part({0, 0, 1}, 0.25), {2, 2, 2});
+        all.add(part({0, 0, -1}, 0.75), {1, 1, 1});
+    }
     all.add(part({0, 1e-6, 1}, 0.25), {2, 2, 2});  // equal to the rounding of a direction
     const auto& parts = all.parts(40);
     ASSERT_EQ(parts.size(), 2u);
@@ -123,8 +127,10 @@ TEST(DeltaParts, WithSeveralWeightsAreApartIfEachIsDrawnAsStated) {
     for (int k = 0; k < 100; ++k)
         for (const Vec3d weight : {Vec3d{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}) three.add(part({0, 0, -1}, 1 / 3.0), weight);
     EXPECT_EQ(three.parts(300).size(), 3u);
-    for (int k = 0; k < 150; ++k)
-        two.add(part({0, 0, -1}, 1), {1, 1, 1}), two.add(part({0, 0, -1}, 1), {2, 2, 2});  // each half as often as q
+    for (int k = 0; k < 150; ++k) {
+        two.add(part({0, 0, -1}, 1), {1, 1, 1});
+        two.add(part({0, 0, -1}, 1), {2, 2, 2});
+    }  // each half as often as q
     ASSERT_EQ(two.parts(300).size(), 1u);
     EXPECT_EQ(two.parts(300)[0].otherwise, 150u);
 }
@@ -139,7 +145,9 @@ TEST(DeltaParts, OfManyDirectionsAreScattered) {
 
 TEST(DeltaFlux, IsScaledByTheIndexAcrossTheSurface) {
     FunctionSampler glass;
-    glass.of.delta = true, glass.of.wo = Traits::WoDomain::both, glass.of.eta = Index(1.5);
+    glass.of.delta = true;
+    glass.of.wo = Traits::WoDomain::both;
+    glass.of.eta = Index(1.5);
     const CaseLighting light;
     const Vec3d wo = tilt(40), refracted = tilt(180 - 25.4, 180);
     const auto flux = [&](Vec3d from, const std::vector<DeltaPart>& parts) {

@@ -58,7 +58,10 @@ public:
         tree_.number_leaves();
         for (Leaf& leaf : tree_.leaves_) {
             const Growing& g = growing_[static_cast<std::size_t>(leaf.node)];
-            leaf.q = g.q, leaf.spread = g.spread, leaf.score = g.score, leaf.met = g.met;
+            leaf.q = g.q;
+            leaf.spread = g.spread;
+            leaf.score = g.score;
+            leaf.met = g.met;
         }
     }
 
@@ -111,7 +114,10 @@ private:
             const double middle = rect.middle(along_phi);
             const auto left = [&](ChartPoint at) { return (along_phi ? at.phi : at.t) < middle; };
             double sum[2] = {}, count[2] = {}, drawn = 0;
-            for (const DensityPoint& e : g.points) sum[!left(e.at)] += e.p, ++count[!left(e.at)];
+            for (const DensityPoint& e : g.points) {
+                sum[!left(e.at)] += e.p;
+                ++count[!left(e.at)];
+            }
             for (std::size_t k = g.first; k < g.last; ++k) drawn += left(pilots_[k].at);
             double& to = gain[along_phi];
             to = std::fabs(2 * drawn - static_cast<double>(g.last - g.first)) / of_ + 1e-12;
@@ -144,7 +150,9 @@ private:
             const auto begin = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.first);
             const auto end = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.last);
             const auto split = static_cast<std::size_t>(std::partition(begin, end, left) - pilots_.begin());
-            parts[0].first = whole.first, parts[0].last = parts[1].first = split, parts[1].last = whole.last;
+            parts[0].first = whole.first;
+            parts[0].last = parts[1].first = split;
+            parts[1].last = whole.last;
             for (int k : {0, 1}) {
                 fresh.push_back(static_cast<int>(tree_.nodes_.size()));
                 halves[k].step = step_in(parts[k], step);
@@ -162,7 +170,10 @@ private:
         double sum = 0;
         int count = 0;
         for (std::size_t k = g.first; k < g.last; ++k)
-            if (pilots_[k].step >= 0) sum += pilots_[k].step, ++count;
+            if (pilots_[k].step >= 0) {
+                sum += pilots_[k].step;
+                ++count;
+            }
         return count < fewest_steps ? of_whole : std::max(step_, sum / count);
     }
 
@@ -207,7 +218,9 @@ private:
                 largest_known = std::max(largest_known, e.p);
                 continue;
             }
-            mean += e.p / n, square += e.p * e.p / n, top = std::max(top, e.p);
+            mean += e.p / n;
+            square += e.p * e.p / n;
+            top = std::max(top, e.p);
         }
         for (std::size_t k = g.first; k < g.last; ++k) largest_known = std::max(largest_known, pilots_[k].p);
         const double drawn = static_cast<double>(g.last - g.first) / of_, claimed = area * mean;
@@ -339,7 +352,8 @@ void Tree::find_edges() {
     std::vector<std::size_t> of;  // the leaf of each of these points
     std::vector<std::uint32_t> neighbours;
     for (std::size_t first = 0; first < leaves_.size(); first += leaves_together) {
-        beyond.clear(), of.clear();
+        beyond.clear();
+        of.clear();
         for (std::size_t l = first; l < std::min(first + leaves_together, leaves_.size()); ++l) {
             if (!leaves_[l].met) continue;
             const ChartRect& r = rect(leaves_[l]);
@@ -351,7 +365,8 @@ void Tree::find_edges() {
                     if (side == 2) at.phi = r.phi0 - outside < 0 ? r.phi0 - outside + two_pi : r.phi0 - outside;
                     if (side == 3) at.phi = r.phi1 + outside >= two_pi ? r.phi1 + outside - two_pi : r.phi1 + outside;
                     if (at.t < 0 || at.t > 2) continue;
-                    beyond.push_back(at), of.push_back(l);
+                    beyond.push_back(at);
+                    of.push_back(l);
                 }
         }
         neighbours.resize(beyond.size());
@@ -381,7 +396,11 @@ double step_of(std::vector<double> v) {
 
 double step_of_directions(std::span<const Vec3d> directions) {
     std::vector<double> xyz[3];
-    for (Vec3d w : directions) xyz[0].push_back(w.x), xyz[1].push_back(w.y), xyz[2].push_back(w.z);
+    for (Vec3d w : directions) {
+        xyz[0].push_back(w.x);
+        xyz[1].push_back(w.y);
+        xyz[2].push_back(w.z);
+    }
     double step = 0;
     for (auto& v : xyz) step = std::max(step, step_of(std::move(v)));
     return angle_per_step * std::min(step, coarsest_step);
@@ -422,7 +441,8 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
     out.of = source.available(key, budget.pilot());
     for (std::uint32_t from = 0; from < out.of; from += batch_size) {
         const std::uint32_t n = std::min(batch_size, out.of - from);
-        u.resize(n), draws.assign(n, {});
+        u.resize(n);
+        draws.assign(n, {});
         source.draw(key, from, u, draws);
         w.clear();
         std::vector<const Draw*> of;
@@ -430,7 +450,8 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
             if (d.delta != 0 || !(d.pdf > 0) || !std::isfinite(d.wi.x + d.wi.y + d.wi.z) || !std::isfinite(d.pdf))
                 continue;
             if (!(dot(d.wi, d.wi) > 0)) continue;
-            w.push_back(d.wi), of.push_back(&d);
+            w.push_back(d.wi);
+            of.push_back(&d);
         }
         p.resize(w.size());
         source.density(w, p);
@@ -440,7 +461,10 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
             out.directions.push_back(w[i]);
             if (out.u.size() < budget.of_steps()) out.u.push_back(u[static_cast<std::size_t>(of[i] - draws.data())]);
             if (!of[i]->weight) {
-                if (from == 0) unweighted.push_back(w[i]), unweighted_pdf.push_back(of[i]->pdf);
+                if (from == 0) {
+                    unweighted.push_back(w[i]);
+                    unweighted_pdf.push_back(of[i]->pdf);
+                }
                 continue;
             }
             const Vec3d x =
@@ -462,7 +486,10 @@ Values change_per_step(Source& source, const Plan& plan, const Pilot& pilot, con
     std::vector<std::size_t> which;
     std::vector<Vec3d> next;
     for (std::size_t i = 0; i < steps.size(); ++i)
-        if (steps[i].jump > 0) which.push_back(i), next.push_back(steps[i].next);
+        if (steps[i].jump > 0) {
+            which.push_back(i);
+            next.push_back(steps[i].next);
+        }
     std::vector<double> p(next.size());
     source.density(next, p);
     Values out{};

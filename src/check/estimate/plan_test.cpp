@@ -103,7 +103,9 @@ TEST(CheckPlan, FindsTheStepOfALattice) {
     std::vector<double> exact, few, many;
     for (int i = 0; i < 1 << 14; ++i) {
         const double x = stream.number();
-        exact.push_back(x), few.push_back(std::floor(x * 0x1p24) * 0x1p-24), many.push_back(std::floor(x * 256) / 256);
+        exact.push_back(x);
+        few.push_back(std::floor(x * 0x1p24) * 0x1p-24);
+        many.push_back(std::floor(x * 256) / 256);
     }
     EXPECT_EQ(step_of(exact), 0);
     EXPECT_NEAR(step_of(few) * 0x1p24, 1, 0.5);
@@ -115,7 +117,8 @@ TEST(CheckPlan, StepOfDirectionsIsAnAngle) {
     for (std::uint32_t i = 0; i < 1u << 14; ++i) {
         const Vec3d w = cosine_draw({}, numbers_at({1}, i, 2, Resolution::standard));
         const auto rounded = [](double v) { return static_cast<double>(static_cast<float>(v)); };
-        exact.push_back(w), single.push_back({rounded(w.x), rounded(w.y), rounded(w.z)});
+        exact.push_back(w);
+        single.push_back({rounded(w.x), rounded(w.y), rounded(w.z)});
     }
     EXPECT_EQ(step_of_directions(exact), 0);
     EXPECT_GT(step_of_directions(single), angle_per_step * ulp / 4);
@@ -148,7 +151,8 @@ TEST(CheckPlan, TestFunctionsAreBridgedWithTheLeaf) {
     const CaseLighting light;
     Source source(cosine, 0, {0, 0, 1}, light);
     Plan plan = make_plan(source, CheckBudget::limited(1e4), {});
-    plan.median_log_p = -1, plan.middle = {0.1, 0.2, 0.3};
+    plan.median_log_p = -1;
+    plan.middle = {0.1, 0.2, 0.3};
     Leaf leaf;
     leaf.q = 0.3;
     const Values at = plan.values(leaf, {0.5, 0.5, 0.7}, 0.1);

@@ -15,7 +15,10 @@ namespace crescent::check {
 
 std::span<const Pair> Source::pairs_of(Vec3d from, std::span<const Vec3d> wi) {
     pairs_.resize(wi.size());
-    for (std::size_t i = 0; i < wi.size(); ++i) pairs_[i].wo = from, pairs_[i].wi = wi[i];
+    for (std::size_t i = 0; i < wi.size(); ++i) {
+        pairs_[i].wo = from;
+        pairs_[i].wi = wi[i];
+    }
     evaluations_ += wi.size();
     return pairs_;
 }
@@ -23,7 +26,9 @@ std::span<const Pair> Source::pairs_of(Vec3d from, std::span<const Vec3d> wi) {
 void Source::note_invalid(InvalidAnswers::Function function, Vec3d wi, double value) {
     ++(function == InvalidAnswers::Function::pdf ? invalid_.pdf : invalid_.f);
     if (invalid_.first != InvalidAnswers::Function::none) return;
-    invalid_.first = function, invalid_.wi = wi, invalid_.value = value;
+    invalid_.first = function;
+    invalid_.wi = wi;
+    invalid_.value = value;
 }
 
 void Source::draw(std::span<const PrimarySample> u, std::span<Draw> out) {
@@ -58,7 +63,8 @@ void Source::draw(const StreamKey& key, std::uint32_t from, std::span<PrimarySam
     const std::span<const std::uint32_t> rows = rows_for(key);
     for (std::uint32_t i = 0; i < u.size(); ++i) {
         const std::size_t k = from + i, row = k / rows.size() * 8 + rows[k % rows.size()];
-        u[i] = recorded_->row_numbers(row), out[i] = recorded_->row(row);
+        u[i] = recorded_->row_numbers(row);
+        out[i] = recorded_->row(row);
     }
 }
 
@@ -150,7 +156,9 @@ BothWays both_ways(const SamplerAdapter& adapter, StreamKey key) {
         through.push_back({direction(false), direction(true)});
     }
     std::vector<double> f(pair_count), g(pair_count), h(pair_count);
-    adapter.f(there, f), adapter.f(back, g), adapter.f(through, h);
+    adapter.f(there, f);
+    adapter.f(back, g);
+    adapter.f(through, h);
     const auto everywhere = [](const std::vector<double>& v) {
         return std::ranges::all_of(v, [](double x) { return x > 0; });
     };
@@ -216,8 +224,14 @@ std::vector<LocalStep> jumps_along(Moved& moved, int k, std::size_t count) {
         const std::vector<LocalStep> d = moved.by_moving(open, k, other);
         for (std::size_t j = 0; j < open.size(); ++j) {
             const std::size_t i = open[j];
-            if (d[j].jump == 0) same[i] = by, other[i] = 4 * by, still.push_back(i);
-            else if (by > ulp) out[i] = d[j], closing.push_back(i);
+            if (d[j].jump == 0) {
+                same[i] = by;
+                other[i] = 4 * by;
+                still.push_back(i);
+            } else if (by > ulp) {
+                out[i] = d[j];
+                closing.push_back(i);
+            }
         }
         open = std::move(still);
     }

@@ -55,7 +55,8 @@ TEST(CheckSource, FHasTheCosineOfEitherSide) {
 TEST(CheckSource, LightBelowTheSurfaceIsItsUniformPart) {
     FunctionSampler s;
     CaseLighting light;
-    light.fill = 0.5, light.disks.push_back({20, {0, 0, 2}, {0, 0, -1}, 1});
+    light.fill = 0.5;
+    light.disks.push_back({20, {0, 0, 2}, {0, 0, -1}, 1});
     const Source source(s, 0, {0, 0, 1}, light);
     EXPECT_EQ(source.radiance({0, 0, 1}), 20);
     EXPECT_EQ(source.radiance({0, 0, -1}), 0.5);
@@ -64,7 +65,10 @@ TEST(CheckSource, LightBelowTheSurfaceIsItsUniformPart) {
 
 struct File : RecordedSampler {
     explicit File(int rows) {
-        for (int i = 0; i < rows; ++i) u_.emplace_back(i, 0), draws_.push_back({{0, 0, 1}, 1});
+        for (int i = 0; i < rows; ++i) {
+            u_.emplace_back(i, 0);
+            draws_.push_back({{0, 0, 1}, 1});
+        }
     }
     std::string name() const override { return "file"; }
     void pdf(int, std::span<const Pair>, std::span<double>) const override {}

@@ -12,7 +12,11 @@ namespace stream_test {
 TEST(CheckStreams, KeysThatDifferInAnyFieldShareNoBlock) {
     const StreamKey base{7, 3, 0, 1, Purpose::draws, 2};
     std::vector<StreamKey> keys(7, base);
-    keys[1].seed = 8, keys[2].place = 4, keys[3].technique = 1, keys[4].stage = 2, keys[5].purpose = Purpose::points;
+    keys[1].seed = 8;
+    keys[2].place = 4;
+    keys[3].technique = 1;
+    keys[4].stage = 2;
+    keys[5].purpose = Purpose::points;
     keys[6].part = 3;
     std::set<std::array<std::uint32_t, 4>> blocks;
     for (const StreamKey& key : keys)

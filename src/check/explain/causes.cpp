@@ -58,8 +58,10 @@ std::optional<Candidate> constant_candidate(std::span<const Place> places) {
     out.make_cause = [all, places](const Hypothesis&) {
         const auto [low, high] = std::ranges::minmax_element(all, {}, &MassRatio::ratio);
         double mean = 0, error = 0;
-        for (const MassRatio& m : all)
-            mean += m.ratio / static_cast<double>(all.size()), error = std::max(error, m.error);
+        for (const MassRatio& m : all) {
+            mean += m.ratio / static_cast<double>(all.size());
+            error = std::max(error, m.error);
+        }
         const double known_to = std::max(4 * error / mean, detection_floor);
         Cause cause{"constant", mean, error, ""};
         if (high->ratio - low->ratio > 2 * known_to * mean) {
@@ -92,7 +94,10 @@ std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std:
     }
     const std::string power = std::fabs(exponent) == 1 ? "" : fmt::format("^{:g}", std::fabs(exponent));
     double least = 1e300, most = 0;
-    for (double c : h.constants) least = std::min(least, c), most = std::max(most, c);
+    for (double c : h.constants) {
+        least = std::min(least, c);
+        most = std::max(most, c);
+    }
     std::string times;
     if (most < 1.02 * least && std::fabs(least - 1) > 0.01) {
         const std::string name = number_name(least, 0.01, places[0].traits);
@@ -259,7 +264,10 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
             if (are_equivalent(found->hypothesis, c.hypothesis, places)) {
                 const bool preferred = c.preference > found->preference;
                 const std::string other = preferred ? found->hypothesis.name : c.hypothesis.name;
-                if (preferred) c.hypothesis.same = found->hypothesis.same, found = &c;
+                if (preferred) {
+                    c.hypothesis.same = found->hypothesis.same;
+                    found = &c;
+                }
                 found->hypothesis.same += " (or " + other + ", which is the same here)";
                 continue;
             }

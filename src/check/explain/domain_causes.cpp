@@ -218,7 +218,10 @@ std::optional<FittedMove> fitted_move(const MoveFamily& family, std::span<const 
     double best = -1e300, value = 0;
     for (int k = 0; k <= steps; ++k) {
         const double x = family.from + k * step, l = mean_log_of(family.at(x), places, few);
-        if (l > best) best = l, value = x;
+        if (l > best) {
+            best = l;
+            value = x;
+        }
     }
     constexpr double golden = 0.6180339887498949;
     double low = value - step, high = value + step;
@@ -226,10 +229,14 @@ std::optional<FittedMove> fitted_move(const MoveFamily& family, std::span<const 
     double of_a = mean_log_of(family.at(a), places, all), of_b = mean_log_of(family.at(b), places, all);
     for (int k = 0; k < 16; ++k) {
         if (of_a > of_b) {
-            high = b, b = a, of_b = of_a;
+            high = b;
+            b = a;
+            of_b = of_a;
             of_a = mean_log_of(family.at(a = high - golden * (high - low)), places, all);
         } else {
-            low = a, a = b, of_a = of_b;
+            low = a;
+            a = b;
+            of_a = of_b;
             of_b = mean_log_of(family.at(b = low + golden * (high - low)), places, all);
         }
     }
@@ -262,8 +269,11 @@ std::vector<FittedMove> domain_moves(std::span<const Place> places) {
                     "scaled", [=](std::span<double> x) { x[c] = end + factor * (x[c] - end); }, factor, at_zero);
             };
             if (auto found = fitted_move({scaled, -1.5, 1.5}, places)) {
-                found->error *= math::exp(found->value), found->value = math::exp(found->value);
-                found->factor = "scale", found->of = difference(end), found->neutral = 1;
+                found->error *= math::exp(found->value);
+                found->value = math::exp(found->value);
+                found->factor = "scale";
+                found->of = difference(end);
+                found->neutral = 1;
                 out.push_back(std::move(*found));
             }
         }

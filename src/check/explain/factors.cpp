@@ -149,8 +149,14 @@ double slope_of(std::vector<std::pair<double, double>> points) {
     for (int round = 0; round < 3; ++round) {
         const double n = static_cast<double>(points.size());
         double x = 0, y = 0, xx = 0, xy = 0;
-        for (const auto& [a, b] : points) x += a / n, y += b / n;
-        for (const auto& [a, b] : points) xx += (a - x) * (a - x), xy += (a - x) * (b - y);
+        for (const auto& [a, b] : points) {
+            x += a / n;
+            y += b / n;
+        }
+        for (const auto& [a, b] : points) {
+            xx += (a - x) * (a - x);
+            xy += (a - x) * (b - y);
+        }
         if (!(xx > 1e-6 * n)) return 0;
         slope = xy / xx;
         const auto off = [&](const auto& p) { return std::fabs(p.second - y - slope * (p.first - x)); };

@@ -27,7 +27,9 @@ TEST(HalfVectors, AreThoseOfReflectionAndRefraction) {
 
 TEST(FactorsOfASampler, DependOnItsTraitsAndLight) {
     Traits none, both;
-    none.wo = Traits::WoDomain::none, both.wo = Traits::WoDomain::both, both.eta = Index(1.5);
+    none.wo = Traits::WoDomain::none;
+    both.wo = Traits::WoDomain::both;
+    both.eta = Index(1.5);
     EXPECT_EQ(factors_for(none, {}).size(), 2u);  // of theta_i alone
     const std::vector<Factor> of_boundary = factors_for(both, {});
     const Vec3d wo = tilt(40), down = tilt(180 - 25.4, 180), up = mirror(wo);

@@ -100,11 +100,14 @@ void score_by_tree(const NamedFrame& frame, std::span<const Place> places, Hypot
             const Vec3d w = from_chart(tree.rect(tree.leaves()[l]).at(0.5, 0.5));
             const double there = tree.leaves()[tree.find(to_chart(frame.of(w)))].q * (frame.area ? frame.area(w) : 1);
             const double by = place.log_of(there) - place.log_of(tree.leaves()[l].q);
-            gain.sum += count * by, gain.square += count * by * by, draws += count;
+            gain.sum += count * by;
+            gain.square += count * by * by;
+            draws += count;
         }
     }
     if (draws == 0) return;
-    h.gain = gain.sum / draws, h.draws = draws;
+    h.gain = gain.sum / draws;
+    h.draws = draws;
     h.error = std::sqrt(std::max(gain.square / draws - h.gain * h.gain, 0.0) / draws);
 }
 
@@ -163,7 +166,11 @@ Vec3d climb(Vec3d from, std::span<const Vec3d> axes, double step, double least, 
         for (Vec3d axis : axes)
             for (double sign : {1.0, -1.0}) {
                 const Vec3d to = from + axis * (sign * step);
-                if (const double l = likelihood(to); l > best) best = l, from = to, moved = true;
+                if (const double l = likelihood(to); l > best) {
+                    best = l;
+                    from = to;
+                    moved = true;
+                }
             }
         if (!moved) step /= 2;
     }
@@ -192,7 +199,10 @@ template <class L> double whole_columns(double angle, const L& likelihood) {
     for (int k = -neighbours; k <= neighbours; ++k) {
         const double to = std::copysign(two_pi / std::max(n + k, 2.0), angle);
         if (std::fabs(to - angle) > 0.1 * std::fabs(angle)) continue;
-        if (const double l = likelihood(to, false); l >= most) best = to, most = l;
+        if (const double l = likelihood(to, false); l >= most) {
+            best = to;
+            most = l;
+        }
     }
     return best;
 }
@@ -260,7 +270,10 @@ std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places) {
     constexpr int angles = 720;
     double best = -1e300, at = 0;
     std::vector<Likelihood> coarse, fine;
-    for (const Place& place : places) coarse.emplace_back(place, 1024), fine.emplace_back(place, place.w.size());
+    for (const Place& place : places) {
+        coarse.emplace_back(place, 1024);
+        fine.emplace_back(place, place.w.size());
+    }
     const auto sum = [&](double angle, bool by_tree) {
         double out = 0;
         for (const Likelihood& l : by_tree ? coarse : fine)
@@ -268,7 +281,10 @@ std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places) {
         return out;
     };
     for (int k = 1; k < angles; ++k)
-        if (const double l = sum(k * two_pi / angles, true); l > best) best = l, at = k * two_pi / angles;
+        if (const double l = sum(k * two_pi / angles, true); l > best) {
+            best = l;
+            at = k * two_pi / angles;
+        }
     const Vec3d axis[] = {{0, 0, 1}};
     at = climb({0, 0, at}, axis, two_pi / angles / 2, two_pi / angles / 64, [&](Vec3d v) { return sum(v.z, false); }).z;
     if (at > two_pi / 2) at -= two_pi;
@@ -283,8 +299,10 @@ std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places) {
 std::optional<FoundTurn> frame_turn_hypothesis(std::span<const Place> places) {
     constexpr int angles = 72;
     std::vector<Likelihood> coarse, fine;
-    for (const Place& place : places)
-        coarse.emplace_back(place, draws_to_climb), fine.emplace_back(place, place.w.size());
+    for (const Place& place : places) {
+        coarse.emplace_back(place, draws_to_climb);
+        fine.emplace_back(place, place.w.size());
+    }
     const auto sum = [](const std::vector<Likelihood>& all, double angle) {
         double out = 0;
         for (const Likelihood& l : all) out += l.by_p({0, 0, angle}, true);
@@ -292,7 +310,10 @@ std::optional<FoundTurn> frame_turn_hypothesis(std::span<const Place> places) {
     };
     double best = -1e300, angle = 0;
     for (int k = 1; k < angles; ++k)
-        if (const double l = sum(coarse, k * two_pi / angles); l > best) best = l, angle = k * two_pi / angles;
+        if (const double l = sum(coarse, k * two_pi / angles); l > best) {
+            best = l;
+            angle = k * two_pi / angles;
+        }
     const Vec3d axis[] = {{0, 0, 1}};
     constexpr double step = two_pi / angles / 2;
     angle = climb({0, 0, angle}, axis, step, step / 8, [&](Vec3d v) { return sum(coarse, v.z); }).z;

@@ -62,14 +62,17 @@ void draw_at(Place& place, std::uint32_t count) {
     std::vector<Vec3d> w;
     std::vector<const Draw*> of;
     for (const Draw& d : draws)
-        if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z) && dot(d.wi, d.wi) > 0)
-            w.push_back(d.wi), of.push_back(&d);
+        if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z) && dot(d.wi, d.wi) > 0) {
+            w.push_back(d.wi);
+            of.push_back(&d);
+        }
     std::vector<double> p(w.size());
     source.density(w, p);
     const CheckAt& c = *place.at;
     for (std::size_t i = 0; i < w.size(); ++i) {
         if (!is_direction(source.traits, *of[i], p[i])) continue;
-        place.w.push_back(w[i]), place.p.push_back(p[i]);
+        place.w.push_back(w[i]);
+        place.p.push_back(p[i]);
         const std::size_t l = c.plan->tree.find(to_chart(w[i]));
         const double claimed = c.integrals.leaves[l].bridge.value, n = c.observations.independent;
         const double area = c.plan->tree.rect(c.plan->tree.leaves()[l]).area();
@@ -98,7 +101,10 @@ MassRatio mass_ratio(const CheckAt& c) {
     };
     MassRatio out = by(mass);
     const MassRatio other = by(bridge);
-    if (other.error < out.error / 2) out.ratio = other.ratio, out.error = other.error;
+    if (other.error < out.error / 2) {
+        out.ratio = other.ratio;
+        out.error = other.error;
+    }
     return out;
 }
 
@@ -145,12 +151,15 @@ void score(Hypothesis& h, std::span<const Place> places) {
         for (std::size_t i = 0; i < p.size(); ++i) {
             const double of_p = place.log_of(place.p[i]), of_h = place.log_of(p[i] * h.constant(k));
             const double of_draws = place.log_of(place.implied[i]);
-            gain.add(of_h - of_p - more), ++draws;
-            left += of_draws - of_h, before += of_draws - of_p;
+            gain.add(of_h - of_p - more);
+            ++draws;
+            left += of_draws - of_h;
+            before += of_draws - of_p;
         }
     }
     if (draws == 0) return;
-    h.gain = gain.sum / draws, h.draws = draws;
+    h.gain = gain.sum / draws;
+    h.draws = draws;
     h.error = std::sqrt(std::max(gain.square / draws - h.gain * h.gain, 0.0) / draws);
     h.explained = before > 0 ? std::min(1 - left / before, 1.0) : 0;
 }

@@ -48,8 +48,10 @@ TEST_F(WrongDensity, HasAPlaceForEachWo) {
 
 TEST_F(WrongDensity, TheTrueDensityHasTheLargestLikelihood) {
     Hypothesis right = times(cosine, 1), wrong = times(sine, 1);
-    right.constants = {4, 4}, wrong.constants = {8 / pi, 8 / pi};  // of mass 1
-    score(right, places), score(wrong, places);
+    right.constants = {4, 4};
+    wrong.constants = {8 / pi, 8 / pi};  // of mass 1
+    score(right, places);
+    score(wrong, places);
     // Under a cosine ln cos theta and ln sin theta both average -1/2.
     EXPECT_NEAR(right.gain, std::log(4) - 0.5, 0.05);
     EXPECT_NEAR(wrong.gain, std::log(8 / pi) - 0.5, 0.05);

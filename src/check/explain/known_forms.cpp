@@ -62,7 +62,10 @@ Shadowing fitted_shadowing(std::span<const KnownRatio> ratios, bool exchanged) {
         const auto kept = static_cast<std::ptrdiff_t>(share_in_agreement * static_cast<double>(errors.size()));
         const double error = std::accumulate(errors.begin(), errors.begin() + kept, 0.0);
         const bool better = error < least;
-        if (better) least = error, best = s;
+        if (better) {
+            least = error;
+            best = s;
+        }
         return better;
     };
     const double ratio = math::exp(math::log(largest / smallest) / grid);
@@ -171,7 +174,10 @@ std::optional<Cause> cause_of_known_form(std::span<const KnownRatio> ratios, std
     std::vector<KnownRatio> usable;
     double different = 0;
     for (const KnownRatio& r : ratios)
-        if (r.value > 0 && std::isfinite(r.value)) usable.push_back(r), different += std::fabs(r.value - 1) > 0.05;
+        if (r.value > 0 && std::isfinite(r.value)) {
+            usable.push_back(r);
+            different += std::fabs(r.value - 1) > 0.05;
+        }
     if (usable.size() < fewest || different < static_cast<double>(usable.size()) / 2) return {};
     if (std::optional<Cause> c = plane_cause(usable, places)) return c;
     return shadowing_cause(usable, places);

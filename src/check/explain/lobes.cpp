@@ -46,14 +46,21 @@ struct NumberStep {
 void close_in(Source& source, int number, std::span<const PrimarySample> others, std::vector<NumberStep>& all) {
     for (int k = 0; k < halvings && !all.empty(); ++k) {
         std::vector<PrimarySample> u;
-        for (const NumberStep& s : all) u.push_back(others[s.of]), u.back()[number] = (s.from + s.to) / 2;
+        for (const NumberStep& s : all) {
+            u.push_back(others[s.of]);
+            u.back()[number] = (s.from + s.to) / 2;
+        }
         std::vector<Draw> middle(u.size());
         source.draw(u, middle);
         for (std::size_t i = 0; i < all.size(); ++i) {
             NumberStep& s = all[i];
-            if (NumberStep::move(s.a, middle[i]) > NumberStep::move(middle[i], s.b))
-                s.to = u[i][number], s.b = middle[i];
-            else s.from = u[i][number], s.a = middle[i];
+            if (NumberStep::move(s.a, middle[i]) > NumberStep::move(middle[i], s.b)) {
+                s.to = u[i][number];
+                s.b = middle[i];
+            } else {
+                s.from = u[i][number];
+                s.a = middle[i];
+            }
         }
         std::erase_if(all, [](const NumberStep& s) { return !s.jumps(); });
     }
@@ -88,7 +95,8 @@ std::vector<LobeInterval> intervals(const std::vector<NumberStep>& all, std::siz
         if (3 * (next - first) < static_cast<std::ptrdiff_t>(tried)) continue;
         common += std::count_if(first, next, of_two);
         const double end = (first[(next - first) / 2].from + first[(next - first) / 2].to) / 2;
-        out.push_back({from, end}), from = end;
+        out.push_back({from, end});
+        from = end;
     }
     if (out.empty() || 10 * common < 9 * std::count_if(all.begin(), all.end(), of_two)) return {};
     out.push_back({from, 1});
@@ -104,7 +112,8 @@ LobeDraws draws_of(
     Source& source, const Place& place, const LobeChooser& chooser, std::size_t lobe, std::uint32_t count) {
     LobeDraws out;
     const Plan& plan = *place.at->plan;
-    out.sum.resize(plan.tree.leaves().size()), out.square.resize(out.sum.size());
+    out.sum.resize(plan.tree.leaves().size());
+    out.square.resize(out.sum.size());
     StreamKey key{13, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()), 8,
         Purpose::draws, static_cast<std::uint16_t>(lobe)};
     for (std::uint32_t from = 0; from < count; from += batch_size) {
@@ -118,14 +127,18 @@ LobeDraws draws_of(
         std::vector<Vec3d> w;
         std::vector<const Draw*> of;
         for (const Draw& d : draws)
-            if (has_direction(d)) w.push_back(d.wi), of.push_back(&d);
+            if (has_direction(d)) {
+                w.push_back(d.wi);
+                of.push_back(&d);
+            }
         std::vector<double> p(w.size());
         source.density(w, p);
         for (std::size_t i = 0; i < w.size(); ++i) {
             if (!is_direction(source.traits, *of[i], p[i])) continue;
             const std::size_t l = plan.tree.find(to_chart(w[i]));
             const double h = plan.values(plan.tree.leaves()[l], w[i], p[i])[bridge];
-            out.sum[l] += h, out.square[l] += h * h;
+            out.sum[l] += h;
+            out.square[l] += h * h;
         }
     }
     out.drawn = count;
@@ -144,15 +157,18 @@ std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& chooser, c
     LobeCell cell;
     const auto clear = [&] {
         cell = {};
-        cell.mean.resize(all.size()), cell.mean_variance.resize(all.size());
+        cell.mean.resize(all.size());
+        cell.mean_variance.resize(all.size());
     };
     clear();
     for (std::size_t l = 0; l < place.at->integrals.leaves.size(); ++l) {
         const Estimate& claim = place.at->integrals.leaves[l].bridge;
-        cell.claimed += claim.value, cell.variance += claim.variance;
+        cell.claimed += claim.value;
+        cell.variance += claim.variance;
         for (std::size_t k = 0; k < all.size(); ++k) {
             const double share = chooser.lobes[k].share() / all[k].drawn;
-            cell.mean[k] += share * all[k].sum[l], cell.mean_variance[k] += share * share * all[k].square[l];
+            cell.mean[k] += share * all[k].sum[l];
+            cell.mean_variance[k] += share * share * all[k].square[l];
             cell.draws += 2 * all[k].sum[l];
         }
         if (cell.draws + 2 * cell.claimed * all[0].drawn < least_draws) continue;
@@ -171,7 +187,10 @@ double chi_squared(const std::vector<LobeCell>& cells, const std::vector<double>
     double out = 0;
     for (const LobeCell& c : cells) {
         double sum = 0, v = c.variance;
-        for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * c.mean[k], v += x[k] * x[k] * c.mean_variance[k];
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            sum += x[k] * c.mean[k];
+            v += x[k] * x[k] * c.mean_variance[k];
+        }
         out += (c.claimed - sum) * (c.claimed - sum) / (v + 1e-300);
     }
     return out;
@@ -179,7 +198,8 @@ double chi_squared(const std::vector<LobeCell>& cells, const std::vector<double>
 
 std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t lobes) {
     Shares out;
-    out.x.assign(lobes, 1), out.errors.resize(lobes);
+    out.x.assign(lobes, 1);
+    out.errors.resize(lobes);
     out.cells = static_cast<double>(cells.size());
     out.before = chi_squared(cells, out.x);
     std::vector<std::vector<double>> normal;
@@ -230,7 +250,8 @@ std::string lobe_sentence(const LobeChooser& chooser, const Shares& s, const std
     for (std::size_t k = 0; k < s.x.size(); ++k) {
         const double share = chooser.lobes[k].share(), of_p = s.x[k] * share, half = 1.96 * s.errors[k] * share;
         known = known && of_p - half >= 0 && of_p + half <= 1 && half < known_probability;
-        sum += of_p, sum_half += half;
+        sum += of_p;
+        sum_half += half;
         drawn.push_back(fmt::format("{:.3g}", share));
         claimed.push_back(with_error(of_p, half));
         if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) off.push_back(k);

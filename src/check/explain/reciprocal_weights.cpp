@@ -56,7 +56,10 @@ std::size_t region_of(Vec3d w, double h) {
 
 struct RegionSum {
     double sum = 0, squares = 0;
-    void add(double x) { sum += x, squares += x * x; }
+    void add(double x) {
+        sum += x;
+        squares += x * x;
+    }
 };
 using RegionSums = std::array<RegionSum, regions>;
 
@@ -78,13 +81,17 @@ void add_draws(Source& source, const StreamKey& key, ReservoirSums& out) {
         StreamKey part = key;
         part.part = static_cast<std::uint16_t>(i / batch);
         source.draw(first_numbers(part, batch, source.traits), draws);
-        w.clear(), weights.clear();
+        w.clear();
+        weights.clear();
         for (const Draw& d : draws)
-            if (d.pdf > 0 && d.weight && *d.weight > 0 && std::isfinite(*d.weight + dot(d.wi, d.wi)))
-                w.push_back(d.wi), weights.push_back(*d.weight);
+            if (d.pdf > 0 && d.weight && *d.weight > 0 && std::isfinite(*d.weight + dot(d.wi, d.wi))) {
+                w.push_back(d.wi);
+                weights.push_back(*d.weight);
+            }
         h.resize(w.size());
         source.f_cos(w, h);
-        out.draws += batch, out.empty += static_cast<double>(batch - w.size());
+        out.draws += batch;
+        out.empty += static_cast<double>(batch - w.size());
         for (std::size_t k = 0; k < w.size(); ++k) {
             if (!(h[k].x > 0 && h[k].x < 1)) continue;
             const std::size_t region = region_of(w[k], h[k].x);
@@ -107,11 +114,14 @@ void add_points(Source& source, ReservoirSums& out) {
     std::array<double, 3> whole{};
     for (std::size_t i = 0; i < w.size(); ++i) {
         const double densities[] = {1, w[i].z > 0 ? 1.0 : 0.0, std::max(w[i].z, 0.0)};  // up to a constant
-        for (std::size_t k = 0; k < whole.size(); ++k)
-            whole[k] += densities[k], out.with_target[k] += h[i].x > 0 ? densities[k] : 0;
+        for (std::size_t k = 0; k < whole.size(); ++k) {
+            whole[k] += densities[k];
+            out.with_target[k] += h[i].x > 0 ? densities[k] : 0;
+        }
         if (!(h[i].x > 0)) continue;
         const std::size_t region = region_of(w[i], h[i].x);
-        out.integral[region] += h[i].x * area, ++count[region];
+        out.integral[region] += h[i].x * area;
+        ++count[region];
     }
     for (std::size_t k = 0; k < whole.size(); ++k) out.with_target[k] /= std::max(whole[k], 1.0);
     for (std::size_t r = 0; r < regions; ++r) {
@@ -128,7 +138,8 @@ WeightFit fit_of(const ReservoirSums& sums, std::size_t factor) {
     const RegionSums& drawn = sums.drawn[factor];
     double estimate = 0, integral = 0, variance = 0;
     for (std::size_t r = 0; r < regions; ++r) {
-        estimate += drawn[r].sum / sums.draws, integral += sums.integral[r];
+        estimate += drawn[r].sum / sums.draws;
+        integral += sums.integral[r];
         variance += drawn[r].squares / sqr(sums.draws);
     }
     if (!(estimate > 0) || !(integral > 0)) return {};
@@ -139,7 +150,8 @@ WeightFit fit_of(const ReservoirSums& sums, std::size_t factor) {
         if (std::max(d, expected) < least_mass * estimate) continue;
         const double v = std::max(drawn[r].squares - sqr(drawn[r].sum) / sums.draws, 0.0) / sqr(sums.draws) +
             sqr(out.constant * sums.error[r]);
-        chi2 += sqr(d - expected) / std::max(v, 1e-300), ++counted;
+        chi2 += sqr(d - expected) / std::max(v, 1e-300);
+        ++counted;
     }
     out.p = counted > 1 ? chi_squared_p(chi2, counted - 1) : 1;
     return out;

@@ -28,11 +28,15 @@ struct Reservoir : FunctionSampler {
 };
 
 Explained explained_reservoir(Reservoir made) {
-    made.of.numbers = 5, made.of.reciprocal_weight = true, made.of.has_pdf = false;
+    made.of.numbers = 5;
+    made.of.reciprocal_weight = true;
+    made.of.has_pdf = false;
     made.f_value = [](Vec3d, Vec3d w) { return target(w); };
     Explained out;
     CheckCase& t = out.check_cases.emplace_back();
-    t.arm = "made", t.wo = {0, 0, 1}, t.adapter = with_bounded_weights(std::make_shared<Reservoir>(std::move(made)));
+    t.arm = "made";
+    t.wo = {0, 0, 1};
+    t.adapter = with_bounded_weights(std::make_shared<Reservoir>(std::move(made)));
     CheckSettings settings;
     settings.budget = CheckBudget::limited();
     ProgressMonitor monitor;

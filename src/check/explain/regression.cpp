@@ -31,7 +31,8 @@ Model model_of(std::span<const Row> rows, std::size_t groups, const Fit& f) {
         double eta = 0;
         for (std::size_t k = 0; k < f.factors.size(); ++k) eta += f.exponents[k] * rows[i].x[f.factors[k]];
         m.mu[i] = rows[i].expected * math::exp(std::clamp(eta, -largest, largest));
-        drawn[rows[i].group] += rows[i].observed, claimed[rows[i].group] += m.mu[i];
+        drawn[rows[i].group] += rows[i].observed;
+        claimed[rows[i].group] += m.mu[i];
     }
     for (std::size_t g = 0; g < groups; ++g) m.constants.push_back(claimed[g] > 0 ? drawn[g] / claimed[g] : 1);
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -56,7 +57,8 @@ void derivatives(std::span<const Row> rows, std::size_t groups, const Fit& f, co
     }
     for (std::size_t g = 0; g < groups; ++g)
         for (double& v : mean[g]) v /= all[g];
-    gradient.assign(d, 0), information.assign(d, std::vector<double>(d));
+    gradient.assign(d, 0);
+    information.assign(d, std::vector<double>(d));
     std::vector<double> off(d);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         for (std::size_t k = 0; k < d; ++k) off[k] = rows[i].x[f.factors[k]] - mean[rows[i].group][k];
@@ -88,7 +90,8 @@ double misfit_of(std::span<const Row> rows) {
 Fit fit(std::span<const Row> rows, std::size_t groups, std::vector<std::size_t> factors) {
     Fit f;
     f.factors = std::move(factors);
-    f.exponents.resize(f.factors.size()), f.errors.resize(f.factors.size());
+    f.exponents.resize(f.factors.size());
+    f.errors.resize(f.factors.size());
     Model m = model_of(rows, groups, f);
     std::vector<double> gradient;
     Matrix information;
@@ -99,14 +102,16 @@ Fit fit(std::span<const Row> rows, std::size_t groups, std::vector<std::size_t> 
         double size = 0;
         for (std::size_t k = 0; k < by->size(); ++k) {
             const double d = std::clamp((*by)[k], -1.0, 1.0);
-            f.exponents[k] += d, size += std::fabs(d);
+            f.exponents[k] += d;
+            size += std::fabs(d);
         }
         m = model_of(rows, groups, f);
         if (size < 1e-8) break;
     }
     if (!f.factors.empty()) derivatives(rows, groups, f, m, gradient, information);
     for (std::size_t k = 0; k < f.factors.size(); ++k) f.errors[k] = std::sqrt(inverse_at(information, k));
-    f.constants = m.constants, f.likelihood = m.likelihood;
+    f.constants = m.constants;
+    f.likelihood = m.likelihood;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const double off = rows[i].observed - m.mu[i], by = m.mu[i] / rows[i].expected;
         f.misfit += off * off / (rows[i].unit * m.mu[i] + rows[i].variance * by * by + 1e-300);
@@ -158,7 +163,10 @@ std::vector<Row> rows_of(std::span<const Place> places, const std::vector<Factor
         const CheckAt& c = *places[g].at;
         const double n = c.observations.independent;
         double h = 0, h2 = 0;
-        for (const LeafIntegral& l : c.integrals.leaves) h += l.bridge.value, h2 += l.second;
+        for (const LeafIntegral& l : c.integrals.leaves) {
+            h += l.bridge.value;
+            h2 += l.second;
+        }
         if (!(h > 0)) continue;
         for (std::size_t l = 0; l < c.integrals.leaves.size(); ++l) {
             const LeafIntegral& leaf = c.integrals.leaves[l];
@@ -198,9 +206,11 @@ void set_gain(Hypothesis& h, double likelihood, std::span<const Place> places) {
     double draws = 0, by_masses = 0;
     for (const Place& place : places) {
         const double n = place.at->observations.independent, ratio = std::max(mass_ratio(*place.at).ratio, 1e-12);
-        draws += n, by_masses += n * (ratio - 1 - math::log(ratio));
+        draws += n;
+        by_masses += n * (ratio - 1 - math::log(ratio));
     }
-    h.gain = (likelihood + by_masses) / draws, h.draws = draws;
+    h.gain = (likelihood + by_masses) / draws;
+    h.draws = draws;
     h.error = std::sqrt(2 * std::max(likelihood, 1.0)) / draws;
 }
 

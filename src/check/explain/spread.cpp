@@ -44,15 +44,18 @@ void refine_by_slope(std::span<const Place> places, double even, double& share, 
             Replicates y;
             for (std::size_t k = 0; k < y.size(); ++k) y[k] = o.by_set[slope][k] * replicate_sets / o.scrambled;
             const ReplicateMean<Replicates> sets(y, 0);
-            mean = sets.mean, variance = sets.variance;
+            mean = sets.mean;
+            variance = sets.variance;
         }
         const double by = of_even - of_p.value;
         if (!(std::fabs(by) > 0)) return;
         const double weight = by * by / (variance + of_p.variance + 1e-300);
-        sum += weight * (mean - of_p.value) / by, weights += weight;
+        sum += weight * (mean - of_p.value) / by;
+        weights += weight;
     }
     if (!(weights > 0) || 1 / std::sqrt(weights) > error || std::fabs(sum / weights - share) > 5 * error) return;
-    share = sum / weights, error = 1 / std::sqrt(weights);
+    share = sum / weights;
+    error = 1 / std::sqrt(weights);
 }
 
 /// The share of a uniform density in a mixture with the q of the leaves, of largest likelihood. The likelihood is that
@@ -77,7 +80,8 @@ Leak fitted_leak(std::span<const Place> places, bool whole) {
                 const double u = in_domain(tree.rect(tree.leaves()[l]), whole) ? even : 0;
                 const double p = tree.leaves()[l].met ? tree.leaves()[l].q : 0;
                 const double change = (u - p) / ((1 - share) * p + share * u + 1e-300);
-                d.first += count * change, d.second -= count * change * change;
+                d.first += count * change;
+                d.second -= count * change * change;
             }
         }
         return d;
@@ -113,7 +117,10 @@ Reach reach_at(const CheckAt& c) {
     double h_drawn = 0, h_claimed = 0;
     for (std::size_t l = 0; l < c.integrals.leaves.size(); ++l) {
         const LeafIntegral& leaf = c.integrals.leaves[l];
-        if (c.observations.counts[l] > 0) h_drawn += c.observations.leaves[l] / n, h_claimed += leaf.bridge.value;
+        if (c.observations.counts[l] > 0) {
+            h_drawn += c.observations.leaves[l] / n;
+            h_claimed += leaf.bridge.value;
+        }
     }
     const double by = out.by = h_claimed > 0 ? h_drawn / h_claimed : 1;
     for (std::size_t l = 0; l < c.integrals.leaves.size(); ++l) {
@@ -125,11 +132,13 @@ Reach reach_at(const CheckAt& c) {
             if (expected > expected_at_least || leaf.bridge.value * n > expected_at_least) out.unreached += p;
             continue;
         }
-        out.reached += p, out.drawn += c.observations.counts[l] / n;
+        out.reached += p;
+        out.drawn += c.observations.counts[l] / n;
         if (expected < 20) continue;
         const double unit = leaf.second / std::max(leaf.bridge.value, 1e-300);
         const double off = c.observations.leaves[l] - expected;
-        out.misfit += off * off / (unit * expected + leaf.bridge.variance * n * n * by * by + 1e-300), ++out.leaves;
+        out.misfit += off * off / (unit * expected + leaf.bridge.variance * n * n * by * by + 1e-300);
+        ++out.leaves;
     }
     return out;
 }
@@ -182,7 +191,10 @@ std::optional<Cause> delta_cause(std::span<const Place> places) {
         std::size_t most = 0, first = 0;
         for (std::size_t i = 0, end = 0; i < w.size(); i = end) {
             for (end = i + 1; end < w.size() && length(w[end] - w[i]) < same;) ++end;
-            if (end - i > most) most = end - i, first = i;
+            if (end - i > most) {
+                most = end - i;
+                first = i;
+            }
         }
         const double share = static_cast<double>(most) / place.of,
                      half = 1.96 * std::sqrt(share * (1 - share) / place.of);
@@ -217,7 +229,10 @@ std::optional<Cause> unreached_cause(std::span<const Place> places) {
             continue;
         if (r.leaves > 0 && r.misfit / r.leaves > 1.5 && r.unreached < r.reached)
             continue;  // more than the unreached part is wrong
-        if (!worst || r.unreached > most.unreached) worst = &place, most = r;
+        if (!worst || r.unreached > most.unreached) {
+            worst = &place;
+            most = r;
+        }
     }
     if (!worst) return {};
     const double of = worst->at->integrals.sums[mass].value,

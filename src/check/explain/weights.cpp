@@ -39,8 +39,10 @@ std::vector<Compared> compared_at(const CheckCase& check_case, int technique, st
     std::vector<Vec3d> w;
     std::vector<const Draw*> of;
     for (const Draw& d : draws)
-        if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z))
-            w.push_back(d.wi), of.push_back(&d);
+        if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z)) {
+            w.push_back(d.wi);
+            of.push_back(&d);
+        }
     std::vector<double> p(w.size());
     std::vector<Vec3d> f(w.size()), truth(w.size());
     if (source.has_density()) source.stated_pdf(w, p);
@@ -86,7 +88,8 @@ std::optional<Cause> exchanged_channels(const std::vector<Compared>& all) {
     std::array<double, std::size(channel_exchanges)> same{};
     for (const Compared& c : all) {
         if (!c.has_weight) continue;
-        ++with_weight, plain += near(c.weight, c.expected);
+        ++with_weight;
+        plain += near(c.weight, c.expected);
         for (std::size_t k = 0; k < same.size(); ++k) same[k] += near(c.weight, channel_exchanges[k].of(c.expected));
     }
     if (with_weight < 64 || 2 * plain > with_weight) return {};
@@ -123,7 +126,8 @@ std::vector<KnownRatio> reciprocity_ratios(const CheckCase& check_case) {
         back.push_back({there.back().wi, there.back().wo});
     }
     std::vector<double> a(there.size()), b(back.size());
-    s.f(there, a), s.f(back, b);
+    s.f(there, a);
+    s.f(back, b);
     std::vector<KnownRatio> out;
     for (std::size_t i = 0; i < there.size(); ++i) {
         const Pair& p = there[i];

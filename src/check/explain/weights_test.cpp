@@ -33,11 +33,14 @@ TEST(RatiosOfWeights, NameExchangedChannels) {
     adapter->of.channels = 3;
     adapter->f_value = lambert(luminance(Vec3d{0.2, 0.4, 0.8}));
     adapter->change = [](const PrimarySample&, Draw& d) {
-        d.weights = {0.8, 0.4, 0.2}, d.weight = luminance(d.weights);
+        d.weights = {0.8, 0.4, 0.2};
+        d.weight = luminance(d.weights);
     };
     Explained r;
     CheckCase& t = r.check_cases.emplace_back();
-    t.arm = "made", t.wo = {0, 0, 1}, t.adapter = adapter;
+    t.arm = "made";
+    t.wo = {0, 0, 1};
+    t.adapter = adapter;
     CheckSettings settings;
     settings.budget = CheckBudget::limited(1e5);
     ProgressMonitor monitor;

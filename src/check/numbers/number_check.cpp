@@ -34,8 +34,12 @@ struct Moments {
     void add(double x) {
         if (n == 0) origin = least = most = x;
         const double d = x - origin;
-        ++n, first += d, second += d * d, third += d * d * d;
-        least = std::min(least, x), most = std::max(most, x);
+        ++n;
+        first += d;
+        second += d * d;
+        third += d * d * d;
+        least = std::min(least, x);
+        most = std::max(most, x);
     }
     double mean() const { return origin + first / n; }
     double variance() const { return std::max(second / n - sqr(first / n), 0.0) * n / std::max(n - 1, 1.0); }
@@ -183,8 +187,11 @@ private:
             const bool constant = d.error == 0;  // a rare value may not have been drawn yet
             const bool lawful = constant ? last : !no_law && settled(a_, c) && (!b_ || settled(*b_, c));
             const double size = size_of(d);
-            if (c == 0 || size > decision_.hidden)
-                decision_.hidden = size, decision_.difference = d, decision_.channel = c;
+            if (c == 0 || size > decision_.hidden) {
+                decision_.hidden = size;
+                decision_.difference = d;
+                decision_.channel = c;
+            }
             if (!lawful) {
                 decision_.state = State::inconclusive;
                 continue;
@@ -223,21 +230,26 @@ private:
     CheckResult result() {
         CheckResult out;
         out.alpha = settings_.alpha;
-        out.tests = made_ * static_cast<std::uint64_t>(channels()), out.confirmed = out.screened = confirmed_;
+        out.tests = made_ * static_cast<std::uint64_t>(channels());
+        out.confirmed = out.screened = confirmed_;
         out.evaluations = out.questions = a_.drawn + (b_ ? b_->drawn : 0);
         CheckCase check_case;
-        check_case.arm = estimator_->name(), check_case.adapter = estimator_;
+        check_case.arm = estimator_->name();
+        check_case.adapter = estimator_;
         const WeightTail tail = tail_of_weights(a_.values);
         for (std::string_view name : verdict_names) {
             Verdict v;
-            v.arm = check_case.arm, v.check_case = check_case.text(), v.name = name;
+            v.arm = check_case.arm;
+            v.check_case = check_case.text();
+            v.name = name;
             if (name == "valid") set_valid(v);
             else if (name == "tail" && a_.values.size() > 1) set_tail(check_case, tail, v);
             else if (name == "mean") set_mean(v);
             else if (name == "efficiency" && b_) set_efficiency(v);
-            else
-                v.state = State::skipped,
+            else {
+                v.state = State::skipped;
                 v.message = name == "efficiency" ? "Needs another estimator." : "A number has no density.";
+            }
             v.expected = v.state == State::right || v.state == State::skipped ||
                 (v.state == State::inconclusive && (name == "tail" || name == "mean"));
             out.verdicts.push_back(std::move(v));
@@ -251,7 +263,8 @@ private:
     static void set_tail(const CheckCase& check_case, const WeightTail& tail, Verdict& v) {
         test_tail(check_case, tail, v);
         if (v.next.kind != NextStep::Kind::heavier_pdf) return;
-        v.next = {}, v.next_step = bounded_values;
+        v.next = {};
+        v.next_step = bounded_values;
     }
 
     void set_valid(Verdict& v) const {
@@ -275,7 +288,8 @@ private:
         v.evidence = {{"draws", a_.drawn}, {"mean", x.n > 0 ? x.mean() : 0},
             {"standard_error", x.n > 0 ? x.error() : 0}, {"expected", d.difference.expected}};
         if (x.n < 2 || static_cast<double>(a_.unusable) > most_unusable * static_cast<double>(a_.drawn)) {
-            v.state = State::skipped, v.message = "Not given, since too many of the values are not numbers: see valid.";
+            v.state = State::skipped;
+            v.message = "Not given, since too many of the values are not numbers: see valid.";
             return;
         }
         const std::string channel = channels() == 3 ? fmt::format(" in channel {}", d.channel + 1) : "";
@@ -312,7 +326,8 @@ private:
     void set_efficiency(Verdict& v) const {
         const Moments &x = a_.channels[0], &y = b_->channels[0];
         if (!(x.variance() > 0 && y.variance() > 0)) {
-            v.state = State::skipped, v.message = "One of the estimators has no variance.";
+            v.state = State::skipped;
+            v.message = "One of the estimators has no variance.";
             return;
         }
         const double ratio = x.variance() / y.variance();

@@ -18,7 +18,10 @@ public:
     std::string name() const override { return "values"; }
     Traits traits() const override {
         Traits t;
-        t.numbers = 1, t.number = true, t.has_pdf = false, t.wo = Traits::WoDomain::none;
+        t.numbers = 1;
+        t.number = true;
+        t.has_pdf = false;
+        t.wo = Traits::WoDomain::none;
         return t;
     }
     void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {

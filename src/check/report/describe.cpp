@@ -54,7 +54,10 @@ void describe_moments(const std::vector<Vec3d>& w, Description& d) {
     for (Vec3d v : w) {
         const double x[3] = {v.x, v.y, v.z}, xx[6] = {v.x * v.x, v.y * v.y, v.z * v.z, v.x * v.y, v.x * v.z, v.y * v.z};
         for (std::size_t k = 0; k < 3; ++k) sum[k] += x[k];
-        for (std::size_t k = 0; k < 6; ++k) product[k] += xx[k], product_square[k] += xx[k] * xx[k];
+        for (std::size_t k = 0; k < 6; ++k) {
+            product[k] += xx[k];
+            product_square[k] += xx[k] * xx[k];
+        }
     }
     for (std::size_t k = 0; k < 3; ++k) d.mean[k] = mean_interval(sum[k], product[k], n);
     for (std::size_t k = 0; k < 6; ++k) d.second[k] = mean_interval(product[k], product_square[k], n);
@@ -69,7 +72,9 @@ void describe_moments(const std::vector<Vec3d>& w, Description& d) {
     std::vector<double> angles;
     for (Vec3d v : w) {
         const double c = dot(v, axis);
-        along += c, along_square += c * c, across_square += 1 - c * c;
+        along += c;
+        along_square += c * c;
+        across_square += 1 - c * c;
         angles.push_back(angle_between(v, axis));
     }
     d.length = mean_interval(along, along_square, n);
@@ -142,7 +147,9 @@ void describe_support(const std::vector<Vec3d>& w, Description& d) {
     double sum = 0, square = 0;
     for (const ChartPoint& p : part(2)) {
         const std::size_t c = cells.find(p);
-        ++drawn[c], sum += density[c], square += density[c] * density[c];
+        ++drawn[c];
+        sum += density[c];
+        square += density[c] * density[c];
     }
     const Interval of_square = mean_interval(sum, square, n);
     const auto inverse = [](double v) { return v > 0 ? std::min(1 / v, 2 * two_pi) : 2 * two_pi; };
@@ -155,11 +162,16 @@ void describe_support(const std::vector<Vec3d>& w, Description& d) {
     double held = 0, area = 0;
     bool low = false, middle = false, high = false;
     for (std::size_t c : order) {
-        held += drawn[c], area += cells.areas()[c];
+        held += drawn[c];
+        area += cells.areas()[c];
         const auto take = [&](bool& done, double from, double& to) {
-            if (!done && held >= from) done = true, to = area;
+            if (!done && held >= from) {
+                done = true;
+                to = area;
+            }
         };
-        take(low, n * of_support - half, d.solid_angle.low), take(middle, n * of_support, d.solid_angle.value);
+        take(low, n * of_support - half, d.solid_angle.low);
+        take(middle, n * of_support, d.solid_angle.value);
         take(high, std::min(n * of_support + half, n), d.solid_angle.high);
     }
 }
@@ -182,8 +194,10 @@ void describe_map(const std::vector<Vec3d>& w, Description& d) {
 Description describe_one(
     const CheckCase& check_case, int technique, const DescribeSettings& settings, std::uint16_t place) {
     Description d;
-    d.arm = check_case.arm, d.check_case = check_case.text();
-    d.technique = technique, d.techniques = check_case.adapter->techniques();
+    d.arm = check_case.arm;
+    d.check_case = check_case.text();
+    d.technique = technique;
+    d.techniques = check_case.adapter->techniques();
     Source source(*check_case.adapter, technique, check_case.wo, check_case.light);
     const StreamKey key{settings.seed, place, static_cast<std::uint8_t>(technique), 1, Purpose::draws, 0xffff};
     const std::uint32_t n =
@@ -193,7 +207,8 @@ Description describe_one(
     std::vector<Draw> draws;
     double above = 0, delta = 0, nothing = 0;
     for (std::uint32_t from = 0; from < n; from += batch_size) {
-        u.resize(std::min(batch_size, n - from)), draws.assign(u.size(), {});
+        u.resize(std::min(batch_size, n - from));
+        draws.assign(u.size(), {});
         source.draw(key, from, u, draws);
         for (const Draw& x : draws) {
             const double size = length(x.wi);
@@ -201,13 +216,19 @@ Description describe_one(
             if (std::isnan(x.pdf) || (drawn && !(std::isfinite(size) && size > 0))) ++d.invalid;
             else if (x.delta != 0) ++delta;
             else if (!drawn) ++nothing;
-            else w.push_back(x.wi * (1 / size)), above += x.wi.z > 0;
+            else {
+                w.push_back(x.wi * (1 / size));
+                above += x.wi.z > 0;
+            }
         }
     }
-    d.draws = n, d.directions = w.size();
+    d.draws = n;
+    d.directions = w.size();
     const double all = static_cast<double>(n);
-    d.above = share_interval(above, all), d.below = share_interval(static_cast<double>(w.size()) - above, all);
-    d.delta = share_interval(delta, all), d.nothing = share_interval(nothing, all);
+    d.above = share_interval(above, all);
+    d.below = share_interval(static_cast<double>(w.size()) - above, all);
+    d.delta = share_interval(delta, all);
+    d.nothing = share_interval(nothing, all);
     if (w.size() < 64) return d;
     describe_moments(w, d);
     describe_support(w, d);

@@ -17,7 +17,8 @@ struct ConeOfDraws : SamplerAdapter {
     std::string name() const override { return "cone"; }
     Traits traits() const override {
         Traits t;
-        t.numbers = 3, t.delta = delta > 0;
+        t.numbers = 3;
+        t.delta = delta > 0;
         return t;
     }
     void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
@@ -28,8 +29,11 @@ struct ConeOfDraws : SamplerAdapter {
             const Vec3d turned =
                 cosine ? w : Vec3d{0.5 * w.x + std::sqrt(0.75) * w.z, w.y, 0.5 * w.z - std::sqrt(0.75) * w.x};
             out[i] = {below && u[i][2] > 0.75 ? Vec3d{turned.x, turned.y, -turned.z} : turned, 1.0};
-            if (u[i][2] < delta) out[i].pdf = 0, out[i].delta = delta, out[i].weight = 1;
-            else if (u[i][2] < delta + nothing) out[i].pdf = 0;
+            if (u[i][2] < delta) {
+                out[i].pdf = 0;
+                out[i].delta = delta;
+                out[i].weight = 1;
+            } else if (u[i][2] < delta + nothing) out[i].pdf = 0;
         }
     }
     void pdf(int, std::span<const Pair>, std::span<double> out) const override { std::ranges::fill(out, 1.0); }
@@ -37,7 +41,9 @@ struct ConeOfDraws : SamplerAdapter {
 
 Description described(const ConeOfDraws& s) {
     CheckCase t;
-    t.arm = "cone", t.wo = {0, 0, 1}, t.adapter = std::make_shared<ConeOfDraws>(s);
+    t.arm = "cone";
+    t.wo = {0, 0, 1};
+    t.adapter = std::make_shared<ConeOfDraws>(s);
     ProgressMonitor monitor;
     return describe({&t, 1}, {}, monitor).at(0);
 }
@@ -56,7 +62,9 @@ TEST(DescriptionOfDraws, HasTheMomentsOfACosine) {
     EXPECT_EQ(d.above.value, 1);
     EXPECT_EQ(d.below.value, 0);
     expect_near(d.mean[2], 2.0 / 3);
-    expect_near(d.second[0], 0.25), expect_near(d.second[2], 0.5), expect_near(d.second[3], 0);
+    expect_near(d.second[0], 0.25);
+    expect_near(d.second[2], 0.5);
+    expect_near(d.second[3], 0);
     expect_near(d.within[0], std::acos(std::sqrt(0.5)));
     // 1 / integral of cos^2 / pi^2 over the hemisphere = 3 pi / 2.
     EXPECT_NEAR(d.effective.value, 1.5 * two_pi / 2, 0.1);
@@ -82,9 +90,15 @@ TEST(DescriptionOfDraws, HasTheAxisAndTheSolidAngleOfACone) {
 
 TEST(DescriptionOfDraws, CountsEachKindOfDraw) {
     ConeOfDraws s;
-    s.delta = 0.25, s.nothing = 0.125, s.below = true, s.cosine = true;
+    s.delta = 0.25;
+    s.nothing = 0.125;
+    s.below = true;
+    s.cosine = true;
     const Description d = described(s);
-    expect_near(d.delta, 0.25), expect_near(d.nothing, 0.125), expect_near(d.below, 0.25), expect_near(d.above, 0.375);
+    expect_near(d.delta, 0.25);
+    expect_near(d.nothing, 0.125);
+    expect_near(d.below, 0.25);
+    expect_near(d.above, 0.375);
     EXPECT_EQ(d.theta_edges.size(), 19u);
     const std::string text = description_text(d);
     for (const char* word : {"above the horizon", "delta parts", "nothing", "effective support", "map"})

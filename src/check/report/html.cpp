@@ -20,7 +20,8 @@ Json histogram(const WeightHistogram& w) {
     std::ranges::copy_if(w.counts, std::back_inserter(seen), [](double c) { return c > 0; });
     seen.push_back(0.5);
     Axis x = linear_axis("log10 of X = f L cos / p", {w.log10_edges.front(), w.log10_edges.back()});
-    x.low = w.log10_edges.front(), x.high = w.log10_edges.back();
+    x.low = w.log10_edges.front();
+    x.high = w.log10_edges.back();
     bool line = false;
     Chart chart(420, 220, x, log_axis("draws", seen), "Histogram of the samples X");
     for (std::size_t i = 0; i < w.counts.size(); ++i)
@@ -40,7 +41,10 @@ Json histogram(const WeightHistogram& w) {
             const double expected = w.exceedances * (survival(low) - survival(high));
             if (expected >= 0.5) tail.push_back({(w.log10_edges[i] + w.log10_edges[i + 1]) / 2, expected});
         }
-        if (tail.size() > 1) chart.line(tail, "c2"), line = true;
+        if (tail.size() > 1) {
+            chart.line(tail, "c2");
+            line = true;
+        }
     }
     Json tail = false;
     if (w.exceedances > 0)
@@ -113,7 +117,8 @@ Json map_of(const BinHistogram& m) {
         {"unit", m.ring_axis.empty() ? "1/sr" : "of its largest value"}};
     if (m.expected.empty()) {  // a density, 1/sr
         const double top = std::max(m.full_scale, 1e-300);
-        out["top"] = fmt::format("{:.4g}", top), out["full_scale"] = fmt::format("{:.6g}", top);
+        out["top"] = fmt::format("{:.4g}", top);
+        out["full_scale"] = fmt::format("{:.6g}", top);
         out["observed"] = fmt::format("{:.4g}", fmt::join(m.observed, ","));
         return out;
     }
@@ -121,7 +126,8 @@ Json map_of(const BinHistogram& m) {
     std::vector<double> deviations;
     for (std::size_t i = 0; i < m.observed.size(); ++i) deviations.push_back(deviation_of(m, i));
     out["frame"] = frame_of(m, deviations);
-    out["top"] = fmt::format("{:.0f}", top), out["full_scale"] = fmt::format("{:.0f}", std::max(top, 1.0));
+    out["top"] = fmt::format("{:.0f}", top);
+    out["full_scale"] = fmt::format("{:.0f}", std::max(top, 1.0));
     out["observed"] = fmt::format("{:.0f}", fmt::join(m.observed, ","));
     out["expected_draws"] = fmt::format("{:.1f}", fmt::join(m.expected, ","));
     out["deviations"] = fmt::format("{:.2f}", fmt::join(deviations, ","));
@@ -134,7 +140,8 @@ Json line_of(const LineHistogram& h) {
     all.insert(all.end(), h.expected.begin(), h.expected.end());
     all.push_back(0);
     Axis x = linear_axis(h.axis, {h.edges.front(), h.edges.back()});
-    x.low = h.edges.front(), x.high = h.edges.back();
+    x.low = h.edges.front();
+    x.high = h.edges.back();
     Chart chart(640, 240, x, linear_axis("draws", all), "Draws over " + h.axis);
     std::vector<Point> expected;
     for (std::size_t i = 0; i < h.observed.size(); ++i) {
@@ -215,7 +222,8 @@ void add_matrix(const CheckResult& j, Json& to) {
             matrix.push_back({{"arm", one_arm ? "" : v.arm}, {"case", v.check_case}, {"states", Json::array()}});
         matrix.back()["states"].push_back(word(v.state));
     }
-    to["tests"] = tests, to["matrix"] = matrix;
+    to["tests"] = tests;
+    to["matrix"] = matrix;
 }
 
 /// Every case with its verdicts, maps, implied density and weights.

@@ -88,7 +88,10 @@ void note_implied_density(const CheckAt& c, Verdict& v) {
         const ChartRect& r = tree.nodes()[i].rect;
         const Implied here(draws[i], n, r.area());
         rows.push_back({1 - r.t1, 1 - r.t0, r.phi0, r.phi1, here.p, here.se});
-        if (here.p - 4 * here.se > least) least = here.p - 4 * here.se, highest = i;
+        if (here.p - 4 * here.se > least) {
+            least = here.p - 4 * here.se;
+            highest = i;
+        }
     }
     const ChartRect& r = tree.nodes()[highest].rect;
     const Vec3d w = from_chart(r.at(0.5, 0.5));

@@ -43,8 +43,12 @@ std::vector<double> edges_of(std::span<const Spread1d> all, double low, double h
     constexpr int margin_bins = 2;      // bins
     double from = quantile_of(all, outside, low, high), to = quantile_of(all, 1 - outside, low, high);
     const double margin = 0.02 * (to - from);
-    from = std::max(low, from - margin), to = std::min(high, to + margin);
-    if (to - from > zoom_below * (high - low)) from = low, to = high;
+    from = std::max(low, from - margin);
+    to = std::min(high, to + margin);
+    if (to - from > zoom_below * (high - low)) {
+        from = low;
+        to = high;
+    }
     const int before = from > low ? margin_bins : 0, after = to < high ? margin_bins : 0,
               inside = bins - before - after;
     std::vector<double> out;
@@ -94,7 +98,8 @@ std::vector<LeafDraws> leaf_draws(const CheckAt& c, bool has_density) {
         if (!has_density) {
             d.observed = d.expected = static_cast<double>(c.observations.counts[l]);
         } else if (unit > 0) {
-            d.observed = c.observations.leaves[l] / unit, d.expected = n * claim.bridge.value / unit;
+            d.observed = c.observations.leaves[l] / unit;
+            d.expected = n * claim.bridge.value / unit;
             d.variance = d.expected + sqr(n / unit) * claim.bridge.variance;
         }
         if (d.observed > 0 || d.expected > 0) out.push_back(d);
@@ -165,17 +170,24 @@ std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& 
     if (domain && domain->domain().dimensions() != 2) return {};
     const MapEdges edges = domain ? even_edges() : map_edges(leaves, c.plan->middle);
     BinHistogram out;
-    out.arm = check_case.arm, out.check_case = check_case.text();
+    out.arm = check_case.arm;
+    out.check_case = check_case.text();
     out.coordinates = domain ? domain->axis(0) + " and " + domain->axis(1) : "theta from n and phi about it";
     for (std::size_t k = 0; domain && k < out.ring_labels.size(); ++k) {
         out.ring_labels[k] = domain->label(0, static_cast<double>(k) / 4);
         out.sector_labels[k] = domain->label(1, static_cast<double>(k) / 4);
     }
-    if (domain) out.ring_axis = domain->axis(0), out.sector_axis = domain->axis(1);
+    if (domain) {
+        out.ring_axis = domain->axis(0);
+        out.sector_axis = domain->axis(1);
+    }
     if (check_case.adapter->techniques() > 1) out.coordinates += fmt::format(", technique {}", c.technique + 1);
-    out.rings = static_cast<int>(edges.theta.size()) - 1, out.sectors = static_cast<int>(edges.phi.size()) - 1;
+    out.rings = static_cast<int>(edges.theta.size()) - 1;
+    out.sectors = static_cast<int>(edges.phi.size()) - 1;
     const auto sectors = static_cast<std::size_t>(out.sectors), bins = static_cast<std::size_t>(out.rings) * sectors;
-    out.observed.assign(bins, 0), out.expected.assign(bins, 0), out.sd.assign(bins, 0);
+    out.observed.assign(bins, 0);
+    out.expected.assign(bins, 0);
+    out.sd.assign(bins, 0);
     for (double theta : edges.theta) out.edges.push_back(1 - math::cos(theta));
     for (double phi : edges.phi) out.sector_edges.push_back(degrees_from(edges.seam, phi));
     for (const LeafDraws& d : leaves)
@@ -184,7 +196,8 @@ std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& 
                 share_out(from, to, edges.phi, [&](std::size_t sector, double of_sector) {
                     const double share = of_ring * of_sector * (to - from) / (d.rect.phi1 - d.rect.phi0);
                     const std::size_t bin = ring * sectors + sector;
-                    out.observed[bin] += share * d.observed, out.expected[bin] += share * d.expected;
+                    out.observed[bin] += share * d.observed;
+                    out.expected[bin] += share * d.expected;
                     out.sd[bin] += share * d.variance;
                 });
         });
@@ -198,7 +211,8 @@ std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& 
         out.full_scale = std::max(out.full_scale, out.observed[i]);
     }
     round_values(out.observed);
-    out.expected.clear(), out.sd.clear();
+    out.expected.clear();
+    out.sd.clear();
     return out;
 }
 
@@ -211,7 +225,9 @@ std::optional<LineHistogram> line_picture(const CheckCase& check_case, const Che
     const std::vector<LeafDraws> leaves = leaf_draws(c, has_density);
     if (leaves.empty()) return {};
     LineHistogram out;
-    out.arm = check_case.arm, out.check_case = check_case.text(), out.axis = domain->axis(0);
+    out.arm = check_case.arm;
+    out.check_case = check_case.text();
+    out.axis = domain->axis(0);
     out.entries = domain->is_discrete();
     const DomainPart& part = domain->domain().parts()[0];
     std::vector<Spread1d> mass;
@@ -228,11 +244,13 @@ std::optional<LineHistogram> line_picture(const CheckCase& check_case, const Che
     if (out.entries)
         for (double& e : out.edges) e = std::round(e);
     const auto count = static_cast<std::size_t>(bins);
-    out.observed.assign(count, 0), out.expected.assign(count, 0);
+    out.observed.assign(count, 0);
+    out.expected.assign(count, 0);
     for (const LeafDraws& d : leaves)
         share_out(
             domain->value_at(d.rect.t0), domain->value_at(d.rect.t1), out.edges, [&](std::size_t bin, double share) {
-                out.observed[bin] += share * d.observed, out.expected[bin] += share * d.expected;
+                out.observed[bin] += share * d.observed;
+                out.expected[bin] += share * d.expected;
             });
     for (auto* values : {&out.observed, &out.expected}) round_values(*values);
     if (!has_density) out.expected.clear();
@@ -242,11 +260,14 @@ std::optional<LineHistogram> line_picture(const CheckCase& check_case, const Che
 WeightHistogram weight_picture(const CheckCase& check_case, std::span<const double> x, const WeightTail& tail) {
     constexpr int bins = 48;
     WeightHistogram out;
-    out.arm = check_case.arm, out.check_case = check_case.text();
+    out.arm = check_case.arm;
+    out.check_case = check_case.text();
     double low = 1e300, high = 0;
     for (double v : x) {
-        if (v > 0) low = std::min(low, v), high = std::max(high, v);
-        else ++out.zeros;
+        if (v > 0) {
+            low = std::min(low, v);
+            high = std::max(high, v);
+        } else ++out.zeros;
     }
     if (high > 0) {
         const double from = math::log10(low) - 0.05, to = math::log10(high) + 0.05;
@@ -258,7 +279,8 @@ WeightHistogram weight_picture(const CheckCase& check_case, std::span<const doub
                     std::clamp((math::log10(v) - from) / (to - from) * bins, 0.0, bins - 1.0))];
     }
     if (!tail.fit || tail.fit->exceedances + 1 >= x.size()) return out;
-    out.k = tail.fit->k, out.exceedances = static_cast<double>(tail.fit->exceedances);
+    out.k = tail.fit->k;
+    out.exceedances = static_cast<double>(tail.fit->exceedances);
     std::vector<double> largest(x.begin(), x.end());
     std::ranges::sort(largest, std::greater<>());
     out.threshold = largest[tail.fit->exceedances];

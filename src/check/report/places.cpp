@@ -25,27 +25,34 @@ struct NodeShares {
 
     explicit NodeShares(const CheckAt& c) {
         const std::vector<TreeNode>& nodes = c.plan->tree.nodes();
-        drawn.resize(nodes.size()), claimed.resize(nodes.size()), variance.resize(nodes.size());
+        drawn.resize(nodes.size());
+        claimed.resize(nodes.size());
+        variance.resize(nodes.size());
         for (std::size_t i = nodes.size(); i-- > 0;) {
             if (nodes[i].child < 0) {
                 const auto l = static_cast<std::size_t>(nodes[i].leaf);
                 const Estimate& p = c.integrals.leaves[l].mass;
-                drawn[i] = static_cast<double>(c.observations.counts[l]), claimed[i] = p.value,
+                drawn[i] = static_cast<double>(c.observations.counts[l]);
+                claimed[i] = p.value;
                 variance[i] = p.variance;
                 continue;
             }
             for (int half : {0, 1}) {
                 const auto k = static_cast<std::size_t>(nodes[i].child + half);
-                drawn[i] += drawn[k], claimed[i] += claimed[k], variance[i] += variance[k];
+                drawn[i] += drawn[k];
+                claimed[i] += claimed[k];
+                variance[i] += variance[k];
             }
         }
-        draws = drawn[0], mass = claimed[0];
+        draws = drawn[0];
+        mass = claimed[0];
     }
     /// Whether there are draws, and p has an integral that is known well enough for shares of it.
     bool known() const { return draws > 0 && mass > 0 && std::sqrt(variance[0]) < largest_error * mass; }
     ShareDifference at(std::size_t i) const {
         ShareDifference out;
-        out.drawn = drawn[i] / draws, out.claimed = claimed[i] / mass;
+        out.drawn = drawn[i] / draws;
+        out.claimed = claimed[i] / mass;
         // Counts of a region are binomial; the larger share is used, since none of few draws has no spread.
         const double larger = std::clamp(std::max(out.drawn, out.claimed), 1 / draws, 1.0);
         out.drawn_error = std::sqrt(larger * std::max(1 - std::min(out.drawn, out.claimed), 1 / draws) / draws);
@@ -91,7 +98,10 @@ std::optional<ShareDifference> largest_difference(const CheckAt& c) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < tree.nodes().size(); ++i) {
         const ShareDifference d = shares.at(i);
-        if (d.errors() > clear_errors && std::fabs(d.difference()) > most) most = std::fabs(d.difference()), best = i;
+        if (d.errors() > clear_errors && std::fabs(d.difference()) > most) {
+            most = std::fabs(d.difference());
+            best = i;
+        }
     }
     if (best == 0) return {};
     for (bool smaller = true; smaller;) {
@@ -146,12 +156,15 @@ std::optional<Concentration> concentration_of(const CheckAt& c) {
         const double area = tree.nodes()[i].rect.area(), s = shares.drawn[i] / shares.draws,
                      m = shares.claimed[i] / shares.mass;
         const double log_s = s > 0 ? math::log(s / area) : 0;
-        drawn -= s * log_s, square += s * log_s * log_s, occupied += s > 0;
+        drawn -= s * log_s;
+        square += s * log_s * log_s;
+        occupied += s > 0;
         if (m > 0) claimed -= m * math::log(m / area);
     }
     Concentration out;
     // Miller 1955: the entropy of counts is too low by (cells - 1) / (2 n).
-    out.drawn = math::exp(drawn + (occupied - 1) / (2 * shares.draws)), out.claimed = math::exp(claimed);
+    out.drawn = math::exp(drawn + (occupied - 1) / (2 * shares.draws));
+    out.claimed = math::exp(claimed);
     const double change = math::log(out.drawn / out.claimed);
     const double relative = std::sqrt(shares.variance[0]) / shares.mass;
     out.error = std::sqrt(std::max(square - drawn * drawn, 0.0) / shares.draws) + relative;

@@ -13,11 +13,16 @@ using ::testing::Not;
 /// One verdict in each state, of two arms at one w_o each.
 CheckResult every_state() {
     CheckResult out;
-    out.alpha = 0.001, out.tests = 42;
+    out.alpha = 0.001;
+    out.tests = 42;
     for (const State state : {State::right, State::wrong, State::inconclusive, State::skipped, State::error}) {
         Verdict& v = out.verdicts.emplace_back();
-        v.arm = state == State::error ? "other" : "made", v.check_case = "w_o <45> deg", v.name = "density";
-        v.state = state, v.message = "What was found. And where.", v.seconds = 2.5;
+        v.arm = state == State::error ? "other" : "made";
+        v.check_case = "w_o <45> deg";
+        v.name = "density";
+        v.state = state;
+        v.message = "What was found. And where.";
+        v.seconds = 2.5;
         v.expected = state == State::right || state == State::skipped;
         v.evidence["p"] = 0.25;
     }
@@ -40,7 +45,8 @@ TEST(ResultAsJson, HasEachVerdictWithItsEvidence) {
 
 TEST(ResultAsJson, HasNoTimes) {
     CheckResult fast = every_state(), slow = every_state();
-    slow.verdicts[0].seconds = 9, slow.verdicts[0].timed_message = "Slow.";
+    slow.verdicts[0].seconds = 9;
+    slow.verdicts[0].timed_message = "Slow.";
     EXPECT_EQ(verdict_json(fast), verdict_json(slow));
 }
 
@@ -48,7 +54,8 @@ TEST(ResultAsJunit, HasACaseForEachVerdict) {
     CheckResult result = every_state();
     EXPECT_THAT(verdict_junit(result), HasSubstr("tests=\"5\" failures=\"2\" errors=\"1\" skipped=\"1\""));
     Verdict& wrong = result.verdicts[1];
-    wrong.waived = wrong.expected = true, wrong.why_expected = "it is known";
+    wrong.waived = wrong.expected = true;
+    wrong.why_expected = "it is known";
     result.unmet = {"an expectation"};
     EXPECT_THAT(verdict_junit(result), HasSubstr("tests=\"6\" failures=\"2\" errors=\"1\" skipped=\"1\""));
 }
@@ -86,8 +93,13 @@ TEST(ResultAsPage, EscapesAndListsEveryCase) {
     for (const char* state : {"wrong", "inconclusive", "error"}) EXPECT_THAT(page, HasSubstr(state));
     CheckResult with_map = every_state();
     BinHistogram& map = with_map.maps.emplace_back();
-    map.arm = "made", map.check_case = "w_o <45> deg", map.rings = 1, map.sectors = 2;
-    map.observed = {10, 20}, map.expected = {12, 18}, map.edges = {0, 1};
+    map.arm = "made";
+    map.check_case = "w_o <45> deg";
+    map.rings = 1;
+    map.sectors = 2;
+    map.observed = {10, 20};
+    map.expected = {12, 18};
+    map.edges = {0, 1};
     EXPECT_GT(verdict_html(with_map, {}).size(), page.size());
 }
 

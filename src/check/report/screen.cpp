@@ -103,7 +103,10 @@ void add_right(const CheckResult& result, const Layout& layout, std::vector<Scre
     const auto right = names_in(result, State::right);
     std::set<std::string> cases;
     bool by_wo = true;
-    for (const Verdict& v : result.verdicts) cases.insert(v.check_case), by_wo = by_wo && v.wo;
+    for (const Verdict& v : result.verdicts) {
+        cases.insert(v.check_case);
+        by_wo = by_wo && v.wo;
+    }
     std::string together;
     for (const auto& [name, count] : right) {
         const std::string where =

@@ -18,12 +18,17 @@ CheckResult in_states(std::initializer_list<State> states) {
     for (const double theta : {30.0, 60.0})
         for (std::size_t i = 0; i < verdict_names.size(); ++i) {
             Verdict& v = out.verdicts.emplace_back();
-            v.arm = "made", v.name = verdict_names[i], v.check_case = theta < 45 ? "w_o 30 deg" : "w_o 60 deg";
+            v.arm = "made";
+            v.name = verdict_names[i];
+            v.check_case = theta < 45 ? "w_o 30 deg" : "w_o 60 deg";
             v.wo = {theta, 0};
             v.state = i < states.size() ? states.begin()[i] : State::right;
             v.message = std::string("What of ") + v.name + " is found. How large it is.";
             if (v.state == State::skipped) v.message = "Needs f.";
-            if (v.state == State::wrong) v.cause = "The cause of " + v.name + ".", v.size = theta;
+            if (v.state == State::wrong) {
+                v.cause = "The cause of " + v.name + ".";
+                v.size = theta;
+            }
             if (v.name == "density") v.hidden["constant"] = 0.01;
         }
     return out;
@@ -61,9 +66,11 @@ TEST(Screens, HaveAtMostTwelveRowsAtAnyWidth) {
         for (const std::size_t columns : {0u, 40u, 80u, 120u}) {
             CheckResult result = in_states({});
             for (Verdict& v : result.verdicts)
-                if (static_cast<std::size_t>(std::ranges::find(verdict_names, v.name) - verdict_names.begin()) < wrong)
-                    v.state = State::wrong,
+                if (static_cast<std::size_t>(std::ranges::find(verdict_names, v.name) - verdict_names.begin()) <
+                    wrong) {
+                    v.state = State::wrong;
                     v.cause = "A cause with its numbers in a sentence of its own, " + v.name + ".";
+                }
             const auto found = rows(screen_of(result, columns));
             EXPECT_LE(found.size(), 12u) << wrong << " wrong in " << columns << " columns";
             for (const std::string& row : found)
@@ -78,8 +85,10 @@ TEST(Screens, HaveAtMostTwelveRowsAtAnyWidth) {
 TEST(Screens, TellWhatIsExpectedAfterWhatIsNot) {
     CheckResult result = in_states({State::wrong, State::wrong});
     for (Verdict& v : result.verdicts)
-        if (v.name == "valid") v.expected = v.waived = true, v.why_expected = "it is known";
-        else v.expected = false;
+        if (v.name == "valid") {
+            v.expected = v.waived = true;
+            v.why_expected = "it is known";
+        } else v.expected = false;
     const auto found = rows(screen_of(result));
     EXPECT_THAT(found[0], HasSubstr("support: wrong at"));
     EXPECT_THAT(found[3], HasSubstr("valid: wrong as waived at 2 of 2 w_o, worst at w_o 60 deg: it is known"));

@@ -251,7 +251,10 @@ namespace {
 std::pair<double, int> least_p(const CheckAt& c, std::string_view verdict) {
     std::pair<double, int> out{1, 0};
     for (const Answer& a : c.answers)
-        if (info(a.family).verdict == verdict) out.first = std::min(out.first, a.p), ++out.second;
+        if (info(a.family).verdict == verdict) {
+            out.first = std::min(out.first, a.p);
+            ++out.second;
+        }
     return out;
 }
 
@@ -266,8 +269,10 @@ std::string valid_sentence(const CheckAt& c) {
 std::string albedo_sentence(const CheckAt& c) {
     double most = 0, half = 0;
     for (const Answer& a : c.answers)
-        if (a.family == Family::albedo && a.difference + a.expected > most)
-            most = a.difference + a.expected, half = half_width_95 * a.sd;
+        if (a.family == Family::albedo && a.difference + a.expected > most) {
+            most = a.difference + a.expected;
+            half = half_width_95 * a.sd;
+        }
     return most > 0 ? fmt::format("{} of a uniform light is reflected or transmitted.", with_error(most, half)) : "";
 }
 
@@ -311,7 +316,9 @@ std::string sentence_of_open(const CheckAt& c, std::string_view verdict) {
     std::vector<Open> open;
     const auto add = [&](const char* what, std::optional<double> Sizes::* size, double target) {
         Sizes only;
-        only.by_leak = s.by_leak, only.by_rotation = s.by_rotation, only.by_parameter = s.by_parameter;
+        only.by_leak = s.by_leak;
+        only.by_rotation = s.by_rotation;
+        only.by_parameter = s.by_parameter;
         only.*size = s.*size;
         if (s.*size) open.push_back({what, *(s.*size), target, worst_ratio(only)});
     };

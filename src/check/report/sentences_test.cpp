@@ -49,7 +49,11 @@ TEST(LimitsOfVerdicts, WithoutAPdfOrWeightsAreStated) {
     EXPECT_EQ(verdict(alone, "normalised").state, State::skipped);
     EXPECT_TRUE(verdict(alone, "density").implied);
     s.f_value = lambert(0.5);
-    s.change = [](const PrimarySample&, Draw& d) { d.pdf = 1, d.weight = 0.5, d.weights = {0.5, 0, 0}; };
+    s.change = [](const PrimarySample&, Draw& d) {
+        d.pdf = 1;
+        d.weight = 0.5;
+        d.weights = {0.5, 0, 0};
+    };
     const auto with_weights = checked(s).verdicts();
     EXPECT_EQ(verdict(with_weights, "density").state, State::skipped);
     EXPECT_EQ(verdict(with_weights, "mean").state, State::right);

@@ -82,7 +82,10 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
             auto same = std::ranges::find(wordings, key, &Wording::key);
             if (same == wordings.end()) same = wordings.insert(wordings.end(), {key, sentence, v->size, {}});
             const bool larger = !same->cases.empty() && v->size > same->size;
-            if (larger) same->message = sentence, same->size = v->size;
+            if (larger) {
+                same->message = sentence;
+                same->size = v->size;
+            }
             same->cases.insert(larger ? same->cases.begin() : same->cases.end(), v->check_case);
         }
     }
@@ -98,7 +101,10 @@ void note_range(Finding& f, const std::vector<const Verdict*>& all) {
     for (const Verdict* v : all) {
         if (f.named_cause.empty()) f.named_cause = v->cause;
         every_wo = every_wo && v->wo;
-        if (v->wo) low = std::min(low, v->wo->first), high = std::max(high, v->wo->first);
+        if (v->wo) {
+            low = std::min(low, v->wo->first);
+            high = std::max(high, v->wo->first);
+        }
         if (!v->integral) continue;
         if (!least || *v->integral < *least->integral) least = v;
         if (!most || *v->integral > *most->integral) most = v;
@@ -169,12 +175,18 @@ std::vector<Finding> findings_of(const CheckResult& j) {
         members[at->second].push_back(&v);
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
-        if (out[i].state == State::wrong) out[i].cause = cause_of(out[i], j), note_range(out[i], members[i]);
+        if (out[i].state == State::wrong) {
+            out[i].cause = cause_of(out[i], j);
+            note_range(out[i], members[i]);
+        }
         if (out[i].state != State::error) list_sentences(out[i], members[i]);
         else
             for (const Verdict* v : members[i])
                 if (v->first_failure) out[i].worst = v;
-        if (out[i].state == State::error) out[i].of = j.verdicts.size(), out[i].cases = "verdicts";
+        if (out[i].state == State::error) {
+            out[i].of = j.verdicts.size();
+            out[i].cases = "verdicts";
+        }
     }
     const auto order = [](const Finding& f) {
         const auto name = std::find(verdict_names.begin(), verdict_names.end(), f.name);
@@ -351,7 +363,8 @@ std::string ring_text(const std::vector<ImpliedDensity::Ring>& fine, double from
     for (const ImpliedDensity::Ring& r : fine) {
         if (r.from < from || r.to > to) continue;
         const double angle = math::cos(r.from * pi / 180) - math::cos(r.to * pi / 180);
-        sum += r.pdf * angle, square += sqr(r.error * angle);
+        sum += r.pdf * angle;
+        square += sqr(r.error * angle);
         whole += angle;
     }
     if (to > 90) whole = 1;  // the list ends at the last ring with draws

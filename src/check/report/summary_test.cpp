@@ -12,7 +12,10 @@ CheckResult of_verdicts(std::initializer_list<std::tuple<const char*, State, dou
     CheckResult j;
     for (const auto& [name, state, theta, cause] : verdicts) {
         Verdict v;
-        v.arm = "sampler", v.name = name, v.state = state, v.cause = cause;
+        v.arm = "sampler";
+        v.name = name;
+        v.state = state;
+        v.cause = cause;
         v.check_case = "w_o " + std::to_string(static_cast<int>(theta)) + " deg";
         v.wo = {theta, 0};
         v.message = std::string("What of ") + name + ".\nHow large.";
@@ -62,7 +65,10 @@ TEST(Summaries, HaveEachWordingOnce) {
     const char* message[] = {"p integrates to 1.2 +- 0.1. Expected 1.", "p integrates to 1.5 +- 0.1. Expected 1.", "",
         "Nothing else is like it."};
     const double size[] = {0.2, 0.5, 0, 0.1};
-    for (std::size_t i = 0; i < 4; ++i) j.verdicts[i].message = message[i], j.verdicts[i].size = size[i];
+    for (std::size_t i = 0; i < 4; ++i) {
+        j.verdicts[i].message = message[i];
+        j.verdicts[i].size = size[i];
+    }
     const auto message_lines = lines(summary_of(j));
     EXPECT_EQ(message_lines.at(0),
         "sampler, normalised: wrong at 3 of 4 w_o (30 to 89 deg), worst at w_o 60 deg. p integrates to 1.5 +- 0.1. "

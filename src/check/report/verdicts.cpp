@@ -27,8 +27,10 @@ void add_sizes(const Sizes& s, bool of_points, Verdict& v) {
     if (v.name == "normalised") add("constant", s.constant);
     if (v.name == "mean") add("bias", s.bias);
     if (v.name != "density") return;
-    add("leak", s.leak), add(of_points ? "gap" : "cap", s.cap), add(of_points ? "shift" : "rotation", s.rotation),
-        add("parameter", s.parameter);
+    add("leak", s.leak);
+    add(of_points ? "gap" : "cap", s.cap);
+    add(of_points ? "shift" : "rotation", s.rotation);
+    add("parameter", s.parameter);
 }
 
 /// The share of the answers or tests that fail, as the size of a fault.
@@ -69,7 +71,8 @@ void describe_worst(const CheckAt& c, const Finding& worst, Verdict& v) {
     double size = share_of(c, a);
     if (compares_densities(worst.first.family))
         if (const std::optional<ShareDifference> place = largest_difference(c)) {
-            sentence = sentence_of(*place, c.traits), size = std::fabs(place->difference());
+            sentence = sentence_of(*place, c.traits);
+            size = std::fabs(place->difference());
             if (const auto spread = concentration_of(c))
                 if (const std::string more = sentence_of(*spread, c.traits); !more.empty()) sentence += " " + more;
             v.evidence["largest_difference"] = {{"drawn", place->drawn}, {"drawn_error", place->drawn_error},
@@ -90,7 +93,8 @@ void decide_at(const CheckAt& c, Verdict& v) {
     }
     for (const SmallFault& f : c.small)
         if (info(f.family).verdict == v.name) {
-            v.state = State::wrong, v.size = std::max(v.size, share_of(f));
+            v.state = State::wrong;
+            v.size = std::max(v.size, share_of(f));
             v.message += (v.message.empty() ? "" : " ") + sentence_of(f, c.traits);
         }
     const Finding* worst = nullptr;
@@ -100,7 +104,10 @@ void decide_at(const CheckAt& c, Verdict& v) {
                 {"expected", f.second.expected}, {"sd", f.second.sd}, {"p_first", f.first.p}, {"p_again", f.second.p}};
             if (!worst || f.second.p < worst->second.p) worst = &f;
         }
-    if (worst) v.state = State::wrong, describe_worst(c, *worst, v);
+    if (worst) {
+        v.state = State::wrong;
+        describe_worst(c, *worst, v);
+    }
     for (const Answer& a : c.answers)
         if (info(a.family).verdict == v.name && v.state != State::wrong)
             v.evidence["p"][std::string(info(a.family).name)] = a.p;
@@ -124,8 +131,14 @@ void decide_at(const CheckAt& c, Verdict& v) {
     }
     if (v.name == "density" || v.name == "normalised") {
         Sizes only;
-        if (v.name == "normalised") only.constant = c.sizes.constant, only.integral = c.sizes.integral;
-        else only = c.sizes, only.constant.reset(), only.integral.reset();
+        if (v.name == "normalised") {
+            only.constant = c.sizes.constant;
+            only.integral = c.sizes.integral;
+        } else {
+            only = c.sizes;
+            only.constant.reset();
+            only.integral.reset();
+        }
         if (worst_ratio(only) <= c.most_ratio()) return;
         v.state = State::inconclusive;
         v.message = sentence_of_open(c, v.name);
@@ -147,7 +160,8 @@ void add_faults_of_sampler(const CheckOutcome& outcome, const Traits& traits, Ve
     const bool here = v.state == State::wrong;
     for (const SmallFault& f : outcome.small) {
         if (info(f.family).verdict != v.name) continue;
-        v.state = State::wrong, v.size = std::max(v.size, share_of(f));
+        v.state = State::wrong;
+        v.size = std::max(v.size, share_of(f));
         v.message += (v.message.empty() ? "" : " ") + sentence_of(f, traits);
         if (!here) v.place = f.wo ? "w_o = " + direction_text(*f.wo) : "pairs of directions";
     }
@@ -176,7 +190,8 @@ void withhold(const CheckAt& c, Verdict& v) {
     if (!c.is_withheld(v.name)) return;
     v.state = State::skipped;
     v.message = "Not given, since too many of the answers are not numbers: see valid.";
-    v.next = {}, v.next_step.clear();
+    v.next = {};
+    v.next_step.clear();
 }
 
 /// Adds the cause to one verdict: a constant to `normalised`, another density to `density`, otherwise to the verdict of
@@ -208,7 +223,9 @@ std::vector<Verdict> verdicts_of(
             const std::string_view name = verdict_names[n];
             const VerdictKind& kind = *verdict_kinds[n];
             Verdict v;
-            v.arm = check_case.arm, v.check_case = check_case.text(), v.name = name;
+            v.arm = check_case.arm;
+            v.check_case = check_case.text();
+            v.name = name;
             if (v.check_case != without_wo) v.wo = {check_case.theta_deg, check_case.azimuth_deg};
             if (!kind.applies(*check_case.adapter)) {
                 v.state = State::skipped;

@@ -20,7 +20,9 @@ struct Uniform : SamplerAdapter {
 
 std::vector<Verdict> verdicts(double factor) {
     CheckCase t;
-    t.arm = "uniform", t.wo = {0, 0, 1}, t.adapter = std::make_shared<Uniform>(factor);
+    t.arm = "uniform";
+    t.wo = {0, 0, 1};
+    t.adapter = std::make_shared<Uniform>(factor);
     CheckSettings settings;
     settings.budget = CheckBudget::limited();
     ProgressMonitor monitor;
@@ -74,8 +76,10 @@ TEST(CheckReport, WhatDrawsNothingIsNeverRight) {
         const auto sampler = std::make_shared<OneSided>();
         sampler->never = never;
         CheckCase above, below;
-        above.arm = below.arm = "one-sided", above.adapter = below.adapter = sampler;
-        above.wo = {0, 0, 1}, below.wo = {0, 0, -1};
+        above.arm = below.arm = "one-sided";
+        above.adapter = below.adapter = sampler;
+        above.wo = {0, 0, 1};
+        below.wo = {0, 0, -1};
         const CheckCase both[] = {above, below};
         CheckSettings settings;
         settings.budget = CheckBudget::limited(1e5);

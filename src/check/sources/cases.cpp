@@ -21,14 +21,16 @@ std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles)
     auto out = std::make_shared<Surroundings>();
     if (sky) {
         auto image = std::make_shared<RgbImage>();
-        image->width = 16, image->height = 8;
+        image->width = 16;
+        image->height = 8;
         for (int row = 0; row < 8; ++row)
             for (int column = 0; column < 16; ++column) {
                 const float grey = row == 2 && column == 5 ? 40.0f : 0.5f + 0.1f * static_cast<float>(row + column % 3);
                 image->rgb.insert(image->rgb.end(), {grey, grey, grey});
             }
         SkyLight light;
-        light.rotation = 20, light.image = std::move(image);
+        light.rotation = 20;
+        light.image = std::move(image);
         out->sky.emplace(light);
     }
     if (triangles) {
@@ -43,7 +45,8 @@ std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles)
             const Vec3d across = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
             if (dot(across, t.corner[0]) > 0) std::swap(t.corner[1], t.corner[2]);  // its front faces the point
             const double radiance = 5.0 + 4.0 * k;
-            t.radiance = {radiance, radiance, radiance}, t.triangle = k;
+            t.radiance = {radiance, radiance, radiance};
+            t.triangle = k;
         }
         out->triangles.emplace(std::move(all));
     }

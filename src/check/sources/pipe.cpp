@@ -108,7 +108,8 @@ public:
         }
         query_samples(in, lights, out.pdf.size(), [&](std::size_t i, std::span<const double> answer, bool delta) {
             const Draw d = drawn(answer, delta, {});
-            out.wi[i] = d.wi, out.pdf[i] = d.pdf;
+            out.wi[i] = d.wi;
+            out.pdf[i] = d.pdf;
         });
     }
     void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
@@ -210,7 +211,9 @@ private:
         in.resize(before + columns_of_point());
         const std::span<double> to = std::span(in).subspan(before);
         if (domain()) return domain()->point(wi, to);
-        to[0] = wi.x, to[1] = wi.y, to[2] = wi.z;
+        to[0] = wi.x;
+        to[1] = wi.y;
+        to[2] = wi.z;
         return 1;
     }
     /// Requests samples for rows of w_o, u and the context; calls take(i, answer, delta) for each row in order.
@@ -270,20 +273,29 @@ private:
             return reservoir;
         }
         Draw d{{a[0], a[1], a[2]}, a[3]};
-        if (hello_.blocks && hello_.delta && d.pdf < 0) delta = true, d.pdf = -d.pdf;
+        if (hello_.blocks && hello_.delta && d.pdf < 0) {
+            delta = true;
+            d.pdf = -d.pdf;
+        }
         const bool nothing = !delta && d.pdf == 0;
         const auto weight = a.subspan(4);
         const bool finite = std::ranges::all_of(weight, [](double v) { return std::isfinite(v); });
         if (nothing && !finite) return {{0, 0, 1}, 0, std::nan("")};
         if (nothing || (hello_.hemisphere && d.wi.z <= 0 && d.pdf >= 0)) return {{0, 0, 1}, 0};
         if (!hello_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
-        if (delta) d.delta = d.pdf != 0 ? d.pdf : delta_never_chosen, d.pdf = 0;
+        if (delta) {
+            d.delta = d.pdf != 0 ? d.pdf : delta_never_chosen;
+            d.pdf = 0;
+        }
         take_weight(weight, d);
         return d;
     }
     static void take_weight(std::span<const double> weight, Draw& d) {
         if (weight.size() == 1) d.weight = weight[0];
-        if (weight.size() == 3) d.weights = {weight[0], weight[1], weight[2]}, d.weight = luminance(d.weights);
+        if (weight.size() == 3) {
+            d.weights = {weight[0], weight[1], weight[2]};
+            d.weight = luminance(d.weights);
+        }
     }
     /// a: the coordinates of a point of the domain, its pdf and weights.
     Draw drawn_point(std::span<const double> a, const PrimarySample& u) const {
@@ -573,7 +585,8 @@ HandshakeError settle_domain(Handshake& out) {
     if (out.traits.number) {
         if (out.delta || out.weight || !out.uses.empty())
             return {"no delta=, weight= and uses= with domain=number", "got one of them"};
-        out.traits.wo = Traits::WoDomain::none, out.traits.has_pdf = false;
+        out.traits.wo = Traits::WoDomain::none;
+        out.traits.has_pdf = false;
         return {};
     }
     if (!out.domain) return {};

@@ -147,16 +147,20 @@ private:
     void send(std::string_view bytes, const std::string& what) {
         for (Clock::time_point last = Clock::now(); !bytes.empty();) {
             const ssize_t n = process_.write(bytes);
-            if (n > 0) bytes.remove_prefix(static_cast<std::size_t>(n)), last = Clock::now();
-            else if (n < 0 && errno != EAGAIN && errno != EINTR) throw_ended(what);
+            if (n > 0) {
+                bytes.remove_prefix(static_cast<std::size_t>(n));
+                last = Clock::now();
+            } else if (n < 0 && errno != EAGAIN && errno != EINTR) throw_ended(what);
             else wait(true, last, what);
         }
     }
     void receive(std::span<char> to, const std::string& what) {
         for (Clock::time_point last = Clock::now(); !to.empty();) {
             const ssize_t n = process_.read(to.data(), to.size());
-            if (n > 0) to = to.subspan(static_cast<std::size_t>(n)), last = Clock::now();
-            else if (n == 0) throw_ended(what);
+            if (n > 0) {
+                to = to.subspan(static_cast<std::size_t>(n));
+                last = Clock::now();
+            } else if (n == 0) throw_ended(what);
             else wait(false, last, what);
         }
     }
@@ -255,7 +259,9 @@ public:
         std::vector<Vec3d> wi;
         for (std::size_t first = 0; first < u.size(); first += plugin_rows) {
             const std::size_t rows = std::min<std::size_t>(plugin_rows, u.size() - first);
-            numbers.clear(), wi.resize(rows), pdf.resize(rows);
+            numbers.clear();
+            wi.resize(rows);
+            pdf.resize(rows);
             for (const PrimarySample& row : u.subspan(first, rows))
                 for (int k = 0; k < info_.numbers; ++k) numbers.push_back(row[k]);
             const std::vector<ExternalRun> run = {on_surface(wo, surface_, rows)};
@@ -301,7 +307,8 @@ private:
         std::vector<Vec3d> wi;
         for (std::size_t first = 0; first < at.size(); first += plugin_rows) {
             const std::size_t rows = std::min<std::size_t>(plugin_rows, at.size() - first);
-            runs.clear(), wi.clear();
+            runs.clear();
+            wi.clear();
             for (const auto& [wo, direction] : at.subspan(first, rows)) {
                 const bool same =
                     !runs.empty() && runs.back().wo.x == wo.x && runs.back().wo.y == wo.y && runs.back().wo.z == wo.z;

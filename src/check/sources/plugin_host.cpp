@@ -56,7 +56,8 @@ struct Pipes {
             const ssize_t n = ::read(in, at, size);
             if (n < 0 && errno == EINTR) continue;
             if (n <= 0) return false;
-            at += n, size -= static_cast<std::size_t>(n);
+            at += n;
+            size -= static_cast<std::size_t>(n);
         }
         return true;
     }
@@ -65,7 +66,8 @@ struct Pipes {
             const ssize_t n = ::write(out, at, size);
             if (n < 0 && errno == EINTR) continue;
             if (n <= 0) leave();
-            at += n, size -= static_cast<std::size_t>(n);
+            at += n;
+            size -= static_cast<std::size_t>(n);
         }
     }
     void write(const std::string& text) const { write(text.data(), text.size()); }
@@ -150,7 +152,8 @@ struct Library {
         if (uses.find_first_of(" \n") != std::string::npos)
             throw Fault{"crescent_sampler_uses gives '" + uses + "': expected names separated by commas"};
         if (!find("crescent_sampler_sample", sample)) throw missing("crescent_sampler_sample");
-        find("crescent_sampler_pdf", pdf), find("crescent_sampler_f", f);
+        find("crescent_sampler_pdf", pdf);
+        find("crescent_sampler_f", f);
         if (find("crescent_sampler_numbers", how_many)) numbers = called("crescent_sampler_numbers", how_many);
         if (numbers < 1 || numbers > 8)
             throw Fault{"it takes " + std::to_string(numbers) + " random numbers a sample: expected 1 to 8"};
@@ -181,13 +184,16 @@ struct Columns {
 
     bool read(const Pipes& pipes, const PluginRequest& request) {
         const std::size_t columns = request.columns;
-        wo.resize(3 * request.rows), surface.resize(columns * request.rows);
+        wo.resize(3 * request.rows);
+        surface.resize(columns * request.rows);
         run.resize((4 + columns) * request.runs);
         if (!pipes.read(run.data(), run.size() * sizeof(double))) return false;
         std::size_t row = 0;
         for (const double* r = run.data(); r != run.data() + run.size(); r += 4 + columns)
-            for (auto left = static_cast<std::size_t>(r[0]); left > 0 && row < request.rows; --left, ++row)
-                std::copy_n(r + 1, 3, &wo[3 * row]), std::copy_n(r + 4, columns, surface.data() + columns * row);
+            for (auto left = static_cast<std::size_t>(r[0]); left > 0 && row < request.rows; --left, ++row) {
+                std::copy_n(r + 1, 3, &wo[3 * row]);
+                std::copy_n(r + 4, columns, surface.data() + columns * row);
+            }
         return true;
     }
 };
@@ -196,8 +202,14 @@ void answer(
     const Pipes& pipes, const Library& library, const PluginRequest& request, const Columns& with, void* memory) {
     const char* function = "crescent_sampler_sample";
     Library::Answer at_directions = nullptr;
-    if (request.operation == 'p') function = "crescent_sampler_pdf", at_directions = library.pdf;
-    if (request.operation == 'f') function = "crescent_sampler_f", at_directions = library.f;
+    if (request.operation == 'p') {
+        function = "crescent_sampler_pdf";
+        at_directions = library.pdf;
+    }
+    if (request.operation == 'f') {
+        function = "crescent_sampler_f";
+        at_directions = library.f;
+    }
     const std::size_t n = request.rows;
     const PluginRows rows(memory, n, at_directions ? 3 : library.numbers);
     const int code = called(function, [&] {
@@ -238,7 +250,8 @@ void serve_plugin(const char* path) {
     if (memory == MAP_FAILED) ::_exit(1);
     ::close(3);
     const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    ::dup2(nothing, 0), ::dup2(2, 1);
+    ::dup2(nothing, 0);
+    ::dup2(2, 1);
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     reset_signals();
     start_watching(pipes.in);

@@ -33,7 +33,10 @@ public:
         double q = 0;
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             const Vec3d given = pairs[i].wo;
-            if (i == 0 || given.x != wo.x || given.y != wo.y || given.z != wo.z) wo = given, q = scale_at(wo);
+            if (i == 0 || given.x != wo.x || given.y != wo.y || given.z != wo.z) {
+                wo = given;
+                q = scale_at(wo);
+            }
             const double target = traits_.density(pairs[i].wi, out[i]);
             // Over another domain f is the target times a factor of measure, which h has too.
             out[i] = target > 0 ? bounded(target, q) * (out[i] / target) : target;
@@ -55,8 +58,10 @@ private:
         std::vector<Pair> pairs;
         std::vector<std::size_t> indices;
         for (std::size_t i = 0; i < draws.size(); ++i)
-            if (draws[i].pdf > 0 && draws[i].weight && std::isfinite(dot(draws[i].wi, draws[i].wi)))
-                pairs.push_back({wo, draws[i].wi}), indices.push_back(i);
+            if (draws[i].pdf > 0 && draws[i].weight && std::isfinite(dot(draws[i].wi, draws[i].wi))) {
+                pairs.push_back({wo, draws[i].wi});
+                indices.push_back(i);
+            }
         std::vector<double> answers(pairs.size()), out(draws.size());
         inner().f(pairs, answers);
         for (std::size_t k = 0; k < pairs.size(); ++k) out[indices[k]] = traits_.density(pairs[k].wi, answers[k]);

@@ -98,7 +98,10 @@ NumberTable read_npy(FileDiagnostics& in, std::istream& file, const std::vector<
     file.read(first.data(), static_cast<std::streamsize>(first.size()));
     first.resize(static_cast<std::size_t>(file.gcount()));
     const NpyHeader h = read_npy_header(in.path, first);
-    const auto reject = [&](const std::string& message) { in.add(0, 0, message), in.throw_if_any(); };
+    const auto reject = [&](const std::string& message) {
+        in.add(0, 0, message);
+        in.throw_if_any();
+    };
     if (h.shape.size() != 2)
         reject(fmt::format("expected a two-dimensional array, not one of {} dimensions", h.shape.size()));
     const std::size_t rows = h.shape[0], columns = h.shape[1];
@@ -132,10 +135,15 @@ int NumberTable::column(std::string_view name) const {
 }
 
 NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<std::string>>& layouts) {
-    if (is_named_pipe(in.path)) in.add(0, 0, "is a named pipe; expected a regular file"), in.throw_if_any();
+    if (is_named_pipe(in.path)) {
+        in.add(0, 0, "is a named pipe; expected a regular file");
+        in.throw_if_any();
+    }
     std::ifstream file(in.path, std::ios::binary);
-    if (!file || file.peek() == std::ifstream::traits_type::eof())
-        in.add(0, 0, file ? "is empty" : "cannot be read"), in.throw_if_any();
+    if (!file || file.peek() == std::ifstream::traits_type::eof()) {
+        in.add(0, 0, file ? "is empty" : "cannot be read");
+        in.throw_if_any();
+    }
     if (in.path.ends_with(".npy")) return read_npy(in, file, layouts);
     NumberTable t = read_csv(in, file);
     name_columns(in, t, layouts);
@@ -193,9 +201,10 @@ void SampleFile::read_samples(const std::string& path) {
     std::vector<std::string> with = without;
     with.emplace_back("f");
     const NumberTable t = read_table_file(in, {without, with});
-    if (t.rows() < 1000)
-        in.add(0, 0, fmt::format("{} samples are too few for a check; expected at least 1000", t.rows())),
-            in.throw_if_any();
+    if (t.rows() < 1000) {
+        in.add(0, 0, fmt::format("{} samples are too few for a check; expected at least 1000", t.rows()));
+        in.throw_if_any();
+    }
     const int f = t.column("f");
     has_drawn_f_ = f >= 0;
     lines_ = t.lines;
@@ -232,19 +241,22 @@ void SampleFile::read_table(const std::string& path) {
         rows_ = distinct(cos, tolerance);
         columns_ = distinct(phi, tolerance);
     }
-    if (rows_.size() < 2 || columns_.size() < 2 || rows_.size() * columns_.size() != p.size())
+    if (rows_.size() < 2 || columns_.size() < 2 || rows_.size() * columns_.size() != p.size()) {
         in.add(0, 0,
             fmt::format("expected a full grid: {} heights of cos theta and {} angles phi are not {} entries",
-                rows_.size(), columns_.size(), p.size())),
-            in.throw_if_any();
+                rows_.size(), columns_.size(), p.size()));
+        in.throw_if_any();
+    }
     row_edges_ = edges_of(rows_, rows_.front() < -1e-6 ? -1 : 0, 1);
     column_edges_ = edges_of(columns_, 0, 2 * pi);
     values_.assign(p.size(), std::nan(""));
     for (std::size_t i = 0; i < p.size(); ++i)
         values_[nearest_of(rows_, cos[i]) * columns_.size() + nearest_of(columns_, phi[i])] = p[i];
     for (double v : values_)
-        if (std::isnan(v))
-            in.add(0, 0, "expected a full grid: a cell is missing and another occurs twice"), in.throw_if_any();
+        if (std::isnan(v)) {
+            in.add(0, 0, "expected a full grid: a cell is missing and another occurs twice");
+            in.throw_if_any();
+        }
 }
 
 /// Whether nine of ten samples have exactly the value of their cell.

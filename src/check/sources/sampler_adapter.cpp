@@ -268,8 +268,12 @@ Side PerDirectionCache::of(const CheckCase& check_case, std::uint32_t stream) {
     if (!check_case.adapter->serial())
         return out.check_case.adapter = cached(check_case.adapter), out;  // called by many threads
     const std::array<double, 3> wo = {check_case.wo.x, check_case.wo.y, check_case.wo.z};
-    if (cached_of_ != check_case.adapter || wo != wo_)
-        cached_of_ = check_case.adapter, wo_ = wo, stream_ = stream, cache_ = cached(check_case.adapter, true);
+    if (cached_of_ != check_case.adapter || wo != wo_) {
+        cached_of_ = check_case.adapter;
+        wo_ = wo;
+        stream_ = stream;
+        cache_ = cached(check_case.adapter, true);
+    }
     out.stream = stream_;
     out.check_case.adapter = cache_;
     return out;

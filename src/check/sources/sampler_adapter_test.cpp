@@ -52,7 +52,11 @@ TEST(CaseLights, OfOtherKindsHaveTheirPower) {
 
 TEST(CheckCases, AreDescribedByTheirDirectionAndParameters) {
     CheckCase t;
-    t.theta_deg = 60, t.azimuth_deg = 250, t.parameters = {{"s", 32}}, t.brdf = "Lambert", t.lighting = "fill";
+    t.theta_deg = 60;
+    t.azimuth_deg = 250;
+    t.parameters = {{"s", 32}};
+    t.brdf = "Lambert";
+    t.lighting = "fill";
     EXPECT_EQ(t.text(), "w_o 60 deg az 250, s=32, Lambert, fill");
     auto sky = std::make_shared<check::FunctionSampler>();
     sky->of.wo = Traits::WoDomain::none;
@@ -140,7 +144,8 @@ TEST(CachedSamplers, KeepDrawsOnRequest) {
     const auto cache = cached(inner, true);
     std::vector<PrimarySample> u{{0.1, 0.2}, {0.3, 0.4}};
     std::vector<Draw> first(2), second(2);
-    cache->sample(0, {0, 0, 1}, u, first), cache->sample(0, {0, 0, 1}, u, second);
+    cache->sample(0, {0, 0, 1}, u, first);
+    cache->sample(0, {0, 0, 1}, u, second);
     EXPECT_EQ(inner->draws, 2);
     EXPECT_EQ(first[1].wi.x, second[1].wi.x);
     u[1].y = 0.5;
@@ -161,7 +166,8 @@ TEST(CachedSamplers, KeepNothingOfACallThatFails) {
 
 TEST(SidesOfAComparison, ShareThePrograms) {
     CheckCase a;
-    a.adapter = std::make_shared<Program>(), a.wo = {0, 0, 1};
+    a.adapter = std::make_shared<Program>();
+    a.wo = {0, 0, 1};
     CheckCase b = a;
     b.brdf = "another surface";
     PerDirectionCache cache;

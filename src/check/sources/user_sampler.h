@@ -308,7 +308,8 @@ template <class D> Draw described(const D& d) {
     Draw out{direction(d.wi), 1};
     if constexpr (requires { d.pdf; }) out.pdf = number_of(d.pdf);
     const auto set_weight = [&](Vec3d w, bool coloured) {
-        out.weights = w, out.weight = coloured ? luminance(w) : w.x;
+        out.weights = w;
+        out.weight = coloured ? luminance(w) : w.x;
     };
     if constexpr (requires { d.weight; }) set_weight(colour(d.weight), Coloured<Bare<decltype(d.weight)>>);
     else if constexpr (requires { colour(d.f); }) {
@@ -321,7 +322,10 @@ template <class D> Draw described(const D& d) {
         q = std::is_same_v<Bare<decltype(d.delta)>, bool> ? (d.delta ? out.pdf : 0) : static_cast<double>(d.delta);
     else if constexpr (requires { d.IsSpecular(); }) q = d.IsSpecular() ? out.pdf : 0;
     else if constexpr (requires { d.specular; }) q = d.specular ? out.pdf : 0;
-    if (q > 0) out.delta = q, out.pdf = 0;
+    if (q > 0) {
+        out.delta = q;
+        out.pdf = 0;
+    }
     return out;
 }
 template <class D> Draw drawn(const D& d) {

@@ -28,7 +28,8 @@ template <class S> Draw drawn(const UserSampler<S>& s, PrimarySample u, Vec3d wo
 }
 template <class S> std::pair<double, double> pdf_and_f(const UserSampler<S>& s, Pair at) {
     double p = 0, f = 0;
-    s.pdf(0, {&at, 1}, {&p, 1}), s.f({&at, 1}, {&f, 1});
+    s.pdf(0, {&at, 1}, {&p, 1});
+    s.f({&at, 1}, {&f, 1});
     return {p, f};
 }
 
@@ -65,7 +66,8 @@ TEST(UserSamplers, HaveTheirNumbersInOrder) {
 /// Outputs by reference; false: no sample.
 struct Written {
     bool sample(const Float3& wo, std::array<double, 2> u, Float3& wi, float* pdf) {
-        wi = wo, *pdf = 2;
+        wi = wo;
+        *pdf = 2;
         return u[0] < 0.5;
     }
 };
@@ -250,7 +252,8 @@ TEST(UserSamplers, AreInconclusiveAfterTheLimitOfTime) {
 TEST(UserSamplers, HaveTheSameResultWithAndWithoutALimitOfTime) {
     TestSettings limited, unlimited;
     limited.wo = unlimited.wo = {{30, 0}};
-    limited.seconds = 3600, unlimited.seconds = 0;
+    limited.seconds = 3600;
+    unlimited.seconds = 0;
     const CheckResult a = check_sampler("fast", Lambert{}, limited), b = check_sampler("fast", Lambert{}, unlimited);
     EXPECT_EQ(a.state, State::right);
     ASSERT_EQ(a.verdicts.size(), b.verdicts.size());

@@ -97,7 +97,8 @@ void test_deltas(const Evidence& e, const Visit& visit) {
     double sum = 0, otherwise = 0;
     for (const DeltaPart& p : o.deltas.parts(o.independent)) {
         test_delta_share(p, o.independent, visit);
-        sum += p.q, otherwise += static_cast<double>(p.otherwise);
+        sum += p.q;
+        otherwise += static_cast<double>(p.otherwise);
     }
     const bool certain = sum > 1 + same_number;
     visit({Family::delta_share, -1, sum - 1, 0, same_number, certain ? 0.0 : 1.0, 1});

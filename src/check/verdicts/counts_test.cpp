@@ -50,10 +50,15 @@ TEST(TestsOfCounts, RepeatedDirectionsOfALatticeAreFound) {
 /// A mirror that is drawn with probability `drawn` and states q, over a cosine.
 FunctionSampler coat(double drawn, double q) {
     FunctionSampler s;
-    s.of.delta = true, s.of.numbers = 3;
+    s.of.delta = true;
+    s.of.numbers = 3;
     s.change = [drawn, q](const PrimarySample& u, Draw& d) {
         if (u[2] >= drawn) return;
-        d.wi = {0, 0, 1}, d.pdf = 0, d.delta = q, d.weight = 0.5 / q, d.weights = {0.5 / q, 0, 0};
+        d.wi = {0, 0, 1};
+        d.pdf = 0;
+        d.delta = q;
+        d.weight = 0.5 / q;
+        d.weights = {0.5 / q, 0, 0};
     };
     s.p = [q](Vec3d o, Vec3d w) { return (1 - q) * cosine_pdf(o, w); };
     return s;
@@ -70,7 +75,11 @@ TEST(TestsOfDeltaParts, CompareTheirDrawsWithTheirProbability) {
 TEST(TestsOfDeltaParts, TheirProbabilitiesSumToOneAtMost) {
     FunctionSampler s = coat(1, 0.6);
     s.change = [](const PrimarySample& u, Draw& d) {
-        d.wi = {0, 0, u.x < 0.5 ? 1.0 : -1.0}, d.pdf = 0, d.delta = 0.6, d.weight = 1, d.weights = {1, 0, 0};
+        d.wi = {0, 0, u.x < 0.5 ? 1.0 : -1.0};
+        d.pdf = 0;
+        d.delta = 0.6;
+        d.weight = 1;
+        d.weights = {1, 0, 0};
     };
     EXPECT_EQ(SampledEvidence(s).least(test_deltas, Family::delta_share)->p(), 0);
 }
@@ -78,10 +87,17 @@ TEST(TestsOfDeltaParts, TheirProbabilitiesSumToOneAtMost) {
 TEST(TestsOfDeltaParts, SeveralWeightsOrManyDirectionsAreFound) {
     FunctionSampler weights = coat(1, 1), scattered = coat(1, 1);
     weights.change = [](const PrimarySample& u, Draw& d) {
-        d.wi = {0, 0, 1}, d.pdf = 0, d.delta = 1, d.weight = u.x < 0.5 ? 1 : 2, d.weights = {*d.weight, 0, 0};
+        d.wi = {0, 0, 1};
+        d.pdf = 0;
+        d.delta = 1;
+        d.weight = u.x < 0.5 ? 1 : 2;
+        d.weights = {*d.weight, 0, 0};
     };
     scattered.change = [](const PrimarySample&, Draw& d) {
-        d.pdf = 0, d.delta = 1, d.weight = 1, d.weights = {1, 0, 0};
+        d.pdf = 0;
+        d.delta = 1;
+        d.weight = 1;
+        d.weights = {1, 0, 0};
     };
     EXPECT_EQ(SampledEvidence(weights).least(test_deltas, Family::delta_weight)->p(), 0);
     EXPECT_EQ(SampledEvidence(weights).least(test_deltas, Family::delta_scatter)->p(), 1);

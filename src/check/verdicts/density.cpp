@@ -15,8 +15,13 @@ namespace crescent::check {
 // must be empty are fully significant.
 
 NodeSums& operator+=(NodeSums& to, const NodeSums& o) {
-    to.drawn += o.drawn, to.claimed += o.claimed, to.second += o.second, to.solid_angle += o.solid_angle;
-    to.variance += o.variance, to.doubt += o.doubt, to.known_to += o.known_to;
+    to.drawn += o.drawn;
+    to.claimed += o.claimed;
+    to.second += o.second;
+    to.solid_angle += o.solid_angle;
+    to.variance += o.variance;
+    to.doubt += o.doubt;
+    to.known_to += o.known_to;
     to.largest = std::max(to.largest, o.largest);
     return to;
 }
@@ -119,7 +124,8 @@ void test_nodes(const Evidence& e, const Visit& visit) {
             s.share * sums[i].drawn, s.claim_variance / (s.variance + 1e-300)});
         if (s.smaller_half < e.least) continue;
         const auto depth = static_cast<std::size_t>(nodes[i].depth);
-        chi[depth] += std::min(z2, 1e6), ++degrees[depth];
+        chi[depth] += std::min(z2, 1e6);
+        ++degrees[depth];
         // The mean of a replicate must be nearly normal: with fewer draws the tail of Student's t is wrong by orders of
         // magnitude.
         if (by_sets && nodes[i].depth < replicated_depth && s.smaller_half / replicate_sets >= e.least)
@@ -157,7 +163,8 @@ void add_leaves(const Evidence& e, ByBand<Band>& to) {
             const double moved = std::min(node.step / (r.width(along_phi) + 1e-300), 1.0);
             for (double k = std::floor(from); k < past; ++k) {
                 Band& band = to[axis * bands + static_cast<std::size_t>(k)];
-                band.sums.variance += leaf.bridge.variance, band.sums.doubt += leaf.bridge.doubt;
+                band.sums.variance += leaf.bridge.variance;
+                band.sums.doubt += leaf.bridge.doubt;
                 band.sums.known_to += known_to(e, l);
                 band.sums.largest =
                     std::max({band.sums.largest, 1 / e.observations.independent, leaf.per_point * tree.leaves()[l].q});
@@ -172,8 +179,11 @@ ByBand<Band> bands_of(const Evidence& e) {
     for (std::size_t i = 0; i < out.size(); ++i) {
         const Estimate& claimed = e.integrals.bridge_by_band[i];
         NodeSums& s = out[i].sums;
-        s.drawn = e.observations.bands[i] / e.observations.independent, s.claimed = claimed.value;
-        s.second = e.integrals.second_by_band[i], s.variance = claimed.variance, s.doubt = claimed.doubt;
+        s.drawn = e.observations.bands[i] / e.observations.independent;
+        s.claimed = claimed.value;
+        s.second = e.integrals.second_by_band[i];
+        s.variance = claimed.variance;
+        s.doubt = claimed.doubt;
     }
     add_leaves(e, out);
     return out;
@@ -192,7 +202,8 @@ void test_bands(const Evidence& e, const Visit& visit) {
                 for (std::size_t k = 0; k < bands; ++k) {
                     Band& to = k >= first && k < first + width ? inside : outside;
                     const Band& from = finest[axis * bands + k];
-                    to.sums += from.sums, to.moved += from.moved;
+                    to.sums += from.sums;
+                    to.moved += from.moved;
                 }
                 const NodeSums &a = inside.sums, &b = outside.sums;
                 if (std::min(a.drawn + b.drawn, a.claimed + b.claimed) * n < e.least) continue;

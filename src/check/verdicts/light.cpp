@@ -45,12 +45,14 @@ void test_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
     for (std::size_t i = nodes.size(); i-- > 0;) {
         if (nodes[i].child < 0) {
             const auto l = static_cast<std::size_t>(nodes[i].leaf);
-            drawn[i] = e.observations.weight_leaves[l][c], expected[i] = e.integrals.light.leaves[l][c];
+            drawn[i] = e.observations.weight_leaves[l][c];
+            expected[i] = e.integrals.light.leaves[l][c];
             continue;
         }
         for (int half : {0, 1}) {
             const auto k = static_cast<std::size_t>(nodes[i].child + half);
-            drawn[i].add(drawn[k]), expected[i].add(expected[k]);
+            drawn[i].add(drawn[k]);
+            expected[i].add(expected[k]);
         }
         const WeightSums& w = drawn[i];
         if (i == 0 || nodes[i].depth > mean_depth || w.count < mean_draws || w.largest * w.largest * 20 > w.square)
@@ -78,7 +80,10 @@ void test_albedo(const Evidence& e, int channel, const Visit& visit) {
 
 bool tail_may_be_heavy(std::span<const double> weights) {
     double mean = 0, largest = 0;
-    for (double x : weights) mean += x / static_cast<double>(weights.size()), largest = std::max(largest, x);
+    for (double x : weights) {
+        mean += x / static_cast<double>(weights.size());
+        largest = std::max(largest, x);
+    }
     if (largest <= bounded_weight * mean) return false;
     std::vector<double> w(weights.begin(), weights.end());
     const std::size_t m = std::min(tail_length(w.size()) + 1, w.size());

@@ -62,15 +62,22 @@ TEST(TestsOfLight, LightWherePIsZeroIsFound) {
 
 TEST(TestsOfLight, WithoutAPdfWeightsAreComparedByNodes) {
     FunctionSampler s = of_lambert(0.5);
-    s.of.has_pdf = false, s.weights = nullptr;
-    s.change = [](const PrimarySample&, Draw& d) { d.pdf = 1, d.weight = 0.5, d.weights = {0.5, 0, 0}; };
+    s.of.has_pdf = false;
+    s.weights = nullptr;
+    s.change = [](const PrimarySample&, Draw& d) {
+        d.pdf = 1;
+        d.weight = 0.5;
+        d.weights = {0.5, 0, 0};
+    };
     const auto right = SampledEvidence(s).least(test_light, Family::mean);
     ASSERT_TRUE(right);
     EXPECT_GT(right->members, 5);
     EXPECT_GT(right->p(), 1e-3);
     s.change = [](const PrimarySample&, Draw& d) {  // the mean of all is right
         const double w = d.wi.y > 0 ? 0.6 : 0.4;
-        d.pdf = 1, d.weight = w, d.weights = {w, 0, 0};
+        d.pdf = 1;
+        d.weight = w;
+        d.weights = {w, 0, 0};
     };
     EXPECT_LT(SampledEvidence(s).least(test_light, Family::mean)->p(), 1e-6);
 }

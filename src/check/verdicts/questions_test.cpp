@@ -11,7 +11,9 @@ namespace crescent::check {
 namespace questions_test {
 
 void test_density(const Evidence& e, const Visit& visit) {
-    test_sums(e, visit), test_nodes(e, visit), test_bands(e, visit);
+    test_sums(e, visit);
+    test_nodes(e, visit);
+    test_bands(e, visit);
 }
 
 TEST(CheckFamilies, HaveANameAndAVerdictEach) {
@@ -78,7 +80,9 @@ TEST(TestsOfDensity, WithoutAPdfThereAreNone) {
 // 60 of 100 draws in a half that p gives 1/2: the difference 0.1, the variance 1/4 / 100 and that of the integrals.
 TEST(SplitsOfNodes, CompareShares) {
     NodeSums a, b;
-    a.drawn = 0.6, b.drawn = 0.4, a.claimed = b.claimed = a.second = b.second = 0.5;
+    a.drawn = 0.6;
+    b.drawn = 0.4;
+    a.claimed = b.claimed = a.second = b.second = 0.5;
     a.variance = b.variance = 1e-4;
     const NodeSplit s = split_between(a, b, 100, 0.01);
     EXPECT_DOUBLE_EQ(s.share, 0.5);

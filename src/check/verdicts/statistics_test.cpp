@@ -88,7 +88,8 @@ TEST(TwoStages, TheSecondTestsTheSameMemberAndSign) {
 TEST(VerdictKinds, AreSkippedWithoutWhatTheyNeed) {
     FunctionSampler with_f, without_pdf, with_delta;
     with_f.f_value = lambert(0.5);
-    without_pdf.of.has_pdf = false, with_delta.of.delta = true;
+    without_pdf.of.has_pdf = false;
+    with_delta.of.delta = true;
     const auto applied = [](const SamplerAdapter& s) {
         std::string out;
         for (std::size_t k = 0; k < verdict_names.size(); ++k)

@@ -92,7 +92,8 @@ void test_sums(const Evidence& e, const Visit& visit) {
         Answer a{
             sum_kinds[q].family, q >= centre_x ? q - centre_x : 0, mean - claimed.value, 0, floor, 1, claimed.value};
         const double v = drawn_variance(e, q) + claimed.variance;
-        a.sd = std::sqrt(v), a.claimed = claimed.variance / (v + 1e-300);
+        a.sd = std::sqrt(v);
+        a.claimed = claimed.variance / (v + 1e-300);
         const double beyond = std::fabs(a.difference) - floor, nu = freedom(v, claimed.doubt);
         const bool vary = draws_vary(e, q);
         a.p = vary ? bennett_p(bennett_z2(beyond, v, 1 / n, nu)) : student_p_of(beyond, v, nu);
@@ -102,7 +103,8 @@ void test_sums(const Evidence& e, const Visit& visit) {
         a.family = sum_kinds[q].by_sets;
         a.difference = sets.mean - claimed.value;
         const double w = sets.variance + claimed.variance + unmet[at] / o.scrambled;
-        a.sd = std::sqrt(w), a.claimed = claimed.variance / (w + 1e-300);
+        a.sd = std::sqrt(w);
+        a.claimed = claimed.variance / (w + 1e-300);
         a.p = student_p_of(std::fabs(a.difference) - floor, w,
             freedom(w, claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1)));
         visit(a);

@@ -83,8 +83,12 @@ ComparePlan plan_of_candidate(const Suite& suite, const SuiteView& view, const s
     ComparePlan plan;
     plan.file = suite.file.empty() ? "crescent compare" : suite.file;
     RenderArm& arm = plan.arms.emplace_back();
-    arm.name = "candidate", arm.at = {plan.file, 0, 0}, arm.files = files, arm.layer = suite.options.layer;
-    plan.regions = view.regions, plan.flip = false;
+    arm.name = "candidate";
+    arm.at = {plan.file, 0, 0};
+    arm.files = files;
+    arm.layer = suite.options.layer;
+    plan.regions = view.regions;
+    plan.flip = false;
     return plan;
 }
 
@@ -94,8 +98,10 @@ Json statistics_of(const RenderStats& all) {
     const double k = static_cast<double>(arm.files.size());
     for (std::size_t r = 0; r < all.regions.size(); ++r) {
         std::vector<double> means, spreads;
-        for (const auto& render : arm.regions)
-            means.push_back(render[r].y), spreads.push_back(k > 1 ? render[r].spread * k / (k - 1) : std::nan(""));
+        for (const auto& render : arm.regions) {
+            means.push_back(render[r].y);
+            spreads.push_back(k > 1 ? render[r].spread * k / (k - 1) : std::nan(""));
+        }
         const MeanInterval m = mean_interval(means, confidence);
         Json& at = out["regions"][all.regions[r].name];
         at = {{"mean_y", crescent::number(m.mean)}};

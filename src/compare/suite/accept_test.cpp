@@ -89,8 +89,10 @@ protected:
 };
 
 TEST_F(Accepting, TheCandidateBecomesTheBaseline) {
-    renders("base/a-", noise, 10, 3), renders("base/b-", noise, 20, 2);
-    renders("out/a-", brighter, 30, 2), renders("out/b-", noise, 40, 2);
+    renders("base/a-", noise, 10, 3);
+    renders("base/b-", noise, 20, 2);
+    renders("out/a-", brighter, 30, 2);
+    renders("out/b-", noise, 40, 2);
     write("base/README", "mine");
     const std::string candidate = contents_of(path("out/a-1.exr"));
     accept({"a"});
@@ -126,7 +128,8 @@ TEST_F(Accepting, UnknownViewsAreRefused) {
 }
 
 TEST_F(Accepting, TheBaselineIsReadAgainUnderTheLock) {
-    renders("out/a-", noise, 30, 2), renders("out/b-", noise, 40, 2);
+    renders("out/a-", noise, 30, 2);
+    renders("out/b-", noise, 40, 2);
     int readings = 0;
     accept({"a"}, "", "a reason", [&] {
         if (++readings == 2) return;  // another process accepts b after this one has read the suite
@@ -141,7 +144,8 @@ TEST_F(Accepting, TheBaselineIsReadAgainUnderTheLock) {
 }
 
 TEST_F(Accepting, ABaselineThatDiffersFromItsManifestIsUnreadable) {
-    renders("out/a-", noise, 30, 3), renders("out/b-", noise, 40, 3);
+    renders("out/a-", noise, 30, 3);
+    renders("out/b-", noise, 40, 3);
     accept({});
     const std::string bytes = contents_of(path("base/a-1.exr"));
     std::string damaged = bytes;
@@ -156,19 +160,23 @@ TEST_F(Accepting, ABaselineThatDiffersFromItsManifestIsUnreadable) {
     EXPECT_THAT(view("a").sentence, HasSubstr("base/a-1.exr: no such file of the baseline"));
     write("base/a-1.exr", "version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 1\n");
     EXPECT_THAT(view("a").sentence, HasSubstr("git lfs pull"));
-    write("base/a-1.exr", bytes), write("base/a-7.exr", bytes);
+    write("base/a-1.exr", bytes);
+    write("base/a-7.exr", bytes);
     EXPECT_THAT(view("a").sentence, HasSubstr("base/a-7.exr: baseline.json does not list this file"));
     fs::remove(path("base/a-7.exr"));
     EXPECT_EQ(view("a").state, ViewState::same);
     for (const char* name : {"base/a-0.exr", "base/a-1.exr", "base/a-2.exr"}) fs::remove(path(name));
-    fs::remove(path("out/a-0.exr")), fs::remove(path("out/a-1.exr")), fs::remove(path("out/a-2.exr"));
+    fs::remove(path("out/a-0.exr"));
+    fs::remove(path("out/a-1.exr"));
+    fs::remove(path("out/a-2.exr"));
     EXPECT_EQ(view("a").state, ViewState::unreadable);  // nothing but the manifest has the view
     accept({"a"});
     EXPECT_EQ(compare().views.size(), 1u);
 }
 
 TEST_F(Accepting, ALessInformativeBaselineNeedsAReason) {
-    renders("out/a-", noise, 30, 3), renders("out/b-", noise, 40, 3);
+    renders("out/a-", noise, 30, 3);
+    renders("out/b-", noise, 40, 3);
     accept({}, "", "");
     fs::remove(path("out/a-2.exr"));
     EXPECT_THAT(refusal([&] { return accept({"a"}, "", ""); }), HasSubstr("fewer renders than the 3"));
@@ -194,7 +202,8 @@ TEST_F(Accepting, PixelsThatAreNotFiniteNeedAReason) {
 }
 
 TEST_F(Accepting, LinkedFilesAndFoldersAreFollowed) {
-    renders("out/a-", noise, 30, 2), renders("out/b-", noise, 40, 2);
+    renders("out/a-", noise, 30, 2);
+    renders("out/b-", noise, 40, 2);
     accept({});
     fs::create_directories(path("annex"));
     for (const char* name : {"a-0.exr", "a-1.exr", "b-0.exr", "b-1.exr"}) {
@@ -235,13 +244,15 @@ TEST_F(Accepting, MomentsGiveTheNumbersOfTheirRenders) {
     }
     fs::create_directories(path("kept"));
     const SuiteResult before = compare(region);
-    fs::rename(path("out"), path("candidate")), fs::rename(path("base"), path("out"));
+    fs::rename(path("out"), path("candidate"));
+    fs::rename(path("base"), path("out"));
     accept({}, "store = \"moments\"\n" + region);
     EXPECT_THAT(baseline(),
         UnorderedElementsAre("same-moments.exr", "other-moments.exr", "baseline.json", ".crescent-baseline"));
     EXPECT_LT(static_cast<double>(fs::file_size(path("base/same-moments.exr"))),
         2.1 * static_cast<double>(fs::file_size(path("out/same-0.exr"))));
-    fs::remove_all(path("out")), fs::rename(path("candidate"), path("out"));
+    fs::remove_all(path("out"));
+    fs::rename(path("candidate"), path("out"));
     const SuiteResult after = compare(region);
     for (std::size_t v = 0; v < 2; ++v) {
         const ViewResult &a = before.views[v], &b = after.views[v];

@@ -53,8 +53,12 @@ void forget_places(BiasResult& means) {
         t.differs = false;
         for (MeanTest& c : t.channels) c.differs = false;
     }
-    means.tiles.different = 0, means.tiles_found.clear(), means.tiles_by.clear();
-    means.pixels_different = 0, means.pixels_found.clear(), means.pixels_by.clear();
+    means.tiles.different = 0;
+    means.tiles_found.clear();
+    means.tiles_by.clear();
+    means.pixels_different = 0;
+    means.pixels_found.clear();
+    means.pixels_by.clear();
     for (FailedGroups& g : means.non_finite.groups) g.differs = false;
     means.missed_events.reset();
 }
@@ -192,9 +196,10 @@ void decide_compared(ViewResult& view) {
     if (!view.non_finite.empty()) {
         view.state = ViewState::changed;
         view.sentence = view.non_finite + (changed && !view.exact ? " " + means.sentence : "");
-    } else if (view.exact)
-        view.state = changed ? ViewState::changed : ViewState::same, view.sentence = exact_sentence(view);
-    else if (changed || outliers || render) {
+    } else if (view.exact) {
+        view.state = changed ? ViewState::changed : ViewState::same;
+        view.sentence = exact_sentence(view);
+    } else if (changed || outliers || render) {
         view.state = ViewState::changed;
         view.sentence = changed ? means.sentence : "";
     } else if (variance > 0) {
@@ -205,14 +210,19 @@ void decide_compared(ViewResult& view) {
         view.state = ViewState::changed;
         view.sentence = variance_sentence(view, -1) + " The same noise is asked (noise = \"same\").";
         add_sentence(view.sentence, power_sentence(means));
-    } else if (!view.too_few.empty()) view.state = ViewState::too_few, view.sentence = too_few_sentence(view);
-    else if (variance < 0)
-        view.state = ViewState::improved,
+    } else if (!view.too_few.empty()) {
+        view.state = ViewState::too_few;
+        view.sentence = too_few_sentence(view);
+    } else if (variance < 0) {
+        view.state = ViewState::improved;
         view.sentence = "Same mean. " + variance_sentence(view, -1) + " " + power_sentence(means);
-    else if (means.identical)
-        view.state = ViewState::same,
+    } else if (means.identical) {
+        view.state = ViewState::same;
         view.sentence = "Identical: every render has the same value in every tested channel.";
-    else view.state = ViewState::same, view.sentence = power_sentence(means);
+    } else {
+        view.state = ViewState::same;
+        view.sentence = power_sentence(means);
+    }
     if (doubtful) add_sentence(view.sentence, outlier_render_sentence(view.outlier_render, render));
     if (!view.exact) add_sentence(view.sentence, outliers_sentence(view, outliers));
     add_sentence(view.sentence, other_channels_sentence(view));
@@ -240,7 +250,10 @@ std::string changed_means(const ViewResult& view) {
         if (t.differs && (!shown || t.welch.p < shown->welch.p)) shown = region = &t;
     for (const MeanTest& t : view.means->regions)
         for (const MeanTest& c : t.channels)
-            if (!shown && c.differs) shown = &c, region = &t;
+            if (!shown && c.differs) {
+                shown = &c;
+                region = &t;
+            }
     constexpr std::size_t longest_name = 30;
     if (shown)
         return fmt::format("mean {} in {} {} (p = {:.1g})", region == shown ? "Y" : shown->region,

@@ -12,13 +12,18 @@ using ::testing::ElementsAre;
 /// A view with these p-values of its means and variances; the variance is `ratio` times that of the baseline.
 ViewResult view(const std::string& name, double mean_p, double variance_p = 1, double ratio = 1) {
     ViewResult out;
-    out.name = name, out.mean_p = mean_p, out.variance_p = variance_p;
+    out.name = name;
+    out.mean_p = mean_p;
+    out.variance_p = variance_p;
     out.means.emplace();
     out.means->sentence = "differs";
     out.means->tiles.different = 3;
     out.means->regions.emplace_back().smallest = 0.01;
     VarianceTest& test = out.variances.emplace_back();
-    test.region = "frame", test.baseline = 1, test.candidate = ratio, test.welch.p = variance_p;
+    test.region = "frame";
+    test.baseline = 1;
+    test.candidate = ratio;
+    test.welch.p = variance_p;
     return out;
 }
 
@@ -79,7 +84,8 @@ TEST(SuiteDecisions, AnOutlierRenderHasAShareOfTheLevelAndIsNamedFromOnePerCent)
     ViewResult rare = view("a", 1), doubtful = view("b", 1);
     rare.outlier_render = {"a.exr", true, 0, 30, 0.0005};
     doubtful.outlier_render = {"b.exr", true, 0, 10, 0.009};
-    doubtful.too_few = "in frame: too few", doubtful.renders_needed = 99;
+    doubtful.too_few = "in frame: too few";
+    doubtful.renders_needed = 99;
     SuiteResult found;
     EXPECT_THAT(states_of({rare, doubtful}, &found), ElementsAre(ViewState::changed, ViewState::too_few));
     EXPECT_THAT(found.views[0].sentence, ::testing::HasSubstr("a.exr does not belong"));
@@ -97,7 +103,8 @@ TEST(SuiteDecisions, TooFewRendersDoNotHideADifference) {
 TEST(SuiteDecisions, DeterministicViewsNeedNoLevel) {
     ViewResult equal = view("a", 1), moved = view("b", 0), missing, added;
     equal.exact = moved.exact = true;
-    missing.state = ViewState::missing, added.state = ViewState::added;
+    missing.state = ViewState::missing;
+    added.state = ViewState::added;
     SuiteResult found;
     EXPECT_THAT(states_of({equal, moved, missing, added}, &found),
         ElementsAre(ViewState::same, ViewState::changed, ViewState::missing, ViewState::added));

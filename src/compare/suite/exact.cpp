@@ -91,10 +91,12 @@ ExactDifference exact_difference(const RenderStats& all, const std::optional<Tol
             const bool is_alpha = q == most_quantities - 1;
             const double count = steps.between(b, c, is_alpha), share = b == 0 ? HUGE_VAL : off / std::fabs(b);
             const double of_largest = steps.whole() ? count / (steps.levels() - 1) : off;
-            out.share = std::max(out.share, share), out.absolute = std::max(out.absolute, off);
+            out.share = std::max(out.share, share);
+            out.absolute = std::max(out.absolute, off);
             if (count > out.steps) {
                 out.steps = count;
-                out.x = static_cast<int>(i) % all.width, out.y = static_cast<int>(i) / all.width;
+                out.x = static_cast<int>(i) % all.width;
+                out.y = static_cast<int>(i) / all.width;
             }
             if (!tolerance) continue;
             const double size = tolerance->unit == Tolerance::Unit::ulp ? count
@@ -102,7 +104,8 @@ ExactDifference exact_difference(const RenderStats& all, const std::optional<Tol
                                                                         : of_largest;
             beyond |= size > tolerance->size * slack;
         }
-        out.different += differs, out.beyond += beyond;
+        out.different += differs;
+        out.beyond += beyond;
     }
     return out;
 }

@@ -35,7 +35,10 @@ public:
             files[k].hash = pixel_hash(render);
             const std::size_t bytes = 4 * sizeof(float) * render.size();
             const Guard guard(lock_);
-            if (kept_ + bytes <= most_kept) kept_ += bytes, files[k].render = std::move(render);
+            if (kept_ + bytes <= most_kept) {
+                kept_ += bytes;
+                files[k].render = std::move(render);
+            }
         });
         for (std::size_t k = 0; k < paths.size(); ++k) files_.emplace(paths[k], std::move(files[k]));
     }
@@ -110,19 +113,26 @@ std::optional<MomentsHeader> moments_of(const SuiteView& view) {
 ComparePlan plan_for(const Suite& suite, const SuiteView& view, const std::vector<std::string>& baseline,
     const std::vector<std::string>& candidate) {
     ComparePlan plan;
-    plan.file = suite.file.empty() ? "crescent compare" : suite.file, plan.title = view.name;
+    plan.file = suite.file.empty() ? "crescent compare" : suite.file;
+    plan.title = view.name;
     for (const auto& [name, files] : {std::pair{"baseline", baseline}, std::pair{"candidate", candidate}}) {
         RenderArm& arm = plan.arms.emplace_back();
         arm.moments = files.size() == 1 && is_moments(files.front());
-        arm.name = name, arm.at = {plan.file, 0, 0}, arm.files = files, arm.layer = suite.options.layer;
+        arm.name = name;
+        arm.at = {plan.file, 0, 0};
+        arm.files = files;
+        arm.layer = suite.options.layer;
     }
     plan.regions = view.regions;
     constexpr int blocks = 256;  // a quarter of the default: enough to find correlation over the renders of a side
-    plan.flip = plan.count_pixel_p = false, plan.spectrum_blocks = blocks;
-    plan.find_outliers = plan.shared_noise = true, plan.look = suite.look;
+    plan.flip = plan.count_pixel_p = false;
+    plan.spectrum_blocks = blocks;
+    plan.find_outliers = plan.shared_noise = true;
+    plan.look = suite.look;
     plan.pair = suite.pair(view) == Pairing::always;
     plan.find_pairs = suite.pair(view) == Pairing::automatic;
-    plan.brightest = suite.options.brightest, plan.exposure = suite.options.exposure;
+    plan.brightest = suite.options.brightest;
+    plan.exposure = suite.options.exposure;
     return plan;
 }
 
@@ -142,7 +152,8 @@ VarianceTest test_variance(const RenderStats& all, const CompareResult& measured
     }
     const MeanInterval b = mean_interval(spreads_of(all.arms[0], region), confidence),
                        c = mean_interval(spreads_of(all.arms[1], region), confidence);
-    out.baseline = b.mean, out.candidate = c.mean;
+    out.baseline = b.mean;
+    out.candidate = c.mean;
     for (const ArmResult& arm : measured.arms)
         if (arm.regions[region].heavy()) out.why = fmt::format("heavy tail: a few pixels decide that of {}", arm.name);
     if (!out.why.empty()) return out;
@@ -162,7 +173,8 @@ void test_variances(
                          m = static_cast<double>(all.arms[1].files.size());
             test.welch.p = anytime_p(test.welch.difference / test.welch.se, test.welch.df, n * m / (n + m));
         }
-        ++tested, out.variance_p = std::fmin(out.variance_p, test.welch.p);
+        ++tested;
+        out.variance_p = std::fmin(out.variance_p, test.welch.p);
     }
     if (tested > 0) out.variance_p = std::min(1.0, out.variance_p * tested);
     for (VarianceTest& test : out.variances)
@@ -239,7 +251,8 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
             const MeanInterval m = mean_interval(values, confidence);
             return m.se * m.se * static_cast<double>(m.n);
         };
-        power.variance_a = variance(all.arms[means.arm_a]), power.variance_b = variance(all.arms[means.arm_b]);
+        power.variance_a = variance(all.arms[means.arm_a]);
+        power.variance_b = variance(all.arms[means.arm_b]);
         if (std::isnan(power.variance_a)) power.variance_a = power.variance_b;  // one render
         if (std::isnan(power.variance_b)) power.variance_b = power.variance_a;
     }
@@ -288,14 +301,16 @@ void state_power(const RenderStats& all, const CompareResult& measured, double l
         if (out.too_few.empty()) out.too_few = fmt::format("in {} {}", t.region, why);
         const double of_region = level / 2 / static_cast<double>(means.regions.size()) * level_share(0, all.quantities);
         const auto n = renders_for(all, means, t, measured.arms, r, out.smallest, of_region);
-        known &= n.has_value(), needed = std::max(needed, n.value_or(0));
+        known &= n.has_value();
+        needed = std::max(needed, n.value_or(0));
     }
-    if (means.non_finite.undecided && out.too_few.empty())
+    if (means.non_finite.undecided && out.too_few.empty()) {
         out.too_few = fmt::format(
             "{} pixels are not finite in half of the renders of one side or more and in none of "
             "the other",
-            means.non_finite.undecided),
+            means.non_finite.undecided);
         known = false;
+    }
     const std::size_t present = std::min(all.arms[0].files.size(), all.arms[1].files.size());
     if (!out.too_few.empty() && known && needed > present) out.renders_needed = needed;
 }
@@ -303,8 +318,12 @@ void state_power(const RenderStats& all, const CompareResult& measured, double l
 /// Removes the results per pixel and tile, so that the memory of a suite does not grow with the pixels of its views.
 void drop_places(BiasResult& means) {
     means.different_pixels = {};
-    means.tiles.p = {}, means.tiles.quantity = {}, means.tiles.difference = {}, means.tiles.differs = {};
-    means.non_finite.a.pixels = {}, means.non_finite.b.pixels = {};
+    means.tiles.p = {};
+    means.tiles.quantity = {};
+    means.tiles.difference = {};
+    means.tiles.differs = {};
+    means.non_finite.a.pixels = {};
+    means.non_finite.b.pixels = {};
 }
 
 /// Returns whether all of several renders of a side have the same pixels.
@@ -343,7 +362,9 @@ ViewOutliers view_outliers(const RenderStats& all, double alpha) {
     constexpr std::size_t named = 3;
     ViewOutliers out;
     const OutlierPixels& found = all.outliers;
-    out.baseline = found.groups[0], out.candidate = found.groups[1], out.set_apart = found.set_apart;
+    out.baseline = found.groups[0];
+    out.candidate = found.groups[1];
+    out.set_apart = found.set_apart;
     const double baseline = static_cast<double>(all.arms[0].files.size()),
                  candidate = static_cast<double>(all.arms[1].files.size());
     const std::size_t more =
@@ -394,13 +415,15 @@ std::uint64_t pixel_hash(const Render& render) {
 ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t compared, ProgressMonitor& monitor,
     const RenderSource& source) {
     ViewResult out;
-    out.name = view.name, out.smallest = suite.smallest(view);
+    out.name = view.name;
+    out.smallest = suite.smallest(view);
     if (suite.manifest) throw_if_any(manifest_differences(*suite.manifest, view.name, view.baseline));
     ViewFiles files(view, suite.options.layer, source, monitor);
     const std::vector<std::string> baseline = files.different(view.baseline, "baseline", out.notes),
                                    candidate = files.different(view.candidate, "candidate", out.notes);
     const std::optional<MomentsHeader> moments = moments_of(view);
-    out.baseline_renders = moments ? moments->renders : baseline.size(), out.candidate_renders = candidate.size();
+    out.baseline_renders = moments ? moments->renders : baseline.size();
+    out.candidate_renders = candidate.size();
     out.moments = moments.has_value();
     if (baseline.empty() || candidate.empty()) {
         out.state = baseline.empty() ? ViewState::added : ViewState::missing;
@@ -429,10 +452,12 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     out.means = test_bias(plan, all, measured, 1, 0, level, quiet);
     out.mean_p = out.means->p;
     out.non_finite = one_sided_failures(all);
-    out.width = all.width, out.height = all.height;
+    out.width = all.width;
+    out.height = all.height;
     out.notes.insert(out.notes.end(), all.warnings.begin(), all.warnings.end());
     out.noise = suite.noise(view);
-    out.spp_baseline = stated_spp(all.arms[0]), out.spp_candidate = stated_spp(all.arms[1]);
+    out.spp_baseline = stated_spp(all.arms[0]);
+    out.spp_candidate = stated_spp(all.arms[1]);
     if (out.means->identical) out.other_channels = other_channels(suite, all);
     if (out.exact) {
         if (!out.means->identical) out.exact_difference = exact_difference(all, view.tolerance);
@@ -456,12 +481,13 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
             state_power(all, measured, level.each, out);
         }
         const auto side = constant_baseline ? "baseline" : "candidate";
-        if (constant_baseline || constant_candidate)
+        if (constant_baseline || constant_candidate) {
             out.too_few = fmt::format(
                 "all {} renders of the {} have the same pixels, those of the other side do not: "
                 "give each render its own seed",
-                constant_baseline ? view.baseline.size() : view.candidate.size(), side),
+                constant_baseline ? view.baseline.size() : view.candidate.size(), side);
             out.renders_needed = 3;
+        }
     }
     picture_both_sides(suite, all, *out.means, out);
     drop_places(*out.means);

@@ -61,7 +61,10 @@ std::vector<double> relative_differences(const RenderStats& all, const BiasResul
         count[c] += 1;
     }
     double mean = 0, counted = 0;
-    for (std::size_t c = 0; c < cells; ++c) mean += brightness[c], counted += count[c];
+    for (std::size_t c = 0; c < cells; ++c) {
+        mean += brightness[c];
+        counted += count[c];
+    }
     mean = counted > 0 ? mean / counted : 0;
     std::vector<double> out(cells, std::nan(""));
     for (std::size_t c = 0; c < cells; ++c)  // a hundredth of the mean, so that black cells do not decide the scale
@@ -135,12 +138,14 @@ void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSou
     const Render read = source.read((added ? view.candidate : view.baseline).front(), suite.options.layer);
     all.primaries = read.primaries;
     const Render first = in_rec709(all, read);
-    out.width = first.width, out.height = first.height;
+    out.width = first.width;
+    out.height = first.height;
     ViewPictures& to = out.pictures;
     const std::size_t bytes = png_of(photograph(first, largest_width, suite.options.exposure)).size();
     within_budget(suite, first.width, bytes, to, [&](int width) {
         const plates::Block block = photograph(first, width, suite.options.exposure);
-        to.width = block.width, to.height = block.height;
+        to.width = block.width;
+        to.height = block.height;
         (added ? to.candidate : to.baseline) = png_of(block);
     });
 }
@@ -152,7 +157,8 @@ void picture_both_sides(const Suite& suite, const RenderStats& all, const BiasRe
     const std::vector<unsigned char> largest_png = png_of(largest);
     within_budget(suite, all.width, largest_png.size(), to, [&](int width) {
         const plates::Block first = photograph(baseline, width, suite.options.exposure);
-        to.width = first.width, to.height = first.height;
+        to.width = first.width;
+        to.height = first.height;
         to.baseline = png_of(first);
         to.candidate = to.width == largest.width && to.height == largest.height
             ? largest_png

@@ -31,7 +31,8 @@ TEST(SuitePictures, OfOneSideShowItsFirstRender) {
     source.read = [](const std::string& path, const std::string&) { return Render(path, 1600, 8); };
     ViewResult added, missing;
     SuiteView only_candidate, only_baseline;
-    only_candidate.candidate = {"c"}, only_baseline.baseline = {"b"};
+    only_candidate.candidate = {"c"};
+    only_baseline.baseline = {"b"};
     picture_one_side(suite, only_candidate, source, added);
     picture_one_side(suite, only_baseline, source, missing);
     EXPECT_EQ(added.width, 1600);
@@ -44,9 +45,11 @@ TEST(SuitePictures, OfOneSideShowItsFirstRender) {
 
 std::pair<RenderStats, BiasResult> a_ramp_and_a_brighter_one() {
     MemoryRenders m;
-    m.put_grey("a", 64, ramp(1)), m.put_grey("b", 64, ramp(1.5f));
+    m.put_grey("a", 64, ramp(1));
+    m.put_grey("b", 64, ramp(1.5f));
     BiasResult means;
-    means.arm_a = 1, means.arm_b = 0;
+    means.arm_a = 1;
+    means.arm_b = 0;
     return {m.read(), means};
 }
 
@@ -71,9 +74,13 @@ TEST(SuitePictures, SignificanceIsShownWhereNoiseDoesNotExplainIt) {
     EXPECT_TRUE(out.pictures.significance.empty());  // nothing differs
     const std::size_t count = all.tiles.count();
     ASSERT_GT(count, 2u);
-    means.tiles.p.assign(count, 0.5), means.tiles.quantity.assign(count, 0), means.tiles.differs.assign(count, false);
+    means.tiles.p.assign(count, 0.5);
+    means.tiles.quantity.assign(count, 0);
+    means.tiles.differs.assign(count, false);
     means.tiles.difference = {std::vector<double>(count, 1)};
-    means.tiles.p[0] = 1e-20, means.tiles.differs[0] = true, means.tiles.different = 1;
+    means.tiles.p[0] = 1e-20;
+    means.tiles.differs[0] = true;
+    means.tiles.different = 1;
     means.tiles.p[1] = std::nan("");
     picture_both_sides({}, all, means, out);
     const std::vector<unsigned char> image = pixels_of(out.pictures.significance);
@@ -86,10 +93,12 @@ TEST(SuitePictures, SignificanceIsShownWhereNoiseDoesNotExplainIt) {
 
 TEST(SuitePictures, OfManyViewsAreSmaller) {
     MemoryRenders m;
-    m.put("a", 1, 400), m.put("b", 2, 400);
+    m.put("a", 1, 400);
+    m.put("b", 2, 400);
     const RenderStats all = m.read();
     BiasResult means;
-    means.arm_a = 1, means.arm_b = 0;
+    means.arm_a = 1;
+    means.arm_b = 0;
     const auto width = [&](std::size_t views) {
         Suite suite;
         suite.views.resize(views);

@@ -37,7 +37,10 @@ std::string with_values(
         const auto* found = std::find_if(std::begin(values), std::end(values),
             [&](const auto& value) { return std::string_view(word).substr(i).starts_with(value.first); });
         if (found == std::end(values)) result += word[i++];
-        else result += *found->second, i += found->first.size();
+        else {
+            result += *found->second;
+            i += found->first.size();
+        }
     }
     return result;
 }
@@ -128,12 +131,22 @@ RenderCommand parse_render_command(const std::string& text, const std::string& f
         const char c = text[i];
         const bool escapes = c == '\\' && quote != '\'';
         if (escapes && i + 1 == text.size()) fail("expected a character after the last backslash");
-        if (escapes) word += text[++i], begun = true;
-        else if (quote && c == quote) quote = 0;
+        if (escapes) {
+            word += text[++i];
+            begun = true;
+        } else if (quote && c == quote) quote = 0;
         else if (quote) word += c;
-        else if (c == '\'' || c == '"') quote = c, begun = true;
-        else if (c != ' ' && c != '\t' && c != '\n') word += c, begun = true;
-        else if (begun) out.words.push_back(std::move(word)), word.clear(), begun = false;
+        else if (c == '\'' || c == '"') {
+            quote = c;
+            begun = true;
+        } else if (c != ' ' && c != '\t' && c != '\n') {
+            word += c;
+            begun = true;
+        } else if (begun) {
+            out.words.push_back(std::move(word));
+            word.clear();
+            begun = false;
+        }
     }
     if (quote) fail(fmt::format("expected the end of the text in {}", quote));
     if (begun) out.words.push_back(std::move(word));

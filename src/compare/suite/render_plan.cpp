@@ -63,24 +63,31 @@ namespace {
 
 ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compared) {
     ViewPlan out;
-    out.name = view.name, out.smallest = suite.smallest(view);
+    out.name = view.name;
+    out.smallest = suite.smallest(view);
     ComparePlan plan;
     plan.file = suite.file.empty() ? "crescent compare" : suite.file;
     RenderArm& arm = plan.arms.emplace_back();
-    arm.name = "baseline", arm.at = {plan.file, 0, 0}, arm.layer = suite.options.layer;
+    arm.name = "baseline";
+    arm.at = {plan.file, 0, 0};
+    arm.layer = suite.options.layer;
     arm.moments = view.baseline.size() == 1 && has_moments(view.baseline.front());
     const RenderSource source = files_read_with(suite.options.reading());
     std::vector<std::uint64_t> hashes;
     for (const std::string& path : view.baseline) {
         const std::uint64_t hash = pixel_hash(source.read(path, arm.moments ? "" : arm.layer));
-        if (std::find(hashes.begin(), hashes.end(), hash) == hashes.end())
-            hashes.push_back(hash), arm.files.push_back(path);
+        if (std::find(hashes.begin(), hashes.end(), hash) == hashes.end()) {
+            hashes.push_back(hash);
+            arm.files.push_back(path);
+        }
     }
-    plan.regions = view.regions, plan.flip = false;
+    plan.regions = view.regions;
+    plan.flip = false;
     ProgressMonitor quiet;
     const RenderStats all = read_all(plan, quiet, source);
     const ArmStats& baseline = all.arms[0];
-    out.renders = baseline.files.size(), out.spp = baseline.files[0].spp;
+    out.renders = baseline.files.size();
+    out.spp = baseline.files[0].spp;
     if (out.renders < 2) {
         out.why = view.baseline.size() > 1 ? "deterministic: its renders have the same pixels, one is enough"
                                            : "one render has no variance: two or more are needed";
@@ -96,14 +103,18 @@ ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compar
         std::array<std::optional<std::size_t>, 3> needed;
         for (std::size_t s = 0; s < plan_samples.size(); ++s) {
             RegionPower power;
-            power.mean = std::fabs(m.mean), power.variance_a = power.variance_b = variance / plan_samples[s];
+            power.mean = std::fabs(m.mean);
+            power.variance_a = power.variance_b = variance / plan_samples[s];
             power.estimate_df = static_cast<double>(m.n - 1);
             needed[s] = renders_needed(power, out.smallest, level);
         }
         constexpr std::size_t as_rendered = 1;
         const auto& most = out.needed[as_rendered];
         if (!out.region.empty() && needed[as_rendered] && (!most || *needed[as_rendered] <= *most)) continue;
-        out.region = all.regions[r].name, out.needed = needed, out.mean = m.mean, out.deviation = std::sqrt(variance);
+        out.region = all.regions[r].name;
+        out.needed = needed;
+        out.mean = m.mean;
+        out.deviation = std::sqrt(variance);
     }
     return out;
 }
@@ -164,7 +175,8 @@ std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& pl
         if (plan.spp) view["spp"] = crescent::number(*plan.spp);
         if (!plan.why.empty()) view["why"] = plan.why;
         else {
-            view["region"] = plan.region, view["mean_y"] = crescent::number(plan.mean);
+            view["region"] = plan.region;
+            view["mean_y"] = crescent::number(plan.mean);
             view["standard_deviation_of_render_mean"] = crescent::number(plan.deviation);
             for (std::size_t s = 0; s < plan_samples.size(); ++s)
                 view["needed"].push_back({{"samples", plan_samples[s]},

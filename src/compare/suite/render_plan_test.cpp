@@ -24,7 +24,8 @@ TEST(RenderPower, PowerFollowsTheNumberOfRenders) {
 
 TEST(RenderPower, AnEstimatedErrorNeedsALargerDifference) {
     Welch test;
-    test.se = 2, test.df = 14;
+    test.se = 2;
+    test.df = 14;
     const double known = found_difference(test, 1e12, 0.01), estimated = found_difference(test, 14, 0.01);
     // Normal approximation of s: c = t m2 + z sqrt(1 + t^2 / (2 df)), with t(14) = 2.9768 at 1 %.
     const double t = 2.97684, m2 = 1 - 1.0 / 56;

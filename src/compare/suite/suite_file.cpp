@@ -223,7 +223,9 @@ void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baselin
         const auto stated = std::find_if(
             suite.views.begin(), suite.views.end(), [&](const SuiteView& view) { return view.name == name; });
         SuiteView& view = views.emplace_back(stated == suite.views.end() ? SuiteView{} : *stated);
-        view.name = name, view.baseline = baseline[name], view.candidate = candidate[name];
+        view.name = name;
+        view.baseline = baseline[name];
+        view.candidate = candidate[name];
     }
     suite.views = std::move(views);
 }

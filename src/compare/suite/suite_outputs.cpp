@@ -18,9 +18,12 @@ Json mean_json(const MeanTest& t) {
     Json out = {
         {"baseline", crescent::number(t.b)}, {"candidate", crescent::number(t.a)}, {"differs_in", t.differs_in()}};
     if (!t.why.empty()) out["why"] = t.why;
-    else
-        out["p"] = p_json(t.joint_p), out["standard_error"] = crescent::number(t.welch.se),
-        out["smallest"] = crescent::number(t.smallest), out["paired"] = t.paired;
+    else {
+        out["p"] = p_json(t.joint_p);
+        out["standard_error"] = crescent::number(t.welch.se);
+        out["smallest"] = crescent::number(t.smallest);
+        out["paired"] = t.paired;
+    }
     if (!t.caveat.empty()) out["doubt"] = t.caveat;
     return out;
 }
@@ -72,7 +75,8 @@ Json view_json(const ViewResult& view) {
     if (!view.means) return out;
     const BiasResult& means = *view.means;
     for (const MeanTest& t : means.regions) out["means"][t.region] = mean_json(t);
-    out["identical"] = means.identical, out["paired"] = means.paired;
+    out["identical"] = means.identical;
+    out["paired"] = means.paired;
     out["tiles"] = {{"tested", means.tiles.tested}, {"different", means.tiles.different},
         {"first", places_json(means.tiles_found)}};
     out["pixels"] = {{"tested", means.pixels_tested}, {"different", means.pixels_different},
@@ -97,8 +101,10 @@ std::string cell(const std::string& text) {
     std::string out;
     for (const char c : printable(text)) {
         if (c == '<') out += "&lt;";
-        else if (std::string_view("|\\`*_[]").find(c) != std::string_view::npos) out += '\\', out += c;
-        else out += c;
+        else if (std::string_view("|\\`*_[]").find(c) != std::string_view::npos) {
+            out += '\\';
+            out += c;
+        } else out += c;
     }
     return out;
 }

@@ -13,14 +13,17 @@ using ::testing::HasSubstr;
 /// One view in each state, named after it.
 SuiteResult every_state() {
     SuiteResult out;
-    for (std::size_t k = view_state_names.size(); k-- > 0;)
-        out.views.emplace_back().name = view_state_names[k], out.views.back().state = static_cast<ViewState>(k);
+    for (std::size_t k = view_state_names.size(); k-- > 0;) {
+        out.views.emplace_back().name = view_state_names[k];
+        out.views.back().state = static_cast<ViewState>(k);
+    }
     return out;
 }
 
 TEST(SuiteOutputs, ListTheMostSevereViewsFirst) {
     SuiteResult result = every_state();
-    result.views.emplace_back().name = "a", result.views.back().state = ViewState::changed;
+    result.views.emplace_back().name = "a";
+    result.views.back().state = ViewState::changed;
     std::vector<std::string> names;
     for (const ViewResult* view : by_state(result)) names.push_back(view->name);
     EXPECT_EQ(names,
@@ -38,10 +41,17 @@ TEST(SuiteOutputs, JunitFailsErrsAndSkips) {
 TEST(SuiteOutputs, JsonHasTheNumbersOfEachView) {
     SuiteResult result = every_state();
     ViewResult& view = result.views[0];
-    view.mean_p = 0.25, view.renders_needed = 12, view.candidate_renders = 4;
+    view.mean_p = 0.25;
+    view.renders_needed = 12;
+    view.candidate_renders = 4;
     MeanTest& test = view.means.emplace().regions.emplace_back();
-    test.region = "frame", test.a = 3, test.b = 2, test.joint_p = 0.5, test.smallest = 0.125;
-    view.variances.emplace_back().region = "frame", view.variances[0].why = "heavy tail";
+    test.region = "frame";
+    test.a = 3;
+    test.b = 2;
+    test.joint_p = 0.5;
+    test.smallest = 0.125;
+    view.variances.emplace_back().region = "frame";
+    view.variances[0].why = "heavy tail";
     const nlohmann::json json = nlohmann::json::parse(suite_json({}, result, true, {}));
     EXPECT_EQ(json["exit_code"], 2);
     EXPECT_EQ(json["counts"]["changed"], 1);
@@ -60,7 +70,8 @@ TEST(SuiteOutputs, MarkdownStaysBelowSixtyKilobytesAndEscapesNames) {
     SuiteResult result;
     for (int k = 0; k < 3000; ++k) {
         ViewResult& view = result.views.emplace_back();
-        view.name = "a|b<i>" + std::to_string(k), view.state = ViewState::changed;
+        view.name = "a|b<i>" + std::to_string(k);
+        view.state = ViewState::changed;
         view.sentence = std::string(300, 'x');
     }
     const std::string text = suite_markdown({}, result, {});

@@ -33,7 +33,10 @@ public:
         renders[path] = std::move(render);
         auto found =
             std::find_if(suite.views.begin(), suite.views.end(), [&](const SuiteView& v) { return v.name == view; });
-        if (found == suite.views.end()) suite.views.emplace_back().name = view, found = suite.views.end() - 1;
+        if (found == suite.views.end()) {
+            suite.views.emplace_back().name = view;
+            found = suite.views.end() - 1;
+        }
         (which == "baseline" ? found->baseline : found->candidate).push_back(path);
     }
     void put_both(const std::string& view, const SyntheticNoise& baseline, const SyntheticNoise& candidate,
@@ -74,7 +77,10 @@ TEST(Suites, EachViewHasTheStateOfItsRenders) {
     s.put("gone", "baseline", 0, noise, 700);
     for (int k = 0; k < 3; ++k)
         for (const char* which : {"baseline", "candidate"}) s.put("fixed", which, k, noise, 800);
-    for (int k = 0; k < 3; ++k) s.put("moved", "baseline", k, noise, 900), s.put("moved", "candidate", k, noise, 901);
+    for (int k = 0; k < 3; ++k) {
+        s.put("moved", "baseline", k, noise, 900);
+        s.put("moved", "candidate", k, noise, 901);
+    }
     const SuiteResult result = s.compare();
     EXPECT_EQ(view_of(result, "same").state, ViewState::same);
     EXPECT_EQ(view_of(result, "changed").state, ViewState::changed);
@@ -109,7 +115,9 @@ void add_bright_pixels(MemorySuite& s, const std::string& path, int count, float
     Render& render = s.renders.at(path);
     for (int k = 0; k < count; ++k) {
         const auto i = static_cast<std::size_t>(37 * (k + 1) % (side * side));
-        render.r[i] += size, render.g[i] += size, render.b[i] += size;
+        render.r[i] += size;
+        render.g[i] += size;
+        render.b[i] += size;
     }
 }
 
@@ -211,9 +219,10 @@ TEST(Suites, CopiesWithinASideAreLeftOut) {
 
 TEST(Suites, EqualSeedsOnOneSideAreFound) {
     MemorySuite s;
-    for (int k = 0; k < 6; ++k)
-        s.put("view", "baseline", k, noise, 2100 + static_cast<std::uint32_t>(k)),
-            s.put("view", "candidate", k, noise, 5);
+    for (int k = 0; k < 6; ++k) {
+        s.put("view", "baseline", k, noise, 2100 + static_cast<std::uint32_t>(k));
+        s.put("view", "candidate", k, noise, 5);
+    }
     const SuiteResult result = s.compare();
     const ViewResult& view = result.views[0];
     EXPECT_EQ(view.state, ViewState::too_few);
@@ -456,7 +465,8 @@ TEST(Suites, AChangedViewIsOneShortSentence) {
     MemorySuite s;
     s.put_both("view", noise, brighter, 200);
     Region& region = s.suite.views[0].regions.emplace_back();
-    region.name = std::string(200, 'r'), region.box = {0, 0, 31, 31};
+    region.name = std::string(200, 'r');
+    region.box = {0, 0, 31, 31};
     const ViewResult view = s.compare().views[0];
     EXPECT_THAT(view.headline, ::testing::StartsWith("Changed: mean Y in "));
     EXPECT_LE(view.headline.size(), longest_headline);
@@ -467,7 +477,8 @@ TEST(Suites, SarifNamesTheLineOfAViewInItsFile) {
     MemorySuite s;
     s.put_both("view", noise, brighter, 200);
     s.put_both("other", noise, noise, 300);
-    s.suite.file = "tests/a suite.toml", s.suite.views[0].at = {"tests/a suite.toml", 7, 2};
+    s.suite.file = "tests/a suite.toml";
+    s.suite.views[0].at = {"tests/a suite.toml", 7, 2};
     const Json sarif = Json::parse(suite_sarif(s.suite, s.compare(), false, {}));
     const Json& results = sarif["runs"][0]["results"];
     ASSERT_GE(results.size(), 1u);

@@ -87,7 +87,8 @@ public:
             SuiteResult out = decision();
             const std::size_t done = static_cast<std::size_t>(
                 std::count_if(views_.begin(), views_.end(), [](const Undecided& v) { return v.decided; }));
-            monitor_.advance(static_cast<double>(done - told)), told = done;
+            monitor_.advance(static_cast<double>(done - told));
+            told = done;
             monitor_.check();
             if (done == views_.size() || std::chrono::steady_clock::now() >= options_.end || !add_renders()) return out;
         }
@@ -106,7 +107,8 @@ private:
             ViewResult& to = out.views.back();
             to.name = files.name;
             if (view.failure.empty()) continue;
-            to.state = ViewState::unreadable, to.sentence = view.failure;
+            to.state = ViewState::unreadable;
+            to.sentence = view.failure;
         }
         decide(suite_, out);
         for (std::size_t k = 0; k < views_.size(); ++k) finish(views_[k], out.views[k]);
@@ -122,8 +124,10 @@ private:
     void measure(Undecided& view, const SuiteView& files, std::size_t compared) {
         if (awaits_renders(files)) {
             ViewResult& none = view.measured.emplace();
-            none.state = ViewState::too_few, none.too_few = "no render was made yet";
-            none.baseline_renders = files.baseline.size(), none.candidate_renders = files.candidate.size();
+            none.state = ViewState::too_few;
+            none.too_few = "no render was made yet";
+            none.baseline_renders = files.baseline.size();
+            none.candidate_renders = files.candidate.size();
             none.renders_needed = first_renders;
             return;
         }
@@ -216,7 +220,9 @@ private:
             SuiteView& files = suite_.views[view->index];
             std::vector<std::string>& side = baseline ? files.baseline : files.candidate;
             side.insert(std::lower_bound(side.begin(), side.end(), jobs[k].out), jobs[k].out);
-            ++view->made, ++view->count[baseline ? 0 : 1], view->seconds[baseline ? 0 : 1] += end.seconds;
+            ++view->made;
+            ++view->count[baseline ? 0 : 1];
+            view->seconds[baseline ? 0 : 1] += end.seconds;
         }
         for (Undecided& view : views_) check_seeds(view);
         return any;

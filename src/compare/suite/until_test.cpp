@@ -56,7 +56,10 @@ struct Made {
             std::vector<RenderEnd> out(jobs.size());
             for (std::size_t k = 0; k < jobs.size(); ++k) {
                 if (!failure.empty()) out[k].failure = failure;
-                else if (made < most) out[k].made = true, ++made;
+                else if (made < most) {
+                    out[k].made = true;
+                    ++made;
+                }
                 seeds.push_back(jobs[k].seed);
             }
             return out;
@@ -82,7 +85,8 @@ TEST(Until, AnUnchangedViewEndsAsSameAndAChangedOneAsChanged) {
 
 TEST(Until, TheEndOfTheBudgetLeavesAViewUndecidedWithANumber) {
     Made few;
-    few.suite.options.smallest = 0.0005, few.most = 5;
+    few.suite.options.smallest = 0.0005;
+    few.most = 5;
     const ViewResult view = few.decide().views[0];
     EXPECT_EQ(view.state, ViewState::too_few);
     EXPECT_THAT(view.headline, HasSubstr("more renders"));
@@ -114,7 +118,8 @@ TEST(Until, HeavyTailsEndAsUndecided) {
         for (std::uint32_t seed = 1; seed < 5; ++seed) {
             Made heavy;
             heavy.before = heavy.after = {Kind::pareto, 1.5};
-            heavy.most = 60, heavy.width = width;
+            heavy.most = 60;
+            heavy.width = width;
             EXPECT_EQ(heavy.decide(seed).views[0].state, ViewState::too_few) << width << " " << seed;
         }
 }
@@ -131,13 +136,15 @@ TEST(Anytime, PHoldsAtEveryLook) {
             bool alarm = false, repeated = false;
             for (int n = 1; n <= renders; ++n) {
                 const double x = normal(random) - 3;
-                sum += x, squares += x * x;
+                sum += x;
+                squares += x * x;
                 if (n < 2) continue;
                 const double mean = sum / n, se = std::sqrt((squares - n * mean * mean) / (n - 1) / n);
                 alarm |= anytime_p(mean / se, n - 1, n) <= alpha;
                 repeated |= two_sided_p(mean / se, n - 1) <= alpha;
             }
-            alarms += alarm, fixed += repeated;
+            alarms += alarm;
+            fixed += repeated;
         }
         const double limit = alpha + 3 * std::sqrt(alpha * (1 - alpha) / runs);
         EXPECT_LE(alarms / static_cast<double>(runs), limit);

@@ -152,7 +152,8 @@ Floats directions(std::uint32_t seed, const Floats& scale) {
         const Vec2<float> u = draw(seed, 2, k);
         const double r = std::min(static_cast<double>(u.x) / static_cast<double>(scale[k]), 0.999),
                      phi = 2 * pi * static_cast<double>(u.y);
-        a[k] = static_cast<float>(r * std::cos(phi)), a[n + k] = static_cast<float>(r * std::sin(phi)),
+        a[k] = static_cast<float>(r * std::cos(phi));
+        a[n + k] = static_cast<float>(r * std::sin(phi));
         a[2 * n + k] = static_cast<float>(std::sqrt(1 - r * r));
     }
     return a;

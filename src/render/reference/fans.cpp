@@ -48,7 +48,9 @@ Fan::Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about
     if (side0 < 0) from = end;
     if (side1 < 0) to = end;
     if (dot(cross(from, to), k) < 0) std::swap(from, to);  // al rises
-    to0 = from, step = to - from, empty = false;
+    to0 = from;
+    step = to - from;
+    empty = false;
 }
 
 Direction Fan::at(double v) const {
@@ -97,7 +99,8 @@ struct FansUnderLobe {
             const Interval part = {open.lo, std::min(open.hi, reach)};
             if (part.empty()) continue;
             const AlongLobe along = lobe_along(point, fan.axis, fan.aside, part, width);
-            sum.lobe += along.value, sum.inner += along.error;
+            sum.lobe += along.value;
+            sum.inner += along.error;
         }
         return fan.slope * sum;
     }
@@ -139,7 +142,9 @@ struct Panel {
             return span.slope(u) * all(fan);
         };
         const TwoRules<FanSum> both = by_two_rules(kronrod_7, f, lo, hi);
-        fine = both.fine, off = both.off, spread = both.spread;
+        fine = both.fine;
+        off = both.off;
+        spread = both.spread;
         for (const double u : {1e-3, 1 - 1e-3})  // between an end of the span and the nearest node
             if (u > lo && u < hi) nodes[count++] = {u, all.fans.edges_at(span.tau(u))};
         std::sort(nodes.begin(), nodes.begin() + count);
@@ -182,9 +187,10 @@ struct Adaptive {
         const FanSum off = panel.expected_off();
         const bool good = all.point.weigh({off.diffuse, off.lobe}) <= tolerance;
         if (depth == halvings || (good && !(panel.kink && depth < first_halvings))) {
-            sum.diffuse += panel.fine.diffuse, sum.lobe += panel.fine.lobe;
-            sum.diffuse_error += std::fabs(panel.off.diffuse),
-                sum.lobe_error += std::fabs(panel.off.lobe) + panel.fine.inner;
+            sum.diffuse += panel.fine.diffuse;
+            sum.lobe += panel.fine.lobe;
+            sum.diffuse_error += std::fabs(panel.off.diffuse);
+            sum.lobe_error += std::fabs(panel.off.lobe) + panel.fine.inner;
             return;
         }
         const double cut = panel.cut(all.fans);
@@ -217,7 +223,8 @@ DiskIntegral fan_by_fan(const DiskPoint& point, AllFans& fans) {
     }
     // Light that passes a slit between two bodies may lie between two fans.
     const double unseen = fans.bodies() > 1 ? 3e-5 : 0;
-    sum.sum.diffuse_error += unseen * std::min(open, 1.0), sum.sum.lobe_error += unseen * sum.sum.lobe;
+    sum.sum.diffuse_error += unseen * std::min(open, 1.0);
+    sum.sum.lobe_error += unseen * sum.sum.lobe;
     return sum.sum;
 }
 
@@ -300,8 +307,10 @@ void AllFans::add_all_cuts() {
     if (about_lobe_)
         for (const double middle : {0.0, pi}) {
             cut(middle, false);
-            for (double off = lobe_stretch(point_); off < pi / 2; off *= 3)
-                cut(middle - off, false), cut(middle + off, false);
+            for (double off = lobe_stretch(point_); off < pi / 2; off *= 3) {
+                cut(middle - off, false);
+                cut(middle + off, false);
+            }
         }
     std::ranges::sort(cuts_, {}, &FanCut::tau);
     std::vector<FanCut> apart;

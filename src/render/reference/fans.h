@@ -84,7 +84,10 @@ public:
     /// Returns the unoccluded parts of a fan: al from and to.
     std::span<const Interval> parts(const OpenFan& fan) const { return {parts_.data() + fan.first_part, fan.parts}; }
     /// Restarts for another lobe; fans already computed are reused.
-    void rewind() { fans_.rewind(), edges_.rewind(); }
+    void rewind() {
+        fans_.rewind();
+        edges_.rewind();
+    }
 
 private:
     struct Body {

@@ -40,7 +40,8 @@ template <class Kind> Techniques try_out(const Kind& kind, Vec3d x) {
             continue;
         }
         const double share = Kind::angle_pdf(light, area.wi) / area.pdf;
-        out.share += share / n, out.share_error += share * share / n;
+        out.share += share / n;
+        out.share_error += share * share / n;
         const double a = std::fabs(Kind::area_pdf(light, area.wi) / area.pdf - 1),
                      b = std::fabs(Kind::angle_pdf(light, angle.wi) / angle.pdf - 1);
         out.worst_pdf = std::max({out.worst_pdf, b, area.pdf < 1e6 ? a : 0.0});
@@ -85,7 +86,8 @@ TEST(LightKinds, ARectangleIsDrawnEvenlyBySolidAngle) {
 /// Returns the test scene with a sphere, a rectangle and a disk light.
 Experiment lit_by_all_kinds(const Rgb& fill) {
     Experiment e = test::small_scene();
-    e.image = {48, 32}, e.fill = fill;
+    e.image = {48, 32};
+    e.fill = fill;
     e.disks.resize(1);
     e.lights.push_back({"bulb", lights::Sphere{{1.4, 1.6, 1.2}, 0.25}, {12, 10, 8}, {}});
     e.lights.push_back(
@@ -104,7 +106,8 @@ void expect_the_reference(const Experiment& e, const std::vector<const char*>& a
         for (std::size_t at = 0; at < film.size(); ++at) {
             difference += static_cast<double>(film.y[at]) - static_cast<double>(reference.y[at]);
             variance += static_cast<double>(film.var[at]);
-            all += static_cast<double>(reference.y[at]), stated += static_cast<double>(reference.error[at]);
+            all += static_cast<double>(reference.y[at]);
+            stated += static_cast<double>(reference.error[at]);
         }
         EXPECT_LT(std::fabs(difference), 4 * std::sqrt(variance) + stated + 1e-5 * all) << arm << " of " << all;
     }
@@ -128,7 +131,9 @@ TEST(LightKinds, GiveTheSameFilmsOnEveryInstructionSet) {
 
 TEST(LightKinds, StandBeforeOneAnother) {
     Experiment e = lit_by_all_kinds({0, 0, 0});
-    e.disks[0].center = {0, 3.5, 0}, e.disks[0].normal = {0, -1, 0}, e.disks[0].radius = 0.5;  // over the window
+    e.disks[0].center = {0, 3.5, 0};
+    e.disks[0].normal = {0, -1, 0};
+    e.disks[0].radius = 0.5;  // over the window
     expect_the_reference(e, {"light-area", "light-solid-angle"}, 256);
 }
 
@@ -145,7 +150,7 @@ Experiment area_lights(double radius, double offset, const std::vector<std::stri
     e.image = {32, 22};
     e.fill = {};
     for (DiskLight& disk : e.disks) disk.radius = radius;
-    e.disks[0].center = {-1.5, 3.5, 1.0},
+    e.disks[0].center = {-1.5, 3.5, 1.0};
     e.disks[1].center = {3, 3, 2};  // an area light of 1 m clears ball, block and ground
     test::shift(e, {offset, -0.5 * offset, offset / 3});
     return e;
@@ -207,7 +212,8 @@ TEST(AreaLights, TheirSizeChangesNoMoreThanTheirLight) {
 TEST(AreaLights, SixtyFourAreAllCounted) {
     Experiment e = area_lights(0.05, 0);
     e.disks.resize(1);
-    e.disks[0].radius = 0.05, e.disks[0].normal = {0, -1, 0};
+    e.disks[0].radius = 0.05;
+    e.disks[0].normal = {0, -1, 0};
     for (int k = 1; k < 64; ++k) {
         DiskLight disk = e.disks[0];
         disk.name = "lamp" + std::to_string(k);
@@ -239,10 +245,13 @@ namespace lights_test {
 /// Returns a floor under a spherical light of radius 0.5 m, 1 m above it.
 Experiment under_a_ball() {
     Experiment e = test::small_scene();
-    e.image = {3, 2}, e.fill = {};
+    e.image = {3, 2};
+    e.fill = {};
     e.shapes.resize(1);
     e.shapes[0].form = shapes::Plane{{0, 0, 0}, {0, 1, 0}};
-    e.camera.eye = {0.3, 2, 3}, e.camera.target = {0, 0, 0}, e.camera.vfov_deg = 10;
+    e.camera.eye = {0.3, 2, 3};
+    e.camera.target = {0, 0, 0};
+    e.camera.vfov_deg = 10;
     e.disks.clear();
     e.lights.push_back({"ball", lights::Sphere{{0, 1.5, 0}, 0.5}, {10, 10, 10}, {}});
     return e;
@@ -261,8 +270,10 @@ void expect_known(const Experiment& e, double doubt, const std::string& what) {
             ASSERT_TRUE(hit);
             const auto at = static_cast<std::size_t>(j * film.width + i);
             const test::Opinion opinion = test::Oracle(scene, *hit, static_cast<std::uint32_t>(at))(20'000);
-            y += static_cast<double>(film.y[at]), stated += static_cast<double>(film.error[at]);
-            truth += opinion.y, variance += opinion.variance;
+            y += static_cast<double>(film.y[at]);
+            stated += static_cast<double>(film.error[at]);
+            truth += opinion.y;
+            variance += opinion.variance;
         }
     EXPECT_NEAR(y, truth, stated + 5 * std::sqrt(variance)) << what;
     EXPECT_LE(stated, doubt * truth) << what;
@@ -270,7 +281,11 @@ void expect_known(const Experiment& e, double doubt, const std::string& what) {
 
 Shape body(const shapes::Quad& quad) {
     Shape s;
-    s.name = "shelf", s.form = quad, s.occludes = true, s.material.rho_d = {0.3, 0.3, 0.3}, s.material.s = 10;
+    s.name = "shelf";
+    s.form = quad;
+    s.occludes = true;
+    s.material.rho_d = {0.3, 0.3, 0.3};
+    s.material.s = 10;
     return s;
 }
 
@@ -288,7 +303,8 @@ TEST(BallLights, ThatOtherLightsCutAreKnown) {
     Experiment e = under_a_ball();
     e.lights.push_back({"sheet", lights::Rectangle{{-1, 1.2, -1}, {2, 0, 0}, {0, 0, 2}, true}, {1, 1, 1}, {}});
     expect_known(e, 0.1, "a bright ball in a sheet of light");
-    e.lights[0].radiance = {1, 1, 1}, e.lights[1].radiance = {10, 10, 10};
+    e.lights[0].radiance = {1, 1, 1};
+    e.lights[1].radiance = {10, 10, 10};
     expect_known(e, 0.1, "a dim ball in a sheet of light");
     e.lights[1].form = lights::Sphere{{0.4, 1.4, 0.2}, 0.45};
     expect_known(e, 0.1, "two balls in one another");
@@ -305,8 +321,10 @@ TEST(BallLights, OfAnySizeShineAlikeOnEveryArm) {
             const Film film = estimate_films(scene, arm, {16384}, 3, "", monitor)[0];
             double y = 0, truth = 0, doubt = 0, variance = 0;
             for (std::size_t at = 0; at < film.y.size(); ++at) {
-                y += static_cast<double>(film.y[at]), variance += static_cast<double>(film.var[at]);
-                truth += static_cast<double>(reference.y[at]), doubt += static_cast<double>(reference.error[at]);
+                y += static_cast<double>(film.y[at]);
+                variance += static_cast<double>(film.var[at]);
+                truth += static_cast<double>(reference.y[at]);
+                doubt += static_cast<double>(reference.error[at]);
             }
             EXPECT_NEAR(y, truth, doubt + 5 * std::sqrt(variance) + 1e-5 * truth) << arm << ", " << radius << " m";
         }

@@ -41,7 +41,8 @@ double lobe_stretch(const DiskPoint& point) {
 LobeShape::LobeShape(const DiskPoint& point) : stretch(lobe_stretch(point)) {
     const Surface& surface = point.surface;
     const LobeWidth across = lobe_info(surface.brdf).width(surface.s, surface.alpha);
-    width = std::min(across.width, 1.0), reach = across.reach;
+    width = std::min(across.width, 1.0);
+    reach = across.reach;
 }
 
 double LobeShape::width_at(double c) const {  // (al cos / width)^2 + (al sin / (width stretch))^2 = 1
@@ -60,7 +61,8 @@ AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval p
         hi = std::max(width, 2 * lo);
         if (hi > 0.75 * part.hi) hi = part.hi;
         const AlongLobe one = panel(kronrod_15, f, lo, hi, 1e-8 * sum.value, 6);
-        sum.value += one.value, sum.error += one.error;
+        sum.value += one.value;
+        sum.error += one.error;
     }
     return sum;
 }

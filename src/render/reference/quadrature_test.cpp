@@ -95,7 +95,9 @@ Experiment area_light_above(double half, bool hidden) {
     e.shapes[1].form = shapes::Quad{{0, 0.5, -9}, {9, 0, 0}, {0, 0, 18}};
     e.shapes[1].occludes = hidden;
     e.disks.resize(1);
-    e.disks[0].center = {0, 1, 0}, e.disks[0].normal = {0, -1, 0}, e.disks[0].radius = std::tan(half);
+    e.disks[0].center = {0, 1, 0};
+    e.disks[0].normal = {0, -1, 0};
+    e.disks[0].radius = std::tan(half);
     return e;
 }
 
@@ -106,7 +108,9 @@ TEST(DiskQuadrature, StatedErrorBoundsTheTrueError) {
             for (const bool hidden : {false, true}) {
                 const Scene scene(area_light_above(half, hidden));
                 Surface surface;
-                surface.rho_d = {0.3, 0.3, 0.3}, surface.rho_s = 0.5, surface.s = s;
+                surface.rho_d = {0.3, 0.3, 0.3};
+                surface.rho_s = 0.5;
+                surface.s = s;
                 const DiskIntegral got = DiskQuadrature(scene, 0)(hit, surface);
                 const double share = hidden ? 0.5 : 1;  // lobe: (s+2) integral cos^(s+1) sin
                 const double diffuse = share * sqr(std::sin(half)),

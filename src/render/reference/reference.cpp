@@ -75,7 +75,8 @@ private:
 
     void look_at(const Hit& hit, AtPixel& pixel) const {
         auto& [surfaces, lights, sums] = pixel;
-        surfaces.clear(), sums.clear();
+        surfaces.clear();
+        sums.clear();
         for (std::size_t e = 0; e < scenes_.size() && (e == 0 || surfaces[0].rho_s > 0); ++e) {
             surfaces.push_back(scenes_[e].surface(hit));
             sums.push_back(under_fill(hit, surfaces[e], albedos_[e]));

@@ -72,7 +72,10 @@ template <class Work> std::vector<ReferenceFilm> by_tiles(
 
 /// Copies a pixel that is the same at both exponents.
 inline void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t at) {
-    to.r[at] = from.r[at], to.g[at] = from.g[at], to.b[at] = from.b[at], to.y[at] = from.y[at],
+    to.r[at] = from.r[at];
+    to.g[at] = from.g[at];
+    to.b[at] = from.b[at];
+    to.y[at] = from.y[at];
     to.error[at] = from.error[at];
 }
 
@@ -82,20 +85,27 @@ inline void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t
 template <class V> class Replay {
 public:
     /// Starts empty.
-    Replay() { asked_.reserve(64), values_.reserve(64); }
+    Replay() {
+        asked_.reserve(64);
+        values_.reserve(64);
+    }
     /// Returns the value for x, valid until the next call; calls make() if x was not used before the last rewind.
     template <class Make> const V& operator()(double x, Make&& make) {
         const auto last = asked_.begin() + static_cast<std::ptrdiff_t>(known_);
         auto at = std::find(asked_.begin() + static_cast<std::ptrdiff_t>(next_), last, x);
         if (at == last) at = std::find(asked_.begin(), last, x);
         if (at == last) {
-            asked_.push_back(x), values_.push_back(make());
+            asked_.push_back(x);
+            values_.push_back(make());
             return values_.back();
         }
         next_ = static_cast<std::size_t>(at - asked_.begin()) + 1;
         return values_[next_ - 1];
     }
-    void rewind() { next_ = 0, known_ = asked_.size(); }
+    void rewind() {
+        next_ = 0;
+        known_ = asked_.size();
+    }
 
 private:
     std::vector<double> asked_;

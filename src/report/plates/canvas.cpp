@@ -208,7 +208,8 @@ void Canvas::dot(double x, double y, double radius, const Colour& c) {
 void Canvas::arrow(Point from, Point to, const Colour& c, double width) {
     double dx = to.x - from.x, dy = to.y - from.y, length = math::hypot(dx, dy);
     if (!(length > 0)) return;
-    dx /= length, dy /= length;
+    dx /= length;
+    dy /= length;
     double head = 4.5 * width, half = 1.7 * width;
     Point neck{to.x - head * dx, to.y - head * dy};
     line(from.x, from.y, neck.x, neck.y, c, width);
@@ -264,7 +265,8 @@ struct Cover {
 
 Cover cover(int pixel, double origin, double size, int cells) {
     Cover c;
-    c.from = std::max((pixel - origin) / size, 0.0), c.to = std::min((pixel + 1 - origin) / size, double(cells));
+    c.from = std::max((pixel - origin) / size, 0.0);
+    c.to = std::min((pixel + 1 - origin) / size, double(cells));
     c.first = static_cast<int>(c.from + 1e-9);
     c.last = std::min(static_cast<int>(std::ceil(c.to - 1e-9)) - 1, cells - 1);
     return c;

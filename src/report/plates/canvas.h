@@ -76,7 +76,9 @@ struct Block {
     /// Pixel (x, y), counted from the top-left.
     void set(int x, int y, const Srgb8& c) {
         unsigned char* p = &rgb[3 * (std::size_t(y) * std::size_t(width) + std::size_t(x))];
-        p[0] = c[0], p[1] = c[1], p[2] = c[2];
+        p[0] = c[0];
+        p[1] = c[1];
+        p[2] = c[2];
     }
 };
 

@@ -192,7 +192,10 @@ std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, const SamplerInf
             if (!hit || (wanted >= 0 && hit->shape != wanted)) continue;
             auto pixel = std::make_shared<const OpenPixel>(scene, i, j);
             const double off = off_the_plane(*pixel, sampler, tilt);
-            if (off < least) least = off, best = std::move(pixel);
+            if (off < least) {
+                least = off;
+                best = std::move(pixel);
+            }
         }
     return best;
 }
@@ -348,7 +351,8 @@ void draw_names(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves
         how.least = 9;
         c.text(line, slope_text(l), how);
         if (!two || l.heavy || !std::isfinite(l.low) || !std::isfinite(l.high)) continue;
-        line.y += h - 2, line.h = 20;
+        line.y += h - 2;
+        line.h = 20;
         c.text(line, signed_number(l.low) + " to " + signed_number(l.high), small_text);
     }
 }

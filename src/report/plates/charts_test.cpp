@@ -66,7 +66,9 @@ TEST(Density, UsesTheFirstLobeOfASceneWithoutAnExponent) {
     Experiment e = test::small_scene();
     for (Shape& shape : e.shapes) shape.material.s.reset();
     Material& material = e.shapes[0].material;
-    material.rho_s = 0.5, material.brdf = lobe_named("ggx"), material.alpha = 0.1;
+    material.rho_s = 0.5;
+    material.brdf = lobe_named("ggx");
+    material.alpha = 0.1;
     const Density smooth(e, "ggx-d", e.s(), 0);
     material.alpha = 0.9;
     EXPECT_GT(smooth.in_plane(0), 5 * Density(e, "ggx-d", e.s(), 0).in_plane(0));

@@ -38,7 +38,8 @@ std::vector<double> values(const Residual& r, const Box& box) {
 Box shown_box(const Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     View all;
-    all.width = e.image.width, all.height = e.image.height;
+    all.width = e.image.width;
+    all.height = e.image.height;
     if (sheet.plan.crop) return inside(*sheet.plan.crop, all);
     return e.regions.empty() ? whole(all) : inside(e.regions[0].box, all);
 }

@@ -126,7 +126,8 @@ void draw_head(Sheet& sheet, const Table& t) {
 void draw_name(Sheet& sheet, const Table& t, const RunMetrics& r, double y, int seeds) {
     Rect line{content_band.x, y, t.name_w, value_h};
     sheet.canvas.text(line, runs_label({r.key}, sheet.experiment()), with(with_px(body_text, 20), Weight::semibold));
-    line.y += value_h, line.h = under_h + 2;
+    line.y += value_h;
+    line.h = under_h + 2;
     if (t.published) {
         sheet.canvas.text(line, "published", small_text);
         line.y += under_h;

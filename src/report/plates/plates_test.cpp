@@ -227,7 +227,10 @@ TEST(Metrics, SevenColumnsFitByFewerBandDigits) {
     world.e.regions.push_back({"all", {0, 0, 95, 53}, {}});
     for (RunMetrics& m : world.metrics.runs) m.regions.push_back({"all", 1.234, 0.5, 10, {}});
     for (SeedSpread& b : world.metrics.bands)
-        if (b.metric == "var.H") b.band.q05 = 7.5968e-4, b.band.q95 = 7.8312e-4;
+        if (b.metric == "var.H") {
+            b.band.q05 = 7.5968e-4;
+            b.band.q95 = 7.8312e-4;
+        }
     const std::vector<Setting> settings = world.settings(world.plan(PlateKind::meters, 2));
     EXPECT_TRUE(has(settings, "0.000760 – 0.000783"));
     EXPECT_TRUE(has(settings, "1.100 – 1.300"));
@@ -299,7 +302,8 @@ Decoded decode(const std::vector<unsigned char>& bytes) {
     });
     png_read_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
     Decoded d;
-    d.width = int(png_get_image_width(png, info)), d.height = int(png_get_image_height(png, info));
+    d.width = int(png_get_image_width(png, info));
+    d.height = int(png_get_image_height(png, info));
     png_bytepp rows = png_get_rows(png, info);
     for (int y = 0; y < d.height; ++y) d.rgb.insert(d.rgb.end(), rows[y], rows[y] + 3 * d.width);
     png_textp text = nullptr;

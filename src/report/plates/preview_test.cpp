@@ -32,7 +32,8 @@ long count_of(const Drawn& d, const std::string& words) {
 
 PlatePlan with_crop(const std::string& name, const Box& crop) {
     PlatePlan plan;
-    plan.name = name, plan.crop = crop;
+    plan.name = name;
+    plan.crop = crop;
     return plan;
 }
 
@@ -77,7 +78,10 @@ TEST(Preview, MarksARegionWhereItLies) {
         for (int x = 78; x < 992; ++x) {
             const std::size_t at = 3 * (std::size_t(y) * 1280 + std::size_t(x));
             const bool differs = !std::equal(&with_region.rgb[at], &with_region.rgb[at] + 3, &plain.rgb[at]);
-            if (differs) left = std::min(left, x), right = std::max(right, x);
+            if (differs) {
+                left = std::min(left, x);
+                right = std::max(right, x);
+            }
         }
     const int picture_left = 78 + (914 - 96 * 9) / 2;
     EXPECT_NEAR(left, picture_left + 12 * 9, 6) << "of region S";

@@ -100,11 +100,13 @@ double Fit::ratio() const { return double(out_w) / in_w; }
 
 Fit fit(int w, int h, double slot_w, double slot_h) {
     Fit f;
-    f.in_w = w, f.in_h = h;
+    f.in_w = w;
+    f.in_h = h;
     double scale = std::min(slot_w / w, slot_h / h);
     if (scale >= 1) {
         f.times = static_cast<int>(scale);
-        f.out_w = w * f.times, f.out_h = h * f.times;
+        f.out_w = w * f.times;
+        f.out_h = h * f.times;
     } else {
         f.reduced = true;
         f.out_w = std::clamp(static_cast<int>(std::lround(w * scale)), 1, std::max(1, static_cast<int>(slot_w)));

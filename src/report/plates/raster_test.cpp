@@ -47,8 +47,10 @@ TEST(PhotographBlock, RepeatsEachPixelAndTurnsRowsTopDown) {
 
 TEST(PhotographBlock, AveragesAreasInLinearLight) {
     Film f(4, 4, 1);
-    for (auto* plane : {&f.r, &f.g, &f.b})
-        plane->assign(16, 0.0f), (*plane)[5] = 1.6f;  // one pixel in four of a quarter
+    for (auto* plane : {&f.r, &f.g, &f.b}) {
+        plane->assign(16, 0.0f);
+        (*plane)[5] = 1.6f;
+    }  // one pixel in four of a quarter
     Block b = photograph_block(view(&f), {0, 0, 3, 3}, fit(4, 4, 2, 2), 1);
     EXPECT_EQ(pixel(b, 0, 1), photograph({0.4, 0.4, 0.4}, 1));
     EXPECT_EQ(pixel(b, 1, 1), (Srgb8{0, 0, 0}));

@@ -50,7 +50,10 @@ Block dome_block(const Density& p, double peak, int r, const Srgb8& nothing) {
             double w = w2 > 0 ? std::sqrt(w2) : 0;
             Direction d{u, v * up - w * away, v * away + w * up};
             block.set(i, j, nothing);
-            if (w2 > 0 && d.z >= 0) seen.push_back(d), pixels.emplace_back(i, j);
+            if (w2 > 0 && d.z >= 0) {
+                seen.push_back(d);
+                pixels.emplace_back(i, j);
+            }
         }
     }
     const std::vector<double> density = p.at(seen);

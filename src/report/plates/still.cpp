@@ -9,7 +9,8 @@ double facts(Sheet& sheet, const std::string& title, const std::string& under_ti
     Rect line = facts_slot;
     line.h = 34;
     sheet.canvas.text(line, title, with_px(title_text, 28));
-    line.y += 40, line.h = 48;
+    line.y += 40;
+    line.h = 48;
     if (!under_title.empty()) {
         line.y = sheet.canvas.text(line, under_title, with_lines(with(body_text, muted), 2)).bottom() + 14;
     }

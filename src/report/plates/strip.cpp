@@ -127,7 +127,8 @@ void draw_strip(Sheet& sheet) {
     }
     photograph_header(sheet, runs_label(runs, e), stream_words(runs));
     View any;
-    any.width = e.image.width, any.height = e.image.height;
+    any.width = e.image.width;
+    any.height = e.image.height;
     std::optional<Box> crop = crop_of(sheet);
     if (crop) crop = inside(*crop, any);
     Varies varies(runs);

@@ -38,9 +38,14 @@ struct TriangleRay {
         const std::array from = {o.x, o.y, o.z}, to = {d.x, d.y, d.z};
         const float along = to[kz];
         constexpr std::array<std::size_t, 4> after = {1, 2, 0, 1};
-        kx = after[along < 0 ? kz + 1 : kz], ky = after[along < 0 ? kz : kz + 1];
-        ox = from[kx], oy = from[ky], oz = from[kz];
-        sx = to[kx] / along, sy = to[ky] / along, sz = 1 / along;
+        kx = after[along < 0 ? kz + 1 : kz];
+        ky = after[along < 0 ? kz : kz + 1];
+        ox = from[kx];
+        oy = from[ky];
+        oz = from[kz];
+        sx = to[kx] / along;
+        sy = to[ky] / along;
+        sz = 1 / along;
     }
 
     struct Hits {
@@ -116,7 +121,10 @@ Bvh::Bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) 
     center_ = 0.5f * whole.low + 0.5f * whole.high;
     const float half = std::fmax(largest_of(whole.low - center_), largest_of(whole.high - center_));
     int exponent = 0;
-    if (half > 0) std::frexp(half, &exponent), scale_ = std::ldexp(1.0f, exponent);
+    if (half > 0) {
+        std::frexp(half, &exponent);
+        scale_ = std::ldexp(1.0f, exponent);
+    }
     const auto local = [&](std::uint32_t k) {
         const Vec3f p = positions[k] - center_;
         return Vec3f{p.x / scale_, p.y / scale_, p.z / scale_};

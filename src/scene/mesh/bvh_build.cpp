@@ -42,8 +42,10 @@ public:
     explicit Builder(std::span<const Bounds> items)
         : items_(items), order_(items.size()), centers_(items.size()), splits_(2 * items.size()) {
         for_each_index(items.size() < parallel_from, (items.size() + chunk - 1) / chunk, [&](std::size_t c) {
-            for (std::size_t i = c * chunk; i < std::min(items.size(), (c + 1) * chunk); ++i)
-                order_[i] = static_cast<std::uint32_t>(i), centers_[i] = 0.5f * items[i].low + 0.5f * items[i].high;
+            for (std::size_t i = c * chunk; i < std::min(items.size(), (c + 1) * chunk); ++i) {
+                order_[i] = static_cast<std::uint32_t>(i);
+                centers_[i] = 0.5f * items[i].low + 0.5f * items[i].high;
+            }
         });
     }
 
@@ -75,21 +77,30 @@ private:
         };
         Boxes all;
         for (const Boxes& part : in_chunks<Boxes>(begin, end, [&](Boxes& b, std::size_t from, std::size_t to) {
-                 for (std::size_t i = from; i < to; ++i)
-                     b.items.add(items_[order_[i]]), b.centers.add(centers_[order_[i]]);
-             }))
-            all.items.add(part.items), all.centers.add(part.centers);
+                 for (std::size_t i = from; i < to; ++i) {
+                     b.items.add(items_[order_[i]]);
+                     b.centers.add(centers_[order_[i]]);
+                 }
+             })) {
+            all.items.add(part.items);
+            all.centers.add(part.centers);
+        }
         Split& node = splits_[at];
-        node.box = all.items, node.begin = static_cast<std::uint32_t>(begin);
+        node.box = all.items;
+        node.begin = static_cast<std::uint32_t>(begin);
         node.count = static_cast<std::uint32_t>(end - begin);
         if (end - begin <= group) return;
         const std::size_t middle = depth < deepest_by_cost ? partition(begin, end, all.centers) : (begin + end) / 2;
         const std::size_t left = at + 1, right = at + 2 * (middle - begin);
-        node.left = static_cast<std::uint32_t>(left), node.right = static_cast<std::uint32_t>(right);
+        node.left = static_cast<std::uint32_t>(left);
+        node.right = static_cast<std::uint32_t>(right);
         const auto first = [&] { split(left, begin, middle, depth + 1); };
         const auto second = [&] { split(right, middle, end, depth + 1); };
         if (end - begin >= parallel_from) side_by_side(first, second);
-        else first(), second();
+        else {
+            first();
+            second();
+        }
         node.leaves = splits_[left].leaves + splits_[right].leaves;
     }
 
@@ -110,12 +121,15 @@ private:
                  for (std::size_t i = from; i < to; ++i)
                      for (std::size_t k = 0; k < 3; ++k) {
                          Bin& bin = b[k][bin_of(order_[i], k)];
-                         bin.box.add(items_[order_[i]]), ++bin.count;
+                         bin.box.add(items_[order_[i]]);
+                         ++bin.count;
                      }
              }))
             for (std::size_t k = 0; k < 3; ++k)
-                for (std::size_t j = 0; j < bins; ++j)
-                    sums[k][j].box.add(part[k][j].box), sums[k][j].count += part[k][j].count;
+                for (std::size_t j = 0; j < bins; ++j) {
+                    sums[k][j].box.add(part[k][j].box);
+                    sums[k][j].count += part[k][j].count;
+                }
         const auto [along, below] = cheapest(sums);
         if (below == 0) return (begin + end) / 2;
         std::size_t i = begin, j = end;
@@ -137,15 +151,22 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             std::array<Bin, bins> after;  // all bins from j on
             Bin sum;
-            for (std::size_t j = bins; j-- > 1;)
-                sum.box.add(sums[k][j].box), sum.count += sums[k][j].count, after[j] = sum;
+            for (std::size_t j = bins; j-- > 1;) {
+                sum.box.add(sums[k][j].box);
+                sum.count += sums[k][j].count;
+                after[j] = sum;
+            }
             Bin before;
             for (std::size_t j = 1; j < bins; ++j) {
-                before.box.add(sums[k][j - 1].box), before.count += sums[k][j - 1].count;
+                before.box.add(sums[k][j - 1].box);
+                before.count += sums[k][j - 1].count;
                 if (before.count == 0 || after[j].count == 0) continue;
                 const auto groups = [](const Bin& b) { return static_cast<float>((b.count + group - 1) / group); };
                 const float cost = area(before.box) * groups(before) + area(after[j].box) * groups(after[j]);
-                if (cost < least) least = cost, best = {k, j};
+                if (cost < least) {
+                    least = cost;
+                    best = {k, j};
+                }
             }
         }
         return best;
@@ -176,12 +197,15 @@ private:
             const std::size_t c = to_open(opened, count);
             if (c == count) break;
             const Split& inner = splits_[opened[c]];
-            opened[c] = inner.left, opened[count++] = inner.right;
+            opened[c] = inner.left;
+            opened[count++] = inner.right;
         }
         for (std::size_t c = 0; c < children; ++c) {
             const Bounds box = c < count ? splits_[opened[c]].box : Bounds{};
-            for (std::size_t k = 0; k < 3; ++k)
-                tree.nodes[to].side[0][k][c] = axis_of(box.low, k), tree.nodes[to].side[1][k][c] = axis_of(box.high, k);
+            for (std::size_t k = 0; k < 3; ++k) {
+                tree.nodes[to].side[0][k][c] = axis_of(box.low, k);
+                tree.nodes[to].side[1][k][c] = axis_of(box.high, k);
+            }
             tree.nodes[to].child[c] = 0;
             if (c >= count) continue;
             const Split& child = splits_[opened[c]];

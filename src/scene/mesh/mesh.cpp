@@ -198,7 +198,10 @@ Key key_of(const Mesh& mesh, std::size_t triangle) {
 /// FNV-1a over words.
 std::uint64_t hash_of(const Key& key) {
     std::uint64_t hash = 0xcbf29ce484222325;
-    for (const float x : key) hash = (hash ^ std::bit_cast<std::uint32_t>(x)) * 0x100000001b3, hash ^= hash >> 29;
+    for (const float x : key) {
+        hash = (hash ^ std::bit_cast<std::uint32_t>(x)) * 0x100000001b3;
+        hash ^= hash >> 29;
+    }
     return hash;
 }
 
@@ -224,8 +227,10 @@ Removed remove_useless(Mesh& mesh) {
     order.reserve(count);
     Removed removed;
     for (std::size_t i = 0; i < count; ++i) {
-        if (!has_area(mesh, i)) useless[i] = true, ++removed.degenerate;
-        else order.emplace_back(hash_of(key_of(mesh, i)), static_cast<std::uint32_t>(i));
+        if (!has_area(mesh, i)) {
+            useless[i] = true;
+            ++removed.degenerate;
+        } else order.emplace_back(hash_of(key_of(mesh, i)), static_cast<std::uint32_t>(i));
     }
     std::sort(order.begin(), order.end());
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
@@ -235,7 +240,10 @@ Removed remove_useless(Mesh& mesh) {
                 order.begin() + static_cast<std::ptrdiff_t>(i),
                 [&, own = key_of(mesh, order[i].second)](
                     const auto& other) { return !useless[other.second] && key_of(mesh, other.second) == own; });
-            if (known) useless[order[i].second] = true, ++removed.duplicate;
+            if (known) {
+                useless[order[i].second] = true;
+                ++removed.duplicate;
+            }
         }
     }
     std::size_t kept = 0;
@@ -248,7 +256,8 @@ Removed remove_useless(Mesh& mesh) {
 std::shared_ptr<MeshPack> make_pack(Mesh mesh) {
     auto pack = std::make_shared<MeshPack>();
     const Removed removed = remove_useless(mesh);
-    pack->degenerate = removed.degenerate, pack->duplicate = removed.duplicate;
+    pack->degenerate = removed.degenerate;
+    pack->duplicate = removed.duplicate;
     pack->bvh = Bvh(mesh.positions, mesh.triangles);
     pack->hash = hash_of(mesh);
     pack->mesh = std::move(mesh);

@@ -34,7 +34,10 @@ void seal(std::string& file) {
 TEST(MeshFile, IsReadAsItWasWritten) {
     Mesh mesh = test::sphere_mesh(12, 7);
     for (const bool bare : {false, true}) {
-        if (bare) mesh.normals.clear(), mesh.uv.clear();
+        if (bare) {
+            mesh.normals.clear();
+            mesh.uv.clear();
+        }
         const std::string file = mesh_file(mesh);
         const auto pack = read_mesh(file, "ball.mesh");
         EXPECT_EQ(mesh_file(pack->mesh), file);
@@ -50,7 +53,8 @@ TEST(MeshFile, LeavesOutTrianglesWithoutAreaAndCopies) {
     mesh.triangles.push_back({first[1], first[2], first[0]});  // the same, turned
     mesh.triangles.push_back({first[0], first[2], first[1]});  // from behind
     mesh.positions.push_back(mesh.positions[first[0]]);        // the same place, another index
-    mesh.normals.push_back({0, 1, 0}), mesh.uv.push_back({});
+    mesh.normals.push_back({0, 1, 0});
+    mesh.uv.push_back({});
     mesh.triangles.push_back({static_cast<std::uint32_t>(mesh.positions.size() - 1), first[1], first[2]});
     mesh.triangles.push_back({first[0], first[0], first[1]});  // two corners
     const auto pack = read_mesh(mesh_file(mesh), "ball.mesh");

@@ -78,7 +78,8 @@ Rays::Rays(std::vector<MeshInstance> instances, Vec3d origin) : instances_(std::
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t item = 0; item < group; ++item) {
                 const Bounds box = leaf[item] == no_item ? Bounds{} : boxes[leaf[item]];  // an empty one is never met
-                out[0][k][item] = axis_of(box.low, k), out[1][k][item] = axis_of(box.high, k);
+                out[0][k][item] = axis_of(box.low, k);
+                out[1][k][item] = axis_of(box.high, k);
             }
     }
     made_ = std::move(made);

@@ -45,8 +45,14 @@ struct Box {
             }
             double t0 = (lo - o) / v, t1 = (hi - o) / v;
             if (t0 > t1) std::swap(t0, t1);
-            if (t0 > near) near = t0, near_n = axis;
-            if (t1 < far) far = t1, far_n = axis;
+            if (t0 > near) {
+                near = t0;
+                near_n = axis;
+            }
+            if (t1 < far) {
+                far = t1;
+                far_n = axis;
+            }
         };
         slab(min.x, max.x, x.x, d.x, {1, 0, 0});
         slab(min.y, max.y, x.y, d.y, {0, 1, 0});
@@ -60,9 +66,12 @@ struct Box {
     std::array<Interval, 2> hidden(const Sight& s) const {
         Strip strip(s.between);
         const Vec3d x = s.x, d0 = s.d0, d1 = s.d0 + s.step;
-        strip.cut(x.x - min.x, d0.x, d1.x), strip.cut(max.x - x.x, -d0.x, -d1.x);
-        strip.cut(x.y - min.y, d0.y, d1.y), strip.cut(max.y - x.y, -d0.y, -d1.y);
-        strip.cut(x.z - min.z, d0.z, d1.z), strip.cut(max.z - x.z, -d0.z, -d1.z);
+        strip.cut(x.x - min.x, d0.x, d1.x);
+        strip.cut(max.x - x.x, -d0.x, -d1.x);
+        strip.cut(x.y - min.y, d0.y, d1.y);
+        strip.cut(max.y - x.y, -d0.y, -d1.y);
+        strip.cut(x.z - min.z, d0.z, d1.z);
+        strip.cut(max.z - x.z, -d0.z, -d1.z);
         return Met{strip.way(), strip.start, strip.end}.crossed();
     }
     bool holds(Vec3d x) const {

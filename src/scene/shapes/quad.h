@@ -65,8 +65,14 @@ struct Quad {
         const double nn = dot(n, n);
         Vec3d b = (1 / nn) * cross(edge_v, n), c = (1 / nn) * cross(n, edge_u);
         double x = -dot(b, a), y = -dot(c, a);
-        if (x > 0.5) b = -b, x = 1 - x;
-        if (y > 0.5) c = -c, y = 1 - y;
+        if (x > 0.5) {
+            b = -b;
+            x = 1 - x;
+        }
+        if (y > 0.5) {
+            c = -c;
+            y = 1 - y;
+        }
         return {{x, y, 0}, b, c, 1, dot(cross(b, c), a)};
     }
     template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {

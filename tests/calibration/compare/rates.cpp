@@ -73,14 +73,16 @@ std::string coverage(const std::vector<CompareResult>& all, const std::string& m
     for (const CompareResult& r : all) {
         const MetricValue& m = r.arms[0].region(whole_frame).metric(metric);
         if (!m.value) continue;
-        sum += root ? *m.value * *m.value : inverse ? 1 / *m.value : *m.value, ++values;
+        sum += root ? *m.value * *m.value : inverse ? 1 / *m.value : *m.value;
+        ++values;
     }
     if (!values) return "–";
     const double mean = sum / static_cast<double>(values), truth = root ? std::sqrt(mean) : inverse ? 1 / mean : mean;
     for (const CompareResult& r : all) {
         const MetricValue& m = r.arms[0].region(whole_frame).metric(metric);
         if (!m.interval) continue;
-        ++stated, containing += m.interval->first <= truth && truth <= m.interval->second;
+        ++stated;
+        containing += m.interval->first <= truth && truth <= m.interval->second;
     }
     if (!stated) return "–";
     const std::string share = fmt::format("{:.3f}", static_cast<double>(containing) / static_cast<double>(stated));
@@ -100,7 +102,10 @@ std::string false_alarms(const std::vector<Calls>& scenes) {
     for (const Calls& c : scenes) {
         std::uint64_t with_events = 0, alarms = 0;
         for (std::size_t k = 0; k < c.have_events.size(); ++k)
-            if (c.have_events[k]) ++with_events, alarms += c.results[k].differs();
+            if (c.have_events[k]) {
+                ++with_events;
+                alarms += c.results[k].differs();
+            }
         const std::uint64_t of = c.results.size(), found_differences = count(c.results, differs);
         out += fmt::format("| {} | {} | {} | {} | {} | {} |\n", kind_if_new(scenes, c), c.scene.renders,
             rate_cell(found_differences, of),
@@ -222,7 +227,10 @@ struct ColourRates {
         failing_alike = gamma_scenes(
             {1e-4, 1e-2}, {4, 16}, [](SyntheticScene& w, double size) { w.a.failing = w.b.failing = size; });
         failing = gamma_scenes({1e-3, 1e-2}, {4, 16}, [](SyntheticScene& w, double size) { w.b.failing = size; });
-        const auto shared = [](SyntheticScene& w, double size) { w.b.bias = size, w.shared = w.renders; };
+        const auto shared = [](SyntheticScene& w, double size) {
+            w.b.bias = size;
+            w.shared = w.renders;
+        };
         same_seeds = gamma_scenes({0.001, 0.002}, {4, 8}, shared);
         some_seeds = gamma_scenes({0}, {4, 8}, [](SyntheticScene& w, double) { w.shared = w.renders / 2; });
         for (const auto& [a, b] :

@@ -63,7 +63,8 @@ public:
 
     SuiteView add(const ViewKind& kind, double bias = 0) {
         const auto index = static_cast<std::uint32_t>(kinds_.size());
-        kinds_.push_back(&kind), biases_.push_back(bias);
+        kinds_.push_back(&kind);
+        biases_.push_back(bias);
         SuiteView view;
         view.name = std::to_string(index);
         for (int k = 0; k < kind.baseline; ++k) view.baseline.push_back(fmt::format("{} b {}", index, k));
@@ -81,7 +82,8 @@ public:
             SyntheticNoise noise = kind.noise;
             if (candidate) noise.bias = biases_[view];
             SyntheticScene scene;
-            scene.width = side, scene.own = kind.own;
+            scene.width = side;
+            scene.own = kind.own;
             const std::uint32_t render = kind.deterministic ? 0 : 2 * k + (candidate ? 1 : 0);
             return synthetic_render(path, noise, seed_for(seed_, suite_, view, render), scene);
         };
@@ -96,7 +98,8 @@ private:
 
 Suite empty_suite() {
     Suite out;
-    out.options.alpha = alpha, out.options.smallest = 0.05;
+    out.options.alpha = alpha;
+    out.options.smallest = 0.05;
     return out;
 }
 
@@ -127,7 +130,9 @@ void print_false_alarms(
         for (const ViewResult& view : result.views)
             ++counts[std::stoul(view.name) % kinds.size()].states[static_cast<std::size_t>(view.state)];
         const bool fails = exit_code(result, false) == 1, better = result.count(ViewState::improved) > 0;
-        alarms += fails || better, failing += fails, improved += better;
+        alarms += fails || better;
+        failing += fails;
+        improved += better;
     }
     fmt::print(
         "### False alarms of suites\n\n{} suites of {} unchanged views, {} x {} pixels, {} renders of each side unless "
@@ -176,7 +181,10 @@ void print_power(const std::vector<ViewKind>& kinds, std::uint32_t repeats, std:
         double sum = 0;
         for (std::uint32_t r = 0; r < repeats; ++r) {
             if (std::isnan(stated[r])) continue;
-            ++of, sum += stated[r], whole += found[0][r] != 0, halved += found[1][r] != 0;
+            ++of;
+            sum += stated[r];
+            whole += found[0][r] != 0;
+            halved += found[1][r] != 0;
         }
         if (of == 0) fmt::print("| {} | heavy tail: none is stated | – | – |\n", kind.name);
         else
@@ -207,7 +215,8 @@ public:
 
     Suite suite() const {
         Suite out;
-        out.options.alpha = 0.01, out.options.smallest = 1;
+        out.options.alpha = 0.01;
+        out.options.smallest = 1;
         for (std::uint32_t v = 0; v < views; ++v) {
             SuiteView& view = out.views.emplace_back();
             view.name = std::to_string(v);
@@ -242,7 +251,9 @@ private:
         const auto uniform = [&](std::uint32_t stream) { return seed_of(seed_of(seed, 12345), stream) / 4294967296.0; };
         const auto add = [&](std::uint32_t stream, float size) {
             const auto i = static_cast<std::size_t>(uniform(stream) * static_cast<double>(out.size()));
-            out.r[i] += size, out.g[i] += size, out.b[i] += size;
+            out.r[i] += size;
+            out.g[i] += size;
+            out.b[i] += size;
         };
         if (uniform(0) < fireflies) add(1, static_cast<float>(30 * std::pow(100.0, uniform(2))));
         if (!planted) return out;

@@ -39,7 +39,8 @@ const std::array<ViewKind, 5> kinds = {{{"gamma, 20 %", {Kind::gamma, 0.2}},
 class MadeSuite {
 public:
     MadeSuite(std::uint32_t seed, double bias) : seed_(seed), bias_(bias) {
-        suite_.options.alpha = alpha, suite_.options.smallest = smallest;
+        suite_.options.alpha = alpha;
+        suite_.options.smallest = smallest;
         suite_.options.candidate = {"c/{view}-*.exr"};
         suite_.candidate.emplace_back("c/{view}-*.exr", SourceLocation{}, true);
         for (std::size_t v = 0; v < kinds.size(); ++v) {
@@ -83,7 +84,8 @@ private:
             SyntheticNoise noise = kinds[view].noise;
             if (candidate) noise.bias = bias_;
             SyntheticScene scene;
-            scene.width = side, scene.own = kinds[view].own;
+            scene.width = side;
+            scene.own = kinds[view].own;
             return synthetic_render(
                 path, noise, seed_of(seed_of(seed_, view), 2 * number + (candidate ? 1 : 0)), scene);
         };
@@ -107,7 +109,8 @@ std::vector<Outcome> outcomes(std::uint32_t suites, double bias, std::uint32_t s
         MadeSuite made(seed_of(seed, s), bias);
         const SuiteResult result = made.decide();
         for (std::size_t v = 0; v < kinds.size(); ++v) {
-            out[s].states[v] = result.views[v].state, out[s].renders[v] = made.renders[v];
+            out[s].states[v] = result.views[v].state;
+            out[s].renders[v] = made.renders[v];
             const ViewState state = result.views[v].state;
             out[s].alarm |= state == ViewState::changed || state == ViewState::noisier || state == ViewState::improved;
         }
@@ -166,18 +169,23 @@ Render eight_bits(Render render) {
     for (std::vector<float>* plane : {&render.r, &render.g, &render.b})
         for (float& value : *plane)
             value = static_cast<float>(srgb_decode(srgb_byte(static_cast<double>(value)) / 255.0));
-    render.steps = {.levels = 256, .srgb = true}, render.rounding = 0, render.display_referred = true;
+    render.steps = {.levels = 256, .srgb = true};
+    render.rounding = 0;
+    render.display_referred = true;
     return render;
 }
 
 /// Decides a pair of sides of 8 renders, in floating point or of 8 bits; mean 0.2, so that little is clipped.
 ViewState decided(std::uint32_t seed, double noise, double change, bool whole) {
     Suite suite;
-    suite.options.alpha = alpha, suite.options.smallest = 0.05;
+    suite.options.alpha = alpha;
+    suite.options.smallest = 0.05;
     SuiteView& view = suite.views.emplace_back();
     view.name = "view";
-    for (int k = 0; k < 8; ++k)
-        view.baseline.push_back(fmt::format("b {}", k)), view.candidate.push_back(fmt::format("c {}", k));
+    for (int k = 0; k < 8; ++k) {
+        view.baseline.push_back(fmt::format("b {}", k));
+        view.candidate.push_back(fmt::format("c {}", k));
+    }
     RenderSource source;
     source.read = [&](const std::string& path, const std::string&) {
         const bool candidate = path[0] == 'c';
@@ -207,7 +215,11 @@ void print_pairs(std::uint32_t pairs, std::uint32_t seed) {
                     changed[k][whole] = decided(own, noise, change, whole) == ViewState::changed;
             });
             std::size_t floats = 0, bytes = 0, equal = 0;
-            for (const auto& [f, b] : changed) floats += f, bytes += b, equal += f == b;
+            for (const auto& [f, b] : changed) {
+                floats += f;
+                bytes += b;
+                equal += f == b;
+            }
             fmt::print(
                 "| {:g} % | {:g} % | {} | {} | {} | {} |\n", 100 * noise, 100 * change, count, floats, bytes, equal);
             std::fflush(stdout);

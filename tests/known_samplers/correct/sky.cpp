@@ -43,7 +43,10 @@ void fill_alias(Sky& s) {
         s.keep[l] = scaled[l];
         s.other[l] = static_cast<int>(h);
         scaled[h] -= 1 - scaled[l];
-        if (scaled[h] < 1) high.pop_back(), low.push_back(h);
+        if (scaled[h] < 1) {
+            high.pop_back();
+            low.push_back(h);
+        }
     }
 }
 
@@ -74,7 +77,10 @@ Sky::Spot Sky::spot(Vec2d u) const {
     std::size_t k = std::min(static_cast<std::size_t>(cell), mass.size() - 1);
     double v = cell - static_cast<double>(k);
     if (v < keep[k]) v /= keep[k];
-    else v = (v - keep[k]) / (1 - keep[k]), k = static_cast<std::size_t>(other[k]);
+    else {
+        v = (v - keep[k]) / (1 - keep[k]);
+        k = static_cast<std::size_t>(other[k]);
+    }
     return {static_cast<int>(k) / columns, static_cast<int>(k) % columns, std::clamp(v, 0.0, 1 - 0x1p-53), u.y};
 }
 

@@ -62,10 +62,13 @@ struct SmoothSky {
     Vec2<float> place(float u, float v) const {  // u: along a row; v: down the rows
         int i = 0, j = 0;
         for (int k = static_cast<int>(levels.size()) - 1; k > 0; --k) {
-            i *= 2, j *= 2;
+            i *= 2;
+            j *= 2;
             const float a = below(k, i, j), b = below(k, i, j + 1), c = below(k, i + 1, j), d = below(k, i + 1, j + 1);
-            if (second(v, a + b, c + d)) j += second(u, c, d), ++i;
-            else j += second(u, a, b);
+            if (second(v, a + b, c + d)) {
+                j += second(u, c, d);
+                ++i;
+            } else j += second(u, a, b);
         }
         const float y = linear(at(i, j) + at(i, j + 1), at(i + 1, j) + at(i + 1, j + 1), v);
         const float x = linear(between(at(i, j), at(i + 1, j), y), between(at(i, j + 1), at(i + 1, j + 1), y), u);

@@ -134,7 +134,8 @@ CaseLighting two_disks() { return case_setup(LobeKind::none, true, "two disks", 
 template <template <class> class A> double towards(LocalDisk<double> disk, const Pair& at) {
     disk.power = 1;
     ShadingPoint<double> shading_point{};
-    shading_point.disks = &disk, shading_point.disk_count = 1;
+    shading_point.disks = &disk;
+    shading_point.disk_count = 1;
     return A<double>(shading_point).pdf(at.wo, at.wi).v;
 }
 

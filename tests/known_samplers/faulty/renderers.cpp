@@ -144,12 +144,18 @@ void coat_faults(Faults& out) {
     plant(out, "delta part drawn less often than it says", name, seldom);
     SyntheticSampler bright = recipe_of(coat);
     bend_draw(bright, [q = coat.q](Vec3d, const PrimarySample&, Draw& d) {
-        if (d.delta > 0) d.weights = d.weights * (1 / q), *d.weight /= q;
+        if (d.delta > 0) {
+            d.weights = d.weights * (1 / q);
+            *d.weight /= q;
+        }
     });
     plant(out, "delta weight divided by q twice", name, bright);
     SyntheticSampler dense = recipe_of(coat);
     bend_draw(dense, [](Vec3d, const PrimarySample&, Draw& d) {
-        if (d.delta > 0) d.pdf = d.delta, d.delta = 0;
+        if (d.delta > 0) {
+            d.pdf = d.delta;
+            d.delta = 0;
+        }
     });
     plant(out, "delta part told as a density", name, dense);
 }
@@ -175,7 +181,10 @@ void colour_faults(Faults& out) {
         };
         r.sample = [sample = r.sample, f = r.f_channels](Vec3d wo, const PrimarySample& u) {
             Draw d = sample(wo, u);
-            if (d.pdf > 0 && d.wi.z > 0) d.weights = f(wo, d.wi) * (d.wi.z / d.pdf), d.weight = luminance(d.weights);
+            if (d.pdf > 0 && d.wi.z > 0) {
+                d.weights = f(wo, d.wi) * (d.wi.z / d.pdf);
+                d.weight = luminance(d.weights);
+            }
             return d;
         };
         plant(out, what, name, r);

@@ -112,7 +112,8 @@ SyntheticSampler mirror(bool whole) {
     r.pdf = [](Vec3d, Vec3d) { return 0; };
     r.sample = [whole](Vec3d o, const PrimarySample&) {
         Draw d{{-o.x, whole || o.x > 0 ? -o.y : o.y, o.z}, 0};
-        d.delta = 1, d.weight = 0.9;
+        d.delta = 1;
+        d.weight = 0.9;
         return d;
     };
     return r;
@@ -160,8 +161,11 @@ std::vector<KnownSampler> delta_samplers() {
                 if (reflected(o, d)) d.wi = {o.x, -o.y, o.z};
             }),
         {30, 85, 150});
-    list.not_wrong(
-        "a thin wall of glass", glass_through([](Vec3d o, Draw& d) { d.wi = -o, d.weight = 1; }), {0, 30, 150, 180});
+    list.not_wrong("a thin wall of glass", glass_through([](Vec3d o, Draw& d) {
+        d.wi = -o;
+        d.weight = 1;
+    }),
+        {0, 30, 150, 180});
     list.right("glass that reflects nothing", refracted_by(1.5), {0, 30, 85, 150});
     list.wrong("refracted by 1.4 for 1.5", "physics", refracted_by(1.4), {30});
     list.wrong("refracted by 1 / 1.5 for 1.5", "physics", refracted_by(1 / 1.5), {30});

@@ -57,7 +57,10 @@ public:
     void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {
             out[i] = cosine_draw(u[i].x, u[i].y);
-            if (i % 8 < 3) out[i].wi.x *= 1 + 0x1p-52, out[i].pdf *= 1 - 0x1p-52;
+            if (i % 8 < 3) {
+                out[i].wi.x *= 1 + 0x1p-52;
+                out[i].pdf *= 1 - 0x1p-52;
+            }
         }
     }
     void pdf(int, std::span<const Pair> at, std::span<double> out) const override {

@@ -51,7 +51,8 @@ bool has_the_references_mean(const std::string& sampler, const std::string& brdf
     double off = 0, variance = 0, error = 0, all = 0;
     for (std::size_t at = 0; at < film.size(); ++at) {
         off += static_cast<double>(film.y[at]) - static_cast<double>(truth.y[at]);
-        variance += static_cast<double>(film.var[at]), error += static_cast<double>(truth.error[at]);
+        variance += static_cast<double>(film.var[at]);
+        error += static_cast<double>(truth.error[at]);
         all += static_cast<double>(truth.y[at]);
     }
     std::printf("%s on %s: mean off by %.3g of %.4g, standard error %.2g, reference %.2g\n", sampler.c_str(),
