@@ -90,8 +90,10 @@ std::string now_text() {
 }
 
 int accept_suite(const CompareFlags& flags, Progress& progress) {
-    const Acceptance acceptance{
-        flags.views, flags.because, now_text(), fmt::format("crescent {} ({})", crescent::version(), commit())};
+    const Acceptance acceptance{.views = flags.views,
+        .because = flags.because,
+        .date = now_text(),
+        .program = fmt::format("crescent {} ({})", crescent::version(), commit())};
     std::string folder;
     const auto read = [&] {
         Suite suite = read_suite(flags.file, suite_flags(flags));

@@ -302,7 +302,10 @@ private:
             };
             const double sector = 360.0 / parts;
             best.size = std::fabs(s - q);
-            best.cell = {cosine(i0), cosine(i1), static_cast<double>(j0) * sector, static_cast<double>(j1) * sector};
+            best.cell = {.from_cos = cosine(i0),
+                .to_cos = cosine(i1),
+                .from_phi = static_cast<double>(j0) * sector,
+                .to_phi = static_cast<double>(j1) * sector};
         };
         for (std::size_t i = 0; i < parts; ++i) {
             look(i, i + 1, 0, parts);

@@ -104,7 +104,8 @@ int join(const JoinFlags& flags) {
     const Measured joined = crescent::join(flags.parts, command);
     ProgressMonitor monitor;
     write_metrics(joined, flags.out, monitor);
-    print(terminal_summary(report_inputs(joined), {}, flags.out, {true, false, false, false}));
+    print(terminal_summary(
+        report_inputs(joined), {}, flags.out, {.metrics = true, .films = false, .plates = false, .report = false}));
     return joined.metrics.all_hold() ? passed : failed;
 }
 

@@ -40,7 +40,9 @@ public:
         return ease(from - over, from) * (1 - ease(to, to + over));
     }
     /// Returns 0 .. n: how many of n equal steps from `from` to `to` are complete.
-    int steps(double from, double to, int n) { return static_cast<int>(query({Kind::steps, from, to, n})); }
+    int steps(double from, double to, int n) {
+        return static_cast<int>(query({.kind = Kind::steps, .from = from, .to = to, .n = n}));
+    }
 
     /// Sets words in a box; For `alpha` 0 nothing is drawn. Returns their extents.
     Rect text(const Rect& box, const Words& words, Text how, double alpha = 1);

@@ -47,7 +47,12 @@ ListedArm arm_of(const std::string& name, const std::string& lobe, double s, dou
         throw nb::value_error(fmt::format("no arm '{}': the list has {}", name, fmt::join(names, ", ")).c_str());
     if (!lobe.empty() && std::ranges::find(lobes, lobe) == lobes.end())
         throw nb::value_error(fmt::format("no BRDF '{}': the list has {}", lobe, fmt::join(lobes, ", ")).c_str());
-    ListedArm out{name, {lobe.empty() ? LobeKind::none : lobe_named(lobe), rho_d, rho_s, s, alpha}};
+    ListedArm out{name,
+        {.lobe = lobe.empty() ? LobeKind::none : lobe_named(lobe),
+            .rho_d = rho_d,
+            .rho_s = rho_s,
+            .s = s,
+            .alpha = alpha}};
     if (out.at({0, 0, 1})->techniques() > 1 || name.starts_with("light"))
         throw nb::value_error(fmt::format("the arm '{}' aims at lights: it has no density of w_i alone", name).c_str());
     return out;

@@ -224,8 +224,15 @@ Process::Process(const ProcessPlan& plan) : label_(printable(plan.label, 60)), o
     err.open(plan.stderr_file, false);
     failure.make_pipe(false);
     const char* file = plan.file.empty() ? argv[0] : plan.file.c_str();
-    const Start start{
-        file, argv.data(), in.theirs, out.theirs, err.theirs, plan.shared, failure.theirs, owner_, in_main_thread()};
+    const Start start{.file = file,
+        .argv = argv.data(),
+        .in = in.theirs,
+        .out = out.theirs,
+        .err = err.theirs,
+        .shared = plan.shared,
+        .failure = failure.theirs,
+        .parent = owner_,
+        .dies_with_thread = in_main_thread()};
     int why = 0;
     {
         const AllBlocked blocked;

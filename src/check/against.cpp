@@ -82,8 +82,16 @@ public:
         }
         note_distribution(d, out[0]);
         const CheckAt own_a = own(a_), own_b = own(b_);
-        const AgainstCase c{
-            a_, b_, *common_, draws_a_, draws_b_, own_a, own_b, plan_.budget.of_f(), plan_.levels, plan_.expect_same};
+        const AgainstCase c{.a = a_,
+            .b = b_,
+            .common = *common_,
+            .draws_a = draws_a_,
+            .draws_b = draws_b_,
+            .own_a = own_a,
+            .own_b = own_b,
+            .of_f = plan_.budget.of_f(),
+            .levels = plan_.levels,
+            .expect_same = plan_.expect_same};
         compare_f(c, out[1]);
         compare_variances(c, out[1], out[2]);
         return out;

@@ -103,8 +103,14 @@ CommonTree common_tree(const AgainstSide& a, const AgainstSide& b, const CheckBu
     source.by_draws = true;
     StreamKey key = a.key;
     key.purpose = Purpose::tree;
-    CommonTree out{Tree(source, std::move(pilots), of, {}, step, budget, key), step, middle, 0,
-        std::move(delta_directions), std::move(delta_a), std::move(delta_b), std::move(drawn)};
+    CommonTree out{.tree = Tree(source, std::move(pilots), of, {}, step, budget, key),
+        .step = step,
+        .middle = middle,
+        .log_q = 0,
+        .delta_directions = std::move(delta_directions),
+        .delta_a = std::move(delta_a),
+        .delta_b = std::move(delta_b),
+        .drawn = std::move(drawn)};
     double all = 0;
     for (const Leaf& leaf : out.tree.leaves()) {
         const double m = leaf.q * out.tree.rect(leaf).area();
@@ -201,7 +207,7 @@ private:
         if (source_.has_f()) source_.f_cos(w, f);
         const std::vector<double> drawn(w.size(), 1.0);
         std::vector<double> x;
-        append_weights(source_, draws_, {at, w, drawn, f}, x);
+        append_weights(source_, draws_, {.at = at, .wi = w, .p = drawn, .f_cos = f}, x);
         if (to_.x.size() < from + x.size()) to_.x.resize(from + x.size());
         for (std::size_t i = 0; i < x.size(); ++i) to_.x[from + i] += x[i];
     }
@@ -265,7 +271,11 @@ struct TwoShares {
 };
 
 AgainstAnswer answer_of(AgainstAnswer::Family family, int member, const TwoShares& s, double floor) {
-    AgainstAnswer out{family, member, s.difference * s.per_share, std::sqrt(s.variance) * s.per_share, floor};
+    AgainstAnswer out{.family = family,
+        .member = member,
+        .difference = s.difference * s.per_share,
+        .sd = std::sqrt(s.variance) * s.per_share,
+        .floor = floor};
     out.p = bennett_p(bennett_z2(std::fabs(s.difference) - floor / s.per_share, s.variance, 1, 1e12));
     return out;
 }
@@ -275,7 +285,8 @@ AgainstAnswer by_sets(AgainstAnswer::Family family, int member, const ReplicateM
     const ReplicateMean<Replicates>& b, double floor) {
     const double v = a.variance + b.variance;
     const double nu = (replicate_sets - 1) * v * v / (a.variance * a.variance + b.variance * b.variance + 1e-300);
-    AgainstAnswer out{family, member, a.mean - b.mean, std::sqrt(v), floor};
+    AgainstAnswer out{
+        .family = family, .member = member, .difference = a.mean - b.mean, .sd = std::sqrt(v), .floor = floor};
     out.p = student_p_of(std::fabs(out.difference) - floor, v, nu);
     return out;
 }
@@ -304,7 +315,11 @@ void test_sums_against(const CommonTree& g, const AgainstDraws& a, const Against
         const double floor = detection_floor * std::sqrt((square(a) + square(b)) / 2) + g.step;
         const double v = std::max(square(a) - sqr(mean(a)), 0.0) / a.independent +
             std::max(square(b) - sqr(mean(b)), 0.0) / b.independent;
-        AgainstAnswer out{AgainstAnswer::sums, q, mean(a) - mean(b), std::sqrt(v), floor};
+        AgainstAnswer out{.family = AgainstAnswer::sums,
+            .member = q,
+            .difference = mean(a) - mean(b),
+            .sd = std::sqrt(v),
+            .floor = floor};
         out.p = bennett_p(
             bennett_z2(std::fabs(out.difference) - floor, v, ranges[q] / std::min(a.independent, b.independent), 1e12));
         visit(out);

@@ -295,7 +295,8 @@ struct ReweighedDraws {
     double log_se() const {
         double square = 0;
         for (const Group& g : of) {
-            const Group rest{all.n - g.n, all.x - g.x, all.square - g.square, all.other - g.other};
+            const Group rest{
+                .n = all.n - g.n, .x = all.x - g.x, .square = all.square - g.square, .other = all.other - g.other};
             square += sqr(rest.log_ratio() - all.log_ratio());
         }
         return std::sqrt(square * (groups - 1) / groups);

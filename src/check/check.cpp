@@ -105,7 +105,7 @@ AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSett
 void report_cut(const CheckCase& check_case, const Cut& cut, const TestSettings& settings,
     std::vector<Verdict>& verdicts, CheckResult& j) {
     const AbortText text = abort_text(cut, check_case, settings);
-    SkippedCase left{check_case.arm, check_case.text(), {}, text.first};
+    SkippedCase left{.arm = check_case.arm, .check_case = check_case.text(), .verdicts = {}, .why = text.first};
     for (Verdict& v : verdicts) {
         if (cut.first_draws && v.name == verdict_names[0]) continue;
         const bool first = left.verdicts.empty();

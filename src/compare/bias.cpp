@@ -261,7 +261,7 @@ std::optional<MissedEvents> missed_events(const AllSides& all, const BiasResult&
         const double pixels = static_cast<double>(regions[r].pixels.size()),
                      level = alpha / static_cast<double>(regions.size());
         const MeanTest& y = found.regions[r];
-        if (y.differs) consider({{}, y.a, y.b, 0, 0}, pixels, level);
+        if (y.differs) consider({.box = {}, .a = y.a, .b = y.b, .p = 0, .quantity = 0}, pixels, level);
         for (std::size_t c = 0; c < y.channels.size(); ++c)
             if (y.channels[c].differs) consider({{}, y.channels[c].a, y.channels[c].b, 0, c + 1}, pixels, level);
     }

@@ -37,8 +37,10 @@ std::optional<Chromaticities> primaries_of(const OpenFile& file, const exr_attri
     const auto point = [](float x, float y) {
         return std::array<double, 2>{static_cast<double>(x), static_cast<double>(y)};
     };
-    const Chromaticities out{
-        point(c.red_x, c.red_y), point(c.green_x, c.green_y), point(c.blue_x, c.blue_y), point(c.white_x, c.white_y)};
+    const Chromaticities out{.red = point(c.red_x, c.red_y),
+        .green = point(c.green_x, c.green_y),
+        .blue = point(c.blue_x, c.blue_y),
+        .white = point(c.white_x, c.white_y)};
     if (!is_valid(out))
         file.fail(fmt::format(
             "attribute '{}': expected three primaries and a white point, found {}", attribute.name, to_string(out)));

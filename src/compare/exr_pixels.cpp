@@ -295,7 +295,7 @@ Matrix3 adaptation(const Rgb& from, const Rgb& to) {
 bool near(const Xy& a, const Xy& b) { return std::fabs(a[0] - b[0]) <= 1e-3 && std::fabs(a[1] - b[1]) <= 1e-3; }
 
 /// The primaries of OpenEXR files with XYZ in channels R, G and B; their "white" is not the white of a scene.
-constexpr Chromaticities xyz_primaries{{1, 0}, {0, 1}, {0, 0}, {1. / 3, 1. / 3}};
+constexpr Chromaticities xyz_primaries{.red = {1, 0}, .green = {0, 1}, .blue = {0, 0}, .white = {1. / 3, 1. / 3}};
 
 }  // namespace
 

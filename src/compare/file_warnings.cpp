@@ -138,7 +138,7 @@ private:
         std::vector<double> p;
         const double share = static_cast<double>(na_) / static_cast<double>(na_ + nb_);
         for (std::size_t r = 0; r < all_.regions.size(); ++r) {
-            FailedGroups g{all_.regions[r].name, sum(a_, r), sum(b_, r), 1, false};
+            FailedGroups g{.region = all_.regions[r].name, .a = sum(a_, r), .b = sum(b_, r), .p = 1, .differs = false};
             g.p = binomial_exact(g.a, g.a + g.b, share);
             p.push_back(g.p);
             out_.groups.push_back(g);

@@ -272,7 +272,9 @@ std::optional<OutlierRender> outlier_render(const RenderStats& all) {
             const double share = 1 / renders_of_both(all);
             if (static_cast<double>(own) <= static_cast<double>(total) * share) continue;
             const double p = std::min(1.0, binomial_exact(own, total, share) * places);
-            if (p < out->p) out = OutlierRender{s, k, own, std::nan(""), 0, p};
+            if (p < out->p)
+                out =
+                    OutlierRender{.side = s, .render = k, .pixels = own, .ratio = std::nan(""), .deviation = 0, .p = p};
         }
     }
     return out;

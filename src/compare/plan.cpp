@@ -178,7 +178,8 @@ std::vector<std::string> compare_arms(const std::string& file) {
 
 namespace {
 
-constexpr Range none{}, share{0, 1, false, true}, positive{0, 1e12, true}, pixel_range{0, 65535};
+constexpr Range none{}, share{.low = 0, .high = 1, .low_open = false, .high_open = true}, positive{0, 1e12, true},
+    pixel_range{0, 65535};
 constexpr Requirement required = Requirement::required, optional = Requirement::optional,
                       defaulted = Requirement::defaulted;
 

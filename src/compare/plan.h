@@ -72,7 +72,9 @@ struct ComparePlan {
     bool count_pixel_p = true;   // whether the histogram of p over pixels is computed, for the report
     unsigned look = 0;           // number of this look, of several that share the level; 0: it is the only one
     double smallest = 0.01;      // with expect = "same": the relative difference of Y that must be detectable
-    ReadingOptions reading() const { return {encoding, space, channels, channel}; }
+    ReadingOptions reading() const {
+        return {.encoding = encoding, .space = space, .channels = channels, .channel = channel};
+    }
 };
 
 /// A flag of the command line: the key that it sets, its value, and its text on the command line.

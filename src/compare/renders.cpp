@@ -120,7 +120,7 @@ PixelSet boxed(const std::string& name, const Box& box, int width) {
 
 PixelSet masked(CommonView& view, const MaskPlan& plan) {
     const Render mask = view.read_mask(plan.file);
-    PixelSet set{plan.name, {}, {}, {}};
+    PixelSet set{.name = plan.name, .box = {}, .pixels = {}, .left_out = {}};
     for (std::size_t i = 0; i < mask.size(); ++i)
         if (mask.y(i) > 0) set.pixels.push_back(static_cast<std::uint32_t>(i));
     return set;

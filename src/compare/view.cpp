@@ -134,7 +134,7 @@ void CommonView::convert_primaries(Render& render) const {
 }
 
 void CommonView::check_unchanged(const Render& render, const std::string& layer) {
-    const Reading now{render.state, render.width, render.height, render.hash};
+    const Reading now{.state = render.state, .width = render.width, .height = render.height, .hash = render.hash};
     const auto [at, first_time] = first_readings_.emplace(std::pair{render.file, layer}, now);
     if (first_time) return;
     const Reading& before = at->second;

@@ -78,7 +78,7 @@ MeanInterval floored_at(MeanInterval m, double variance_of_one) {
 
 /// One file: its error follows from those of its pixels and counts as known, not as estimated.
 MeanInterval one_file(double mean, const SetVariance& noise) {
-    return {mean, 0, 0, std::sqrt(noise.b / noise.pixels), 1000000};
+    return {.mean = mean, .low = 0, .high = 0, .se = std::sqrt(noise.b / noise.pixels), .n = 1000000};
 }
 
 double low_over_high(const std::vector<double>& power) {

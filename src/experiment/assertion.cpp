@@ -199,11 +199,15 @@ const std::vector<QuantityWord>& quantity_words() {
 #define CRESCENT_OF_REGION(name, Type) {#name, true, QuantityOf::run, Type::info.means, Type::info.of_single_samples},
 #define CRESCENT_OF_FRAME(name, Type) {#name, false, QuantityOf::run, Type::info.means, Type::info.of_single_samples},
     static const std::vector<QuantityWord> words = {
-        CRESCENT_REGION_METRICS(CRESCENT_OF_REGION){
-            "tail", true, QuantityOf::run, "Pareto index k of a region's samples, at the experiment's seed"},
+        CRESCENT_REGION_METRICS(CRESCENT_OF_REGION){.word = "tail",
+            .of_region = true,
+            .adapter = QuantityOf::run,
+            .means = "Pareto index k of a region's samples, at the experiment's seed"},
         {"flip", true, QuantityOf::run, "mean HDR-FLIP of a region, at the experiment's seed"},
-        CRESCENT_FRAME_METRICS(CRESCENT_OF_FRAME){
-            "furnace", false, QuantityOf::furnace, "Y that a white furnace reads"},
+        CRESCENT_FRAME_METRICS(CRESCENT_OF_FRAME){.word = "furnace",
+            .of_region = false,
+            .adapter = QuantityOf::furnace,
+            .means = "Y that a white furnace reads"},
         {"furnace_error", false, QuantityOf::furnace, "how far it is from what is expected, without sign"},
         {"shape_pixels", false, QuantityOf::shape, "pixels in which the camera sees a shape"},
         {"region_pixels", false, QuantityOf::region, "pixels of a region's box"},

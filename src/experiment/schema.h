@@ -249,17 +249,17 @@ template <class T> std::span<const T> all_of(const std::vector<T>& member) { ret
 
 /// Returns the objects that a section's keys are stored into: the member itself, or its elements.
 template <auto M, class Owner = typename OwnerOf<decltype(M)>::type>
-constexpr Family in = {[](void* parent, const std::string& name, const SourceLocation& at) -> void* {
+constexpr Family in = {.add = [](void* parent, const std::string& name, const SourceLocation& at) -> void* {
                            auto* object = emplaced(static_cast<Owner*>(parent)->*M);
                            if constexpr (requires { object->name; }) object->name = name;
                            if constexpr (requires { object->at; }) object->at = at;
                            return object;
                        },
-    [](const void* parent) { return all_of(static_cast<const Owner*>(parent)->*M).size(); },
-    [](const void* parent, std::size_t index) -> const void* {
+    .size = [](const void* parent) { return all_of(static_cast<const Owner*>(parent)->*M).size(); },
+    .at = [](const void* parent, std::size_t index) -> const void* {
         return &all_of(static_cast<const Owner*>(parent)->*M)[index];
     },
-    [](const void* object) -> std::string {
+    .name = [](const void* object) -> std::string {
         using Object = typename decltype(all_of(std::declval<const Owner&>().*M))::value_type;
         if constexpr (requires(const Object& o) { o.name; }) return static_cast<const Object*>(object)->name;
         else return "";

@@ -22,24 +22,30 @@ constexpr Requirement required = Requirement::required, optional = Requirement::
                       defaulted = Requirement::defaulted;
 
 Section image() {
-    return {"image", Multiplicity::one, required,
-        "The picture that is computed; pixel (0, 0) is bottom-left, one ray per pixel centre.",
-        in<&Experiment::image, Experiment>,
-        {{"width", Type::integer, {1, 16384}, "pixels", required, "", "Columns.", to<&Image::width>},
+    return {.name = "image",
+        .many = Multiplicity::one,
+        .need = required,
+        .means = "The picture that is computed; pixel (0, 0) is bottom-left, one ray per pixel centre.",
+        .family = in<&Experiment::image, Experiment>,
+        .keys = {{"width", Type::integer, {1, 16384}, "pixels", required, "", "Columns.", to<&Image::width>},
             {"height", Type::integer, {1, 16384}, "pixels", required, "", "Rows.", to<&Image::height>}},
-        {}};
+        .sections = {}};
 }
 
 Section camera() {
-    return {"camera", Multiplicity::one, required, "A pinhole camera.", in<&Experiment::camera, Experiment>,
-        {{"eye", Type::point, free_range, "m", required, "", "Its position.", to<&Camera::eye>},
+    return {.name = "camera",
+        .many = Multiplicity::one,
+        .need = required,
+        .means = "A pinhole camera.",
+        .family = in<&Experiment::camera, Experiment>,
+        .keys = {{"eye", Type::point, free_range, "m", required, "", "Its position.", to<&Camera::eye>},
             {"target", Type::point, free_range, "m", required, "", "The point in the middle of the picture.",
                 to<&Camera::target>},
             {"up", Type::direction, none, "", defaulted, "[0, 1, 0]",
                 "What is up in the picture; not parallel to the view.", to<&Camera::up>},
-            {"vfov_deg", Type::number, {0, 180, true, true}, "degrees", required, "", "Vertical field of view.",
-                to<&Camera::vfov_deg>}},
-        {}};
+            {"vfov_deg", Type::number, {.low = 0, .high = 180, .low_open = true, .high_open = true}, "degrees",
+                required, "", "Vertical field of view.", to<&Camera::vfov_deg>}},
+        .sections = {}};
 }
 
 /// A vector that is stored only where it was given: the default is not written.
@@ -99,8 +105,13 @@ Section shape_tables() {
     keys.insert(keys.end(), colors.begin(), colors.end());
     keys.push_back(
         {"occludes", Type::flag, none, "", defaulted, "false", "Whether it hides the lights.", to<&Shape::occludes>});
-    return {"shapes", Multiplicity::named, optional, "What the camera sees; needed where there is no mesh.",
-        in<&Experiment::shapes, Experiment>, std::move(keys), {}};
+    return {.name = "shapes",
+        .many = Multiplicity::named,
+        .need = optional,
+        .means = "What the camera sees; needed where there is no mesh.",
+        .family = in<&Experiment::shapes, Experiment>,
+        .keys = std::move(keys),
+        .sections = {}};
 }
 
 /// The members that place an object: its own, or those of its placement.
@@ -135,25 +146,37 @@ Section mesh_tables() {
         to<&MeshObject::two_sided>});
     keys.push_back({"content", Type::text, none, "", optional, "not checked",
         "Hash of the mesh and its textures, 16 hexadecimal digits; others are refused.", to<&MeshObject::content>});
-    const Section instances = {"instances", Multiplicity::list, optional,
-        "Where copies of the mesh are, each placed after the mesh's own placement; none: the mesh is there once.",
-        in<&MeshObject::instances>, placement_keys<Placement>(), {}};
-    return {"meshes", Multiplicity::named, optional,
-        "Triangle meshes from files. They hide all lights, and each other.", in<&Experiment::meshes, Experiment>,
-        std::move(keys), {instances}};
+    const Section instances = {.name = "instances",
+        .many = Multiplicity::list,
+        .need = optional,
+        .means =
+            "Where copies of the mesh are, each placed after the mesh's own placement; none: the mesh is there once.",
+        .family = in<&MeshObject::instances>,
+        .keys = placement_keys<Placement>(),
+        .sections = {}};
+    return {.name = "meshes",
+        .many = Multiplicity::named,
+        .need = optional,
+        .means = "Triangle meshes from files. They hide all lights, and each other.",
+        .family = in<&Experiment::meshes, Experiment>,
+        .keys = std::move(keys),
+        .sections = {instances}};
 }
 
 Section disks() {
-    return {"disks", Multiplicity::named, optional,
-        "Disks that shine; sampled rays meet them, the camera does not see them.", in<&Experiment::disks, Experiment>,
-        {{"center", Type::point, free_range, "m", required, "", "Centre.", to<&DiskLight::center>},
+    return {.name = "disks",
+        .many = Multiplicity::named,
+        .need = optional,
+        .means = "Disks that shine; sampled rays meet them, the camera does not see them.",
+        .family = in<&Experiment::disks, Experiment>,
+        .keys = {{"center", Type::point, free_range, "m", required, "", "Centre.", to<&DiskLight::center>},
             {"normal", Type::direction, none, "", required, "", "The side that shines.", to<&DiskLight::normal>},
             {"radius", Type::number, length_range, "m", required, "", "Radius.", to<&DiskLight::radius>},
             {"radiance", Type::color, radiance_range, "W/(sr m^2)", required, "", "Radiance.",
                 to<&DiskLight::radiance>},
             {"two_sided", Type::flag, none, "", defaulted, "false", "Emits from both sides.",
                 to<&DiskLight::two_sided>}},
-        {}};
+        .sections = {}};
 }
 
 Section light_tables() {
@@ -161,34 +184,47 @@ Section light_tables() {
     for (Key& key : parameter_keys<LightKinds, &Light::form>()) keys.push_back(std::move(key));
     keys.push_back(
         {"radiance", Type::color, radiance_range, "W/(sr m^2)", required, "", "Radiance.", to<&Light::radiance>});
-    return {"lights", Multiplicity::named, optional,
-        "Lights of any kind; [disks.NAME] is another way to write a disk. They come after the disks of such tables.",
-        in<&Experiment::lights, Experiment>, std::move(keys), {}};
+    return {.name = "lights",
+        .many = Multiplicity::named,
+        .need = optional,
+        .means =
+            "Lights of any kind; [disks.NAME] is another way to write a disk. They come after the disks of such "
+            "tables.",
+        .family = in<&Experiment::lights, Experiment>,
+        .keys = std::move(keys),
+        .sections = {}};
 }
 
 Section fill() {
-    return {"fill", Multiplicity::one, optional, "Light from every direction in which no other light is met.", {},
-        {{"radiance", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]", "Radiance.",
+    return {.name = "fill",
+        .many = Multiplicity::one,
+        .need = optional,
+        .means = "Light from every direction in which no other light is met.",
+        .family = {},
+        .keys = {{"radiance", Type::color, radiance_range, "W/(sr m^2)", defaulted, "[0, 0, 0]", "Radiance.",
             to_owner<Experiment, &Experiment::fill>}},
-        {}};
+        .sections = {}};
 }
 
 Section sky() {
-    return {"sky", Multiplicity::one, optional,
-        "An image sky: light from infinitely far away where nothing hides it, see docs/conventions.md.",
-        in<&Experiment::sky, Experiment>,
-        {{"file", Type::text, none, "", required, "",
-             "A latitude-longitude image, OpenEXR, Radiance HDR or packed (.image), relative to this file; twice as "
-             "wide "
-             "as high, at most 8192 x 4096.",
-             to<&SkyLight::file>},
+    return {.name = "sky",
+        .many = Multiplicity::one,
+        .need = optional,
+        .means = "An image sky: light from infinitely far away where nothing hides it, see docs/conventions.md.",
+        .family = in<&Experiment::sky, Experiment>,
+        .keys = {{"file", Type::text, none, "", required, "",
+                     "A latitude-longitude image, OpenEXR, Radiance HDR or packed (.image), relative to this file; "
+                     "twice as "
+                     "wide "
+                     "as high, at most 8192 x 4096.",
+                     to<&SkyLight::file>},
             {"rotation", Type::number, {-360, 360}, "degrees", defaulted, "0",
                 "About the y axis, counterclockwise seen from above.", to<&SkyLight::rotation>},
             {"scale", Type::number, {0, 1e9, true}, "", defaulted, "1", "Factor of the image's radiance.",
                 to<&SkyLight::scale>},
             {"content", Type::text, none, "", optional, "not checked",
                 "Hash of the image, 16 hexadecimal digits; another image is refused.", to<&SkyLight::content>}},
-        {}};
+        .sections = {}};
 }
 
 /// The words of an enumeration, in its order; `last` is its last value. A value is read as the index of its word.
@@ -198,12 +234,14 @@ template <auto last, std::size_t n> std::vector<std::string> words_to(const char
 }
 
 Section arms() {
-    return {"arms", Multiplicity::named, required,
-        "The samplers to compare. All use the same random numbers; sample counts are prefixes of one stream.",
-        in<&Experiment::arms>,
-        {{"exec", Type::text, none, "", optional, "none",
-             "In place of a sampler: a command that starts a program which draws, see docs/plugins.md.",
-             to<&ArmPlan::exec>},
+    return {.name = "arms",
+        .many = Multiplicity::named,
+        .need = required,
+        .means = "The samplers to compare. All use the same random numbers; sample counts are prefixes of one stream.",
+        .family = in<&Experiment::arms>,
+        .keys = {{"exec", Type::text, none, "", optional, "none",
+                     "In place of a sampler: a command that starts a program which draws, see docs/plugins.md.",
+                     to<&ArmPlan::exec>},
             {"plugin", Type::text, none, "", optional, "none",
                 "Instead of a sampler: a shared library that draws, next to this file; see docs/plugins.md.",
                 to<&ArmPlan::plugin>},
@@ -245,35 +283,47 @@ Section arms() {
                 to<&ArmPlan::sampler>},
             {"n", Type::integers, count_range, "samples/pixel", optional, "the experiment's n",
                 "The ladder, ascending; one integer is a ladder of one.", to<&ArmPlan::n>}},
-        {}};
+        .sections = {}};
 }
 
 Section exponent() {
-    return {"exponent", Multiplicity::one, optional,
-        "The exponent control: one arm again at other s, in pdf, BRDF and reference alike.", in<&Experiment::exponent>,
-        {{"arm", Type::arm, none, "", required, "", "The arm.", to<&ExponentControl::arm>},
+    return {.name = "exponent",
+        .many = Multiplicity::one,
+        .need = optional,
+        .means = "The exponent control: one arm again at other s, in pdf, BRDF and reference alike.",
+        .family = in<&Experiment::exponent>,
+        .keys = {{"arm", Type::arm, none, "", required, "", "The arm.", to<&ExponentControl::arm>},
             {"n", Type::integer, count_range, "samples/pixel", optional, "the experiment's n",
                 "A sample count of that arm.", to<&ExponentControl::n>},
             {"s", Type::numbers, exponent_range, "", required, "", "The exponents, ascending.",
                 to<&ExponentControl::s>},
             {"shape", Type::shape, none, "", required, "", "The shape whose s is the experiment's s.",
                 to<&ExponentControl::shape>}},
-        {}};
+        .sections = {}};
 }
 
 Section regions() {
-    return {"regions", Multiplicity::named, optional, "Where errors are measured.", in<&Experiment::regions>,
-        {{"box", Type::box, pixel_range, "pixels", required, "",
+    return {.name = "regions",
+        .many = Multiplicity::named,
+        .need = optional,
+        .means = "Where errors are measured.",
+        .family = in<&Experiment::regions>,
+        .keys = {{"box", Type::box, pixel_range, "pixels", required, "",
             "[x0, y0, x1, y1], both ends inside, origin bottom-left.", to<&Region::box>}},
-        {}};
+        .sections = {}};
 }
 
 Section reference() {
-    return {"reference", Multiplicity::one, optional, "What the metrics compare with.", in<&Experiment::reference>,
-        {{"kind", Type::word, none, "", defaulted, "\"quadrature\"",
-             "Converged integration, the article's Monte Carlo, or two independent estimates, the default for a scene "
-             "with a sky or meshes.",
-             to<&ReferencePlan::kind>, words_to<ReferenceKind::paired>({"quadrature", "note", "paired"})},
+    return {.name = "reference",
+        .many = Multiplicity::one,
+        .need = optional,
+        .means = "What the metrics compare with.",
+        .family = in<&Experiment::reference>,
+        .keys = {{"kind", Type::word, none, "", defaulted, "\"quadrature\"",
+                     "Converged integration, the article's Monte Carlo, or two independent estimates, the default for "
+                     "a scene "
+                     "with a sky or meshes.",
+                     to<&ReferencePlan::kind>, words_to<ReferenceKind::paired>({"quadrature", "note", "paired"})},
             {"n", Type::integer, count_range, "samples/pixel", optional, "256",
                 "Of each of the two estimates of paired.", to<&ReferencePlan::n>},
             {"monte_carlo", Type::flag, none, "", defaulted, "false",
@@ -284,44 +334,52 @@ Section reference() {
                 "Samples of the lobe for lobe x fill.", to<&ReferencePlan::lobe_spp>},
             {"disk_spp", Type::integer, count_range, "samples/pixel", defaulted, "96", "Samples on each light.",
                 to<&ReferencePlan::disk_spp>}},
-        {}};
+        .sections = {}};
 }
 
 Section furnaces() {
-    return {"furnaces", Multiplicity::named, optional,
-        "White furnaces: L_i = 1 all around, R = n. Expected: rho_d + rho_s, or rho_s of the lobe alone.",
-        in<&Experiment::furnaces>,
-        {{"arm", Type::arm, none, "", required, "", "The arm.", to<&FurnacePlan::arm>},
+    return {.name = "furnaces",
+        .many = Multiplicity::named,
+        .need = optional,
+        .means = "White furnaces: L_i = 1 all around, R = n. Expected: rho_d + rho_s, or rho_s of the lobe alone.",
+        .family = in<&Experiment::furnaces>,
+        .keys = {{"arm", Type::arm, none, "", required, "", "The arm.", to<&FurnacePlan::arm>},
             {"part", Type::word, none, "", defaulted, "\"combined\"", "The whole BRDF or its lobe.",
                 to<&FurnacePlan::part>, words_to<FurnacePart::lobe>({"combined", "lobe"})},
             {"shape", Type::shape, none, "", required, "", "Whose material.", to<&FurnacePlan::shape>},
             {"n", Type::integer, count_range, "samples", required, "", "Samples.", to<&FurnacePlan::n>}},
-        {}};
+        .sections = {}};
 }
 
 Section plates() {
-    const Section runs = {"runs", Multiplicity::list, optional, "What the plate shows, from left to right.",
-        in<&PlatePlan::runs>,
-        {{"arm", Type::arm, none, "", required, "", "The arm.", to<&PlateRun::arm>},
+    const Section runs = {.name = "runs",
+        .many = Multiplicity::list,
+        .need = optional,
+        .means = "What the plate shows, from left to right.",
+        .family = in<&PlatePlan::runs>,
+        .keys = {{"arm", Type::arm, none, "", required, "", "The arm.", to<&PlateRun::arm>},
             {"n", Type::integer, count_range, "samples/pixel", optional,
                 "the experiment's n; hero: the highest count; ladder: every count", "A sample count of that arm.",
                 to<&PlateRun::n>},
             {"s", Type::number, exponent_range, "", optional, "the experiment's s; exponent: every s of the control",
                 "An exponent of the exponent control.", to<&PlateRun::s>}},
-        {}};
-    return {"plates", Multiplicity::named, optional, "The pictures; a plate's name is its file's name.",
-        in<&Experiment::plates>,
-        {{"kind", Type::word, none, "", required, "", "Which picture.", to<&PlatePlan::kind>,
-             [] {
-                 std::vector<std::string> words;
-                 for (const PlateInfo& plate : plate_infos) words.emplace_back(plate.name);
-                 return words;
-             }()},
+        .sections = {}};
+    return {.name = "plates",
+        .many = Multiplicity::named,
+        .need = optional,
+        .means = "The pictures; a plate's name is its file's name.",
+        .family = in<&Experiment::plates>,
+        .keys = {{"kind", Type::word, none, "", required, "", "Which picture.", to<&PlatePlan::kind>,
+                     [] {
+                         std::vector<std::string> words;
+                         for (const PlateInfo& plate : plate_infos) words.emplace_back(plate.name);
+                         return words;
+                     }()},
             {"crop", Type::box, pixel_range, "pixels", optional, "the first region; surround: the last",
                 "The part that is enlarged.", to<&PlatePlan::crop>},
             {"caption", Type::text, none, "", defaulted, "\"\"", "The caption under the picture.",
                 to<&PlatePlan::caption>}},
-        {runs}};
+        .sections = {runs}};
 }
 
 /// The text until it is parsed. Another text is another assertion.
@@ -337,21 +395,28 @@ constexpr Slot comparison = {[](void* object, const Value& value) {
     }};
 
 Section assertions() {
-    return {"assertions", Multiplicity::titled, optional,
-        "What must hold; also written [[assertions]] with a key 'name'.", in<&Experiment::assertions>,
-        {{"check", Type::check, none, "", required, "", "A comparison, e.g. \"rmse.H(phong) < rmse.H(cosine)\".",
-             comparison},
+    return {.name = "assertions",
+        .many = Multiplicity::titled,
+        .need = optional,
+        .means = "What must hold; also written [[assertions]] with a key 'name'.",
+        .family = in<&Experiment::assertions>,
+        .keys = {{"check", Type::check, none, "", required, "",
+                     "A comparison, e.g. \"rmse.H(phong) < rmse.H(cosine)\".", comparison},
             {"over", Type::word, none, "", defaulted, "\"seed\"",
                 "At the experiment's seed, or medians over all seeds.", to<&AssertionPlan::median>,
                 {"seed", "median"}}},
-        {}};
+        .sections = {}};
 }
 
 }  // namespace
 
 const Section& schema() {
-    static const Section root = {"", Multiplicity::one, required, "The experiment.", {},
-        {{"title", Type::text, none, "", defaulted, "\"untitled\"", "One line.", to<&Experiment::title>},
+    static const Section root = {.name = "",
+        .many = Multiplicity::one,
+        .need = required,
+        .means = "The experiment.",
+        .family = {},
+        .keys = {{"title", Type::text, none, "", defaulted, "\"untitled\"", "One line.", to<&Experiment::title>},
             {"seed", Type::integer, seed_range, "", defaulted, "1", "The first seed, shared by all arms.",
                 to<&Experiment::seed>},
             {"seeds", Type::integer, {1, 4096}, "", defaulted, "1",
@@ -372,8 +437,8 @@ const Section& schema() {
                 "Whether the article's explanations of the Phong arm are measured.", to<&Experiment::note_evidence>},
             {"published", Type::text, none, "", optional, "none", "A JSON of published figures, relative to this file.",
                 to<&Experiment::published>}},
-        {image(), camera(), shape_tables(), mesh_tables(), disks(), light_tables(), sky(), fill(), arms(), exponent(),
-            regions(), reference(), furnaces(), plates(), assertions()}};
+        .sections = {image(), camera(), shape_tables(), mesh_tables(), disks(), light_tables(), sky(), fill(), arms(),
+            exponent(), regions(), reference(), furnaces(), plates(), assertions()}};
     return root;
 }
 

@@ -376,7 +376,7 @@ Parts parts_of(double x) {
     const double m = std::bit_cast<double>((t & 0xfffffffffffffu) + lowest);
     const double nearest = (m * steps + whole_magic) - whole_magic;
     const auto row = static_cast<std::size_t>(static_cast<int>(nearest) - first_log);
-    return {m, nearest / steps, static_cast<double>(exponent) - scale, row, exponent};
+    return {.m = m, .c = nearest / steps, .e = static_cast<double>(exponent) - scale, .row = row, .exponent = exponent};
 }
 
 /// 2 (s^3/3 + s^5/5 + ...) for |s| < 1/80.

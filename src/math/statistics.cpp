@@ -314,7 +314,7 @@ std::vector<std::size_t> rising(std::span<const double> p) {
 }
 
 Welch checked(double difference, double se, double df) {
-    Welch w{difference, se, df, 1};
+    Welch w{.difference = difference, .se = se, .df = df, .p = 1};
     if (!std::isfinite(difference) || !std::isfinite(se)) w.p = nan;
     else if (se > 0) w.p = two_sided_p(difference / se, df);
     else w.p = difference == 0 ? 1 : 0;

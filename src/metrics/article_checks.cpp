@@ -42,8 +42,14 @@ constexpr std::size_t replicates = 256;
 const std::vector<std::uint64_t> furnace_sample_counts = {64, 256, 1024, 4096, 16384};
 
 FurnaceQuantiles quantiles(std::string arithmetic, int bits, std::uint64_t n, const std::vector<double>& means) {
-    return {std::move(arithmetic), bits, n, quantile(means, 0.05), quantile(means, 0.25), quantile(means, 0.5),
-        quantile(means, 0.75), quantile(means, 0.95)};
+    return {.arithmetic = std::move(arithmetic),
+        .u_bits = bits,
+        .n = n,
+        .q05 = quantile(means, 0.05),
+        .q25 = quantile(means, 0.25),
+        .median = quantile(means, 0.5),
+        .q75 = quantile(means, 0.75),
+        .q95 = quantile(means, 0.95)};
 }
 
 /// Calls work(points, first) for whole packs of `count` equal points, on all cores. Point i of the pack has the random
@@ -136,7 +142,10 @@ LostSupport lost_support(const FurnaceCase& adapter, double theta_deg) {
         lost += dot(wi, R) <= 0;  // the support of the Phong pdf, for any value of its power
     }
     const double p = static_cast<double>(lost) / static_cast<double>(n);
-    return {theta_deg, p, std::sqrt(p * (1 - p) / static_cast<double>(n)), (1 - math::cos(theta)) / 2};
+    return {.theta_R_deg = theta_deg,
+        .measured = p,
+        .se = std::sqrt(p * (1 - p) / static_cast<double>(n)),
+        .theory = (1 - math::cos(theta)) / 2};
 }
 
 /// Repeats a t-test of the Phong sampler on a Lambert surface against the known mean.
@@ -148,7 +157,7 @@ FalseRejection false_rejection(
     lambert.rho_d = {1, 1, 1};
     lambert.rho_s = 0;
     lambert.s = s;
-    FalseRejection out{s, (s - 1) / (s + 1), n, runs, 0, 0, 0};
+    FalseRejection out{.s = s, .k = (s - 1) / (s + 1), .n = n, .runs = runs, .rejected = 0, .low = 0, .high = 0};
     std::vector<int> rejected(runs);
     const double bound = student_two_sided_quantile(static_cast<double>(n - 1), alpha);
     for_each_pack(lambert, runs, [&](const ShadingPoints& points, std::size_t first) {

@@ -44,7 +44,9 @@ template <class Find> double value_of(const ParsedQuantity& q, const Metrics& me
     if (q.number) return *q.number;
     switch (make_adapter(q.word)) {
         case QuantityOf::none: return static_cast<double>(metrics.geometry_pixels);
-        case QuantityOf::run: return of_run(q, find(RunKey{q.adapter, q.n, q.s > 0 ? q.s : experiment.s(), seed}));
+        case QuantityOf::run:
+            return of_run(
+                q, find(RunKey{.arm = q.adapter, .n = q.n, .s = q.s > 0 ? q.s : experiment.s(), .seed = seed}));
         case QuantityOf::furnace: return of_furnace(q, metrics);
         case QuantityOf::compared: break;
         case QuantityOf::shape: {
@@ -142,7 +144,11 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
 
 std::vector<AssertionResult> evaluate_assertions(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn) {
-    const Measurements measurements{experiment, metrics, RunIndex(metrics.runs), plate_bytes, drawn};
+    const Measurements measurements{.experiment = experiment,
+        .metrics = metrics,
+        .runs = RunIndex(metrics.runs),
+        .plate_bytes = plate_bytes,
+        .drawn = drawn};
     std::vector<AssertionResult> results;
     for (const AssertionPlan& plan : experiment.assertions) {
         AssertionResult r;

@@ -20,7 +20,7 @@ const RegionMetrics* RunMetrics::region(const std::string& name) const {
 }
 
 const RunMetrics* Metrics::find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const {
-    const RunKey key{arm, n, s, seed};
+    const RunKey key{.arm = arm, .n = n, .s = s, .seed = seed};
     const auto at = std::find_if(runs.begin(), runs.end(), [&](const RunMetrics& r) { return r.key == key; });
     return at == runs.end() ? nullptr : &*at;
 }
@@ -85,9 +85,13 @@ struct FrameReaders {
 
 FilmPixel pixel_at(
     const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, bool paired, std::size_t at) {
-    return {static_cast<double>(film.y[at]), static_cast<double>(reference.y[at]), static_cast<double>(film.var[at]),
-        static_cast<double>(film.largest[at]), static_cast<double>(film.horizon[at]), shapes.shape[at] >= 0,
-        paired ? static_cast<double>(reference.error[at]) : 0};
+    return {.y = static_cast<double>(film.y[at]),
+        .reference = static_cast<double>(reference.y[at]),
+        .var = static_cast<double>(film.var[at]),
+        .largest = static_cast<double>(film.largest[at]),
+        .horizon = static_cast<double>(film.horizon[at]),
+        .geometry = shapes.shape[at] >= 0,
+        .pair_error = paired ? static_cast<double>(reference.error[at]) : 0};
 }
 
 /// The squared error of a region against a paired reference. With d = Y - R and e = (R1 - R2)/2, whose square estimates
@@ -116,7 +120,12 @@ RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& 
     RunMetrics run;
     run.key = key;
     const bool paired = experiment.reference.kind == ReferenceKind::paired;
-    FilmFacts facts{0, film.n, film.directions, film.evaluations, film.invalid, experiment.firefly_k};
+    FilmFacts facts{.pixels = 0,
+        .n = film.n,
+        .directions = film.directions,
+        .evaluations = film.evaluations,
+        .bad = film.invalid,
+        .firefly_k = experiment.firefly_k};
     for (const Region& region : experiment.regions) {
         RegionMetrics m;
         m.region = region.name;
@@ -257,8 +266,11 @@ void add_flips(const std::vector<RunMetrics>& runs, const RunMetrics& run, std::
         std::vector<double> values = over_seeds(runs, run.key, metric);
         std::erase_if(values, [](double v) { return std::isnan(v); });
         if (values.size() < 2) continue;
-        const Band band{quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95),
-            static_cast<int>(values.size()), false};
+        const Band band{.q05 = quantile(values, 0.05),
+            .median = quantile(values, 0.5),
+            .q95 = quantile(values, 0.95),
+            .seeds = static_cast<int>(values.size()),
+            .heavy = false};
         out.push_back({run.key, metric, region.flip, band, {}, {}});
     }
 }
@@ -286,8 +298,11 @@ std::vector<SeedSpread> bands(
             b.key = run.key;
             b.metric = metric;
             b.measured = metric_value(run, metric);
-            b.band = {quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95),
-                static_cast<int>(values.size()), heavy(run, metric)};
+            b.band = {.q05 = quantile(values, 0.05),
+                .median = quantile(values, 0.5),
+                .q95 = quantile(values, 0.95),
+                .seeds = static_cast<int>(values.size()),
+                .heavy = heavy(run, metric)};
             if (published) b.published = published->find(run.key.arm, run.key.n, run.key.s, metric);
             if (b.published) {
                 const auto below =
@@ -380,7 +395,15 @@ Line fit_known(const std::vector<std::uint64_t>& n, const std::vector<double>& r
 /// Empty if the first seed lacks a sample count, as in a part of a run.
 std::optional<Ladder> ladder(
     const std::vector<RunMetrics>& runs, const ArmPlan& arm, const std::string& region, double s, std::uint32_t seed) {
-    Ladder out{arm.name, region, s, arm.n, {}, 0, 0, 0, false};
+    Ladder out{.arm = arm.name,
+        .region = region,
+        .s = s,
+        .n = arm.n,
+        .rmse = {},
+        .slope = 0,
+        .low = 0,
+        .high = 0,
+        .heavy = false};
     std::map<std::uint32_t, std::vector<double>> by_seed;
     bool paired = false;
     for (const RunMetrics& run : runs) {

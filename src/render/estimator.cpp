@@ -182,7 +182,13 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
         const std::shared_ptr<const TiledScene::Points> groups = view.points(k);
         for (const ShadingPoints& shading_points : *groups) {
             for (Moments& m : moments) m.resize(shading_points);
-            run_kernel(isa, arm, {&shading_points, n, seed, moments, &monitor.stop, nullptr});
+            run_kernel(isa, arm,
+                {.shading_points = &shading_points,
+                    .sample_counts = n,
+                    .seed = seed,
+                    .out = moments,
+                    .stop = &monitor.stop,
+                    .samples = nullptr});
             for (std::size_t r = 0; r < n.size(); ++r) {
                 resolve_film(view.scene(), shading_points, moments[r], films[r]);
                 bad[r][k] += std::accumulate(moments[r].bad.begin(),
@@ -215,7 +221,13 @@ std::vector<Moments> estimate_points(const ShadingPoints& shading_points, const 
     float* samples) {
     std::vector<Moments> moments(n.size());
     for (Moments& m : moments) m.resize(shading_points);
-    run_kernel(isa, arm, {&shading_points, n, seed, moments, stop, samples});
+    run_kernel(isa, arm,
+        {.shading_points = &shading_points,
+            .sample_counts = n,
+            .seed = seed,
+            .out = moments,
+            .stop = stop,
+            .samples = samples});
     return moments;
 }
 
@@ -370,7 +382,7 @@ void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
             }
             wi.resize(runs.size() * count);
             pdf.resize(wi.size());
-            sampler.draw({runs, u, lights, lights_at}, {wi, pdf});
+            sampler.draw({.runs = runs, .u = u, .lights = lights, .lights_at = lights_at}, {wi, pdf});
             for (std::size_t k = 0; k < wi.size(); ++k) drawn.push_back(usable(wi[k], pdf[k]));
         }
         for (std::size_t at = i; at < end; ++at) kernel(call, at, Prefetched<float>(drawn.data() + (at - i) * n));

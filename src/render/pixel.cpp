@@ -206,7 +206,12 @@ PixelLight seen_light(const Light& light, const Hit& hit) {
     const Figure figure = light.seen_from(hit.x);
     const Vec3d c = frame.to_local(middle_of(figure) - hit.x);
     const double distance = length(c), half = math::atan2(radius_of(figure), distance) * 180 / pi;
-    PixelLight out{light.name, c * (1 / distance), half, luminance(light.radiance), {}, light.shines_on(hit.x)};
+    PixelLight out{.name = light.name,
+        .towards = c * (1 / distance),
+        .angular_radius = half,
+        .light = luminance(light.radiance),
+        .rim = {},
+        .faces = light.shines_on(hit.x)};
     constexpr int points = 96;
     const auto disk = std::get_if<shapes::Disk>(&figure);
     const std::array<Vec3d, 4> corners = corners_about(figure);
@@ -244,8 +249,15 @@ OpenPixel::OpenPixel(const Scene& scene, int i, int j)
 
 ShadingPoint<float> OpenPixel::aimed_from() const {
     const ShadingPoints& p = shading_points_;
-    ShadingPoint<float> out{at(p.wox, p.woy, p.woz), p.s[0], p.alpha[0], p.diffuse[0], p.rho_s[0], local_.data(),
-        static_cast<int>(local_.size()), others_.data(), static_cast<int>(others_.size())};
+    ShadingPoint<float> out{.wo = at(p.wox, p.woy, p.woz),
+        .s = p.s[0],
+        .alpha = p.alpha[0],
+        .diffuse = p.diffuse[0],
+        .lobe = p.rho_s[0],
+        .disks = local_.data(),
+        .disk_count = static_cast<int>(local_.size()),
+        .others = others_.data(),
+        .other_count = static_cast<int>(others_.size())};
     if (!p.around) return out;
     out.around = p.around.get();
     out.position = at(p.px, p.py, p.pz);

@@ -50,8 +50,13 @@ float worth(double y) { return static_cast<float>(y + 0.0); }
 
 OccluderF occluder_about(const Occluder& o, Vec3d origin) {
     const BodyNumbers n = std::visit([&](const auto& body) { return body.numbers(origin); }, o.body);
-    return {o.body.index(), static_cast<std::uint32_t>(o.shape), single(n.a), single(n.b), single(n.c),
-        static_cast<float>(n.radius), static_cast<float>(n.offset)};
+    return {.kind = o.body.index(),
+        .shape = static_cast<std::uint32_t>(o.shape),
+        .a = single(n.a),
+        .b = single(n.b),
+        .c = single(n.c),
+        .radius = static_cast<float>(n.radius),
+        .offset = static_cast<float>(n.offset)};
 }
 
 std::vector<TileBox> tiles_of(int width, int height) {

@@ -52,8 +52,11 @@ private:
         scalar::LightRoom<float> room(p, memory.data());
         for (const PointRun& run : at.runs) {
             const scalar::Lights<float> lights(p, run.point, room);
-            ShadingPoint<float> point{
-                run.wo, p.s[run.point], p.alpha[run.point], p.diffuse[run.point], p.rho_s[run.point]};
+            ShadingPoint<float> point{.wo = run.wo,
+                .s = p.s[run.point],
+                .alpha = p.alpha[run.point],
+                .diffuse = p.diffuse[run.point],
+                .lobe = p.rho_s[run.point]};
             lights.show(point);
             work(A<float>(point), run);
         }
@@ -68,7 +71,7 @@ template <class Work> void in_batches(const ExternalSampler& sampler, const Poin
     std::vector<ExternalLightAt> lights_at;
     std::size_t first = 0, rows = 0;
     const auto flush = [&] {
-        if (rows > 0) work(ExternalBatch{runs, {}, lights, lights_at}, first, rows);
+        if (rows > 0) work(ExternalBatch{.runs = runs, .u = {}, .lights = lights, .lights_at = lights_at}, first, rows);
         first += rows;
         rows = 0;
         runs.clear();
@@ -303,7 +306,12 @@ namespace {
 LocalLight<double> local_light(const LightArrays& arrays, std::size_t at) {
     const auto number = [&](std::size_t k) { return static_cast<double>(arrays.numbers[k][at]); };
     const auto vector = [&](std::size_t k) { return Vec3d{number(k), number(k + 1), number(k + 2)}; };
-    LocalLight<double> out{arrays.kind, static_cast<double>(arrays.power), vector(0), vector(3), vector(6), {}};
+    LocalLight<double> out{.kind = arrays.kind,
+        .power = static_cast<double>(arrays.power),
+        .a = vector(0),
+        .b = vector(3),
+        .c = vector(6),
+        .number = {}};
     for (std::size_t k = 0; k < out.number.size(); ++k) out.number[k] = number(9 + k);
     return out;
 }
@@ -311,7 +319,11 @@ LocalLight<double> local_light(const LightArrays& arrays, std::size_t at) {
 ExternalLightAt disk_at(const DiskArrays& disk, std::size_t at) {
     const Vec3d center{double(disk.cx[at]), double(disk.cy[at]), double(disk.cz[at])};
     const Vec3d normal{double(disk.nx[at]), double(disk.ny[at]), double(disk.nz[at])};
-    return {center, normal, {}, {}, shines_flat(center, normal, static_cast<double>(disk.radius), disk.two_sided)};
+    return {.center = center,
+        .normal = normal,
+        .edge_u = {},
+        .edge_v = {},
+        .shines = shines_flat(center, normal, static_cast<double>(disk.radius), disk.two_sided)};
 }
 
 template <class Kind> ExternalLightAt light_at(const LocalLight<double>& light) {
@@ -347,8 +359,13 @@ void add_lights_at(const ShadingPoints& shading_points, std::size_t at, std::vec
 
 ExternalRun run_at(const ShadingPoints& points, std::size_t at, Vec3<double> wo, std::size_t rows) {
     const Rgb& lambert = points.lambert[at];
-    return {wo, {double(points.s[at]), double(points.alpha[at]), double(points.diffuse[at]), points.rho_s_exact[at]},
-        rows, {lambert[0] * pi, lambert[1] * pi, lambert[2] * pi}};
+    return {.wo = wo,
+        .surface = {.s = double(points.s[at]),
+            .alpha = double(points.alpha[at]),
+            .diffuse = double(points.diffuse[at]),
+            .lobe = points.rho_s_exact[at]},
+        .rows = rows,
+        .rho_d = {lambert[0] * pi, lambert[1] * pi, lambert[2] * pi}};
 }
 
 bool is_usable(const Vec3<double>& wi, double p) {

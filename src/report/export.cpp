@@ -291,7 +291,8 @@ std::string metrics_csv(const ReportInputs& in) {
 namespace {
 
 JunitCase case_of(const AssertionResult& a, const std::string& group) {
-    JunitCase out{group, a.name, JunitCase::State::passed, "", "", {}};
+    JunitCase out{
+        .group = group, .name = a.name, .state = JunitCase::State::passed, .message = "", .text = "", .seconds = {}};
     if (!a.skipped.empty()) {
         out.state = JunitCase::State::skipped;
         out.message = a.skipped;

@@ -50,7 +50,7 @@ std::uint64_t Findings::headline_n() const {
 }
 
 const RunMetrics* Findings::run(const std::string& arm, std::uint64_t n, std::optional<double> s) const {
-    return runs_.find({arm, n, s.value_or(this->s()), in_.experiment.seed});
+    return runs_.find({.arm = arm, .n = n, .s = s.value_or(this->s()), .seed = in_.experiment.seed});
 }
 
 const SeedSpread* Findings::band(
@@ -79,7 +79,7 @@ SeedCount Findings::seeds_above(
     SeedCount count;
     for (const RunMetrics& a : in_.metrics.runs) {
         if (a.key.arm != arm_a || a.key.n != n || a.key.s != s()) continue;
-        const RunMetrics* b = runs_.find({arm_b, n, s(), a.key.seed});
+        const RunMetrics* b = runs_.find({.arm = arm_b, .n = n, .s = s(), .seed = a.key.seed});
         const RegionMetrics *in_a = a.region(region), *in_b = b ? b->region(region) : nullptr;
         if (!in_a || !in_b) continue;
         ++count.of;

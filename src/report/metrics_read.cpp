@@ -33,8 +33,10 @@ template <class T, class F> std::vector<T> list_of(const Json& json, F one) {
 
 RunMetrics run_of(const Json& json) {
     RunMetrics run;
-    run.key = {json.at("arm").get<std::string>(), json.at("n").get<std::uint64_t>(), read_number(json.at("s")),
-        json.at("seed").get<std::uint32_t>()};
+    run.key = {.arm = json.at("arm").get<std::string>(),
+        .n = json.at("n").get<std::uint64_t>(),
+        .s = read_number(json.at("s")),
+        .seed = json.at("seed").get<std::uint32_t>()};
 #define CRESCENT_READ(name, Type) read(json.at(#name), to.name);
     const auto frame = [&](RunMetrics& to) { CRESCENT_FRAME_METRICS(CRESCENT_READ) };
     frame(run);

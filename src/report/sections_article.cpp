@@ -23,8 +23,13 @@ std::string share_below(const SeedSpread& b) {
 }
 
 Json band_row(const Page& page, const SeedSpread& b) {
-    const Strip strip{b.band.q05, b.band.median, b.band.q95, b.measured, !b.band.heavy && b.band.seeds > 1,
-        b.published.has_value(), b.published.value_or(0)};
+    const Strip strip{.q05 = b.band.q05,
+        .median = b.band.median,
+        .q95 = b.band.q95,
+        .measured = b.measured,
+        .bar = !b.band.heavy && b.band.seeds > 1,
+        .has_published = b.published.has_value(),
+        .published = b.published.value_or(0)};
     const bool paired = page.in.experiment.reference.kind == ReferenceKind::paired;
     return {{"run", run_html(b.key, page.in.experiment)},
         {"published", cell_text(b.published ? figures_of(b.metric, *b.published) : "")},

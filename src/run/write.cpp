@@ -97,7 +97,7 @@ void write_reports(const Measured& m, Staging& staging, const OutputParts& parts
 }  // namespace
 
 OutputParts output_parts(const std::string& words) {
-    OutputParts out{false, false, false, false};
+    OutputParts out{.metrics = false, .films = false, .plates = false, .report = false};
     const std::pair<const char*, bool*> all[] = {
         {"metrics", &out.metrics}, {"films", &out.films}, {"plates", &out.plates}, {"report", &out.report}};
     std::vector<std::string> names;

@@ -84,7 +84,8 @@ ExampleLight example_light() {
 }
 
 std::vector<double> example_context(std::span<const std::string> uses) {
-    const ExternalRun point{{0, 0, 1}, {32, 0.24253562503633297, 0.5, 0.5}, 1, {0.5, 0.5, 0.5}};
+    const ExternalRun point{
+        .wo = {0, 0, 1}, .surface = {32, 0.24253562503633297, 0.5, 0.5}, .rows = 1, .rho_d = {0.5, 0.5, 0.5}};
     const ExampleLight example = example_light();
     std::vector<double> out;
     add_context(uses, point, {&example.light, 1}, {&example.at, 1}, out);

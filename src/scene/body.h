@@ -182,8 +182,11 @@ inline OnPlane project(Vec3d p, Vec3d n, const Sight& s) {
     const auto beyond = [&](double f, double side) {
         return where_positive(side * sign * (hx + f * h0), side * sign * (hx + f * h1));
     };
-    return {g0, g1 - g0, -sign * h0, sign * (h0 - h1),
-        hx == 0 ? Interval{} : both(beyond(s.between.from, 1), beyond(s.between.to, -1))};
+    return {.at0 = g0,
+        .step = g1 - g0,
+        .w0 = -sign * h0,
+        .w1 = sign * (h0 - h1),
+        .sides = hx == 0 ? Interval{} : both(beyond(s.between.from, 1), beyond(s.between.to, -1))};
 }
 
 // ---- The first intersection of a ray x + t d with a shape; t is in units of d and infinite for a miss.
@@ -199,7 +202,7 @@ struct Intersection {
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
 /// Returns a surface at t that is ordered by the same t.
-inline Intersection crossing_at(double t, Vec3d n) { return {t, t, n, false}; }
+inline Intersection crossing_at(double t, Vec3d n) { return {.t = t, .order = t, .n = n, .reveal = false}; }
 
 /// Returns t where the ray meets the plane through `point` with normal n.
 inline double plane_t(Vec3d point, Vec3d n, Vec3d x, Vec3d d) {

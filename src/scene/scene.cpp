@@ -232,7 +232,11 @@ Hit Scene::Made::hit(const MeshHit& met, Vec3d d) const {
 }
 
 Hit Scene::Made::hit(int shape, Vec3d d, const Intersection& met) const {
-    return {shape, met.reveal, data.camera.eye + met.t * d, dot(met.n, d) < 0 ? met.n : -met.n, -d};
+    return {.shape = shape,
+        .reveal = met.reveal,
+        .x = data.camera.eye + met.t * d,
+        .n = dot(met.n, d) < 0 ? met.n : -met.n,
+        .wo = -d};
 }
 
 Vec3d Scene::ray_start(const Hit& hit) const {

@@ -18,7 +18,8 @@ void Material::set_specular(const Rgb& color) {
 
 Surface surface_of(const Material& m, double common_s) {
     const double s = m.s.value_or(common_s);
-    Surface out = {m.rho_d, m.rho_s, m.brdf, s, m.alpha.value_or(std::sqrt(2 / (s + 2)))};
+    Surface out = {
+        .rho_d = m.rho_d, .rho_s = m.rho_s, .brdf = m.brdf, .s = s, .alpha = m.alpha.value_or(std::sqrt(2 / (s + 2)))};
     for (std::size_t c = 0; m.specular && m.rho_s > 0 && c < 3; ++c) out.tint[c] = (*m.specular)[c] / m.rho_s;
     return out;
 }
@@ -124,7 +125,7 @@ double SceneData::s() const {
 Affine Placement::transform() const {
     if (matrix) {
         const auto column = [&](std::size_t k) { return Vec3d{(*matrix)[k], (*matrix)[4 + k], (*matrix)[8 + k]}; };
-        return {column(0), column(1), column(2), column(3)};
+        return {.x = column(0), .y = column(1), .z = column(2), .at = column(3)};
     }
     return translation(translate).after(rotation(rotate).after(scaling(scale)));
 }

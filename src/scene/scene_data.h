@@ -92,7 +92,12 @@ struct DiskLight {
     Rgb radiance{};
     bool two_sided = false;
     SourceLocation at;
-    Light light() const { return {name, lights::Disk{center, normal, radius, two_sided}, radiance, at}; }
+    Light light() const {
+        return {.name = name,
+            .form = lights::Disk{.center = center, .normal = normal, .radius = radius, .two_sided = two_sided},
+            .radiance = radiance,
+            .at = at};
+    }
 };
 
 // ---- Shapes and camera. Lengths in m.

@@ -73,7 +73,7 @@ Ball ball_around(const Occluder& body) {
 }
 
 std::array<Interval, 2> hidden(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1, Between between) {
-    const Sight sight = {x, y0 - x, y1 - y0, between};
+    const Sight sight = {.x = x, .d0 = y0 - x, .step = y1 - y0, .between = between};
     return std::visit([&](const auto& body) { return body.hidden(sight); }, o.body);
 }
 

@@ -163,8 +163,11 @@ Rgb SkyTable::radiance(std::uint32_t texel) const {
 SkyTable::RowEdges SkyTable::edges_of(int row) const {
     const int high = height(), mirrored = high - 1 - row, upper = std::min(row, mirrored);
     const double polar = edge_[static_cast<std::size_t>(upper)];
-    if (row == mirrored) return {polar, polar, true, false};
-    return {polar, edge_[static_cast<std::size_t>(upper) + 1], false, row > mirrored};
+    if (row == mirrored) return {.polar = polar, .equatorial = polar, .across = true, .below = false};
+    return {.polar = polar,
+        .equatorial = edge_[static_cast<std::size_t>(upper) + 1],
+        .across = false,
+        .below = row > mirrored};
 }
 
 double SkyTable::solid_angle(int row) const {

@@ -60,8 +60,12 @@ std::uint64_t hash_of_texels(int width, int height, const std::vector<float>& rg
 }
 
 std::string image_file(const RgbImage& image) {
-    ImageHeader header{{}, image_kind, image_version, static_cast<std::uint32_t>(image.width),
-        static_cast<std::uint32_t>(image.height), image.hash};
+    ImageHeader header{.magic = {},
+        .kind = image_kind,
+        .version = image_version,
+        .width = static_cast<std::uint32_t>(image.width),
+        .height = static_cast<std::uint32_t>(image.height),
+        .hash = image.hash};
     std::memcpy(header.magic, "crescent", 8);
     std::string out(sizeof header, '\0');
     std::memcpy(out.data(), &header, sizeof header);

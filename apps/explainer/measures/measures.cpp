@@ -125,7 +125,10 @@ LostSupport lost_in(const Data& data, const Box& box) {
     std::uint64_t lost = 0;
     for (const Vec3d& w : cosine_directions(data.cast.seed, lost_draws)) lost += dot(w, R) <= 0;
     const double p = static_cast<double>(lost) / lost_draws;
-    return {math::acos(c) * 180 / pi, p, std::sqrt(p * (1 - p) / lost_draws), (1 - c) / 2};
+    return {.theta_R_deg = math::acos(c) * 180 / pi,
+        .measured = p,
+        .se = std::sqrt(p * (1 - p) / lost_draws),
+        .theory = (1 - c) / 2};
 }
 
 }  // namespace

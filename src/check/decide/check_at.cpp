@@ -40,7 +40,9 @@ struct Stage {
         key.part = 0;
         observe(source, plan, to, of_f, key, integrals, observations);
     }
-    Evidence evidence(const Source& source, const Plan& plan) const { return {source, plan, integrals, observations}; }
+    Evidence evidence(const Source& source, const Plan& plan) const {
+        return {.source = source, .plan = plan, .integrals = integrals, .observations = observations};
+    }
 };
 
 void test_all(const Evidence& e, const Visit& visit) {

@@ -61,7 +61,12 @@ bool estimates_f(const CheckCase& check_case, const CheckOutcome& o, const Strea
 
 void test_whole_sampler(std::span<const CheckCase> check_cases, const CheckSettings& settings, CheckOutcome& out) {
     const SamplerAdapter& adapter = *check_cases[out.check_cases[0]].adapter;
-    StreamKey key{settings.seed, static_cast<std::uint16_t>(out.check_cases[0]), 0, 1, Purpose::light, 0};
+    StreamKey key{.seed = settings.seed,
+        .place = static_cast<std::uint16_t>(out.check_cases[0]),
+        .technique = 0,
+        .stage = 1,
+        .purpose = Purpose::light,
+        .part = 0};
     const auto add = [&](std::optional<SmallFault> fault) {
         if (fault) out.small.push_back(*fault);
     };
@@ -109,7 +114,7 @@ std::optional<SmallFault> fault_of_first_draws(const CheckCase& check_case, cons
         out.of += few;
         for (std::size_t i = 0; i < u.size(); ++i)
             if (const auto fault = fault_of(draws[i], traits); fault && out.times++ == 0) {
-                out.first = {u[i], draws[i], draws[i].pdf, 0};
+                out.first = {.u = u[i], .draw = draws[i], .p = draws[i].pdf, .expected = 0};
                 out.what = *fault;
             }
     }
@@ -175,8 +180,11 @@ private:
         cut = cut_of([&] {
             for (int t = 0; t < check_case.adapter->techniques(); ++t)
                 at.push_back(check_sampler_at(*check_case.adapter, t, check_case.wo,
-                    {check_case.light, static_cast<std::uint16_t>(index_of(job)), levels_, reserved}, budget,
-                    settings_.seed));
+                    {.light = check_case.light,
+                        .place = static_cast<std::uint16_t>(index_of(job)),
+                        .levels = levels_,
+                        .reserved = reserved},
+                    budget, settings_.seed));
         });
         if (check_case.adapter->serial())
             for (const CheckAt& c : at)
@@ -277,8 +285,12 @@ private:
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
             monitor_.check();
             const CheckCase& check_case = case_of(jobs_[j]);
-            const StreamKey key{
-                settings_.seed, static_cast<std::uint16_t>(index_of(jobs_[j])), 0, 1, Purpose::light, 1};
+            const StreamKey key{.seed = settings_.seed,
+                .place = static_cast<std::uint16_t>(index_of(jobs_[j])),
+                .technique = 0,
+                .stage = 1,
+                .purpose = Purpose::light,
+                .part = 1};
             if (check_case.adapter->can_draw())
                 jobs_[j].outcome->cut[jobs_[j].index] =
                     cut_of([&] { first_faults[j] = fault_of_first_draws(check_case, key); });

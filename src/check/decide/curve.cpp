@@ -76,14 +76,19 @@ std::optional<SmallFault> draws_on_curve(Source& source, const StreamKey& key) {
     std::vector<Draw> draws(around.size()), at(u.size());
     source.draw(around, draws);
     source.draw(u, at);
-    SmallFault out{
-        Family::repeats, 0, 0, 0, {}, "all draws lie on a curve, since no two random numbers move them apart"};
+    SmallFault out{.family = Family::repeats,
+        .times = 0,
+        .of = 0,
+        .size = 0,
+        .first = {},
+        .what = "all draws lie on a curve, since no two random numbers move them apart"};
     const auto each = static_cast<std::size_t>(4 * numbers);
     for (std::size_t i = 0; i < u.size(); ++i) {
         const Derivatives d(std::span<const Draw>(draws).subspan(each * i, each), numbers);
         if (!d.known || !has_direction(at[i])) continue;
         ++out.of;
-        if (d.on_curve(at[i].pdf) && out.times++ == 0) out.first = {u[i], at[i], at[i].pdf, 0};
+        if (d.on_curve(at[i].pdf) && out.times++ == 0)
+            out.first = {.u = u[i], .draw = at[i], .p = at[i].pdf, .expected = 0};
     }
     return out.of >= fewest && out.times >= most_of_points * out.of ? std::optional(out) : std::nullopt;
 }

@@ -52,7 +52,12 @@ bool turns_with_wo(const Source& source, Vec3d wi, const StreamKey& key) {
 }
 
 SmallFault fault_at(const DeltaPart& p, const char* what) {
-    SmallFault out{Family::delta_direction, static_cast<double>(p.drawn), static_cast<double>(p.drawn), 0, {}, what};
+    SmallFault out{.family = Family::delta_direction,
+        .times = static_cast<double>(p.drawn),
+        .of = static_cast<double>(p.drawn),
+        .size = 0,
+        .first = {},
+        .what = what};
     out.first.draw.wi = p.wi;
     out.first.draw.delta = p.q;
     out.first.draw.weights = p.weight;

@@ -49,7 +49,7 @@ std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKe
             std::vector<double> p(wi.size(), 1);
             std::vector<Vec3d> f(wi.size());
             source.f_cos(wi, f);
-            append_weights(source, batch, {at, wi, p, f}, x);
+            append_weights(source, batch, {.at = at, .wi = wi, .p = p, .f_cos = f}, x);
         }
         if (out.empty()) out = std::move(x);
         else
@@ -93,7 +93,12 @@ std::vector<Efficiency> variances_of(std::span<const CheckCase> check_cases, std
     const auto run = [&](std::size_t b) {
         monitor.check();
         const std::size_t i = baselines[b];
-        const StreamKey key{settings.seed, static_cast<std::uint16_t>(i), 0, 1, Purpose::light, 3};
+        const StreamKey key{.seed = settings.seed,
+            .place = static_cast<std::uint16_t>(i),
+            .technique = 0,
+            .stage = 1,
+            .purpose = Purpose::light,
+            .part = 3};
         out[i] = variance_of_baseline(check_cases[i], i, key);
     };
     const bool serial = std::ranges::any_of(check_cases, [](const CheckCase& t) { return t.adapter->serial(); });
@@ -123,7 +128,7 @@ void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, s
     const ProgressMonitor& monitor) {
     constexpr std::size_t turns = 7, most = 1024, of_a_program = 512;
     std::vector<PrimarySample> u(most);
-    const StreamKey key{seed, 0, 0, 1, Purpose::light, 4};
+    const StreamKey key{.seed = seed, .place = 0, .technique = 0, .stage = 1, .purpose = Purpose::light, .part = 4};
     for (std::uint32_t i = 0; i < most; ++i) u[i] = numbers_at(key, i, PrimarySample::most, Resolution::single);
     std::vector<std::vector<double>> times(all.size());
     std::vector<Draw> draws(most);

@@ -109,7 +109,7 @@ void find_branches(Source& source, std::vector<Point>& all, int k, const StreamK
         std::vector<Run> mine;
         for (std::size_t j = 0; j < of.size(); ++j) {
             if (!of[j].same) continue;
-            Run run{i, of[j].x, of[j].x, {}, {}};
+            Run run{.point = i, .from = of[j].x, .to = of[j].x, .low_end = {}, .high_end = {}};
             const std::size_t first = j;
             while (j + 1 < of.size() && of[j + 1].same) ++j;
             run.to = of[j].x;
@@ -181,7 +181,8 @@ std::vector<CentralDifferences> differences(Source& source, const std::vector<Po
             if (std::min({x, y, 1 - x, 1 - y}) < 2 * h || !std::all_of(q, q + 4, drawn)) continue;
             const Vec3d a = q[0].wi - q[1].wi, b = q[2].wi - q[3].wi, n = cross(a, b);
             const auto [least, most] = std::minmax({q[0].pdf, q[1].pdf, q[2].pdf, q[3].pdf});
-            out[i][s] = {{a, b}, std::sqrt(dot(n, n)) / (4 * h * h), least, most};
+            out[i][s] = {
+                .along = {a, b}, .area = std::sqrt(dot(n, n)) / (4 * h * h), .least_pdf = least, .most_pdf = most};
         }
     }
     return out;
@@ -265,7 +266,7 @@ Round test_points(Source& source, const StreamKey& key) {
             if (!is_confirmed(source, *x, 1 - ratio, stream)) continue;
         }
         if (out.broken++ == 0) {
-            out.first = {x->u, x->draw, x->p, x->drawn};
+            out.first = {.u = x->u, .draw = x->draw, .p = x->p, .expected = x->drawn};
             out.worst = ratio;
         }
     }
@@ -322,9 +323,12 @@ std::optional<SmallFault> jacobian(Source& source, const StreamKey& given) {
     key.part = 1;
     const Round two = test_points(source, key);
     if (two.broken < jacobian_breaks) return {};
-    return SmallFault{Family::jacobian, static_cast<double>(one.broken + two.broken),
-        static_cast<double>(one.tested + two.tested), std::min(one.worst, two.worst) - 1, one.first,
-        "p is less than what is drawn"};
+    return SmallFault{.family = Family::jacobian,
+        .times = static_cast<double>(one.broken + two.broken),
+        .of = static_cast<double>(one.tested + two.tested),
+        .size = std::min(one.worst, two.worst) - 1,
+        .first = one.first,
+        .what = "p is less than what is drawn"};
 }
 
 }  // namespace crescent::check

@@ -100,7 +100,7 @@ std::optional<SmallFault> rows_of_file(const Source& source) {
         std::optional<const char*> fault = fault_of(d, source.traits);
         if (!fault && d.f && !(std::isfinite(*d.f) && *d.f >= 0)) fault = "f is not a number >= 0";
         if (fault && out.times++ == 0) {
-            out.first = {file->row_numbers(i), d, 0, 0};
+            out.first = {.u = file->row_numbers(i), .draw = d, .p = 0, .expected = 0};
             out.what = *fault;
             out.place = file->place(i);
         }
@@ -122,7 +122,7 @@ std::optional<SmallFault> corners_of_u(Source& source) {
             if (!std::isfinite(p) || p < 0) fault = "pdf(w) there is not a number >= 0";
         }
         if (fault && out.times++ == 0) {
-            out.first = {u[i], draws[i], p, 0};
+            out.first = {.u = u[i], .draw = draws[i], .p = p, .expected = 0};
             out.what = *fault;
         }
     }
@@ -163,7 +163,7 @@ std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
     for (std::size_t i = 0; i < u.size(); ++i)
         if (!same(together[i], again[i]) || !same(together[i], backwards[i]))
             if (out.times++ == 0) {
-                out.first = {u[i], together[i], 0, 0};
+                out.first = {.u = u[i], .draw = together[i], .p = 0, .expected = 0};
                 out.what = "the same u gives another draw";
             }
     return out.times > 0 ? std::optional(out) : std::nullopt;
@@ -257,14 +257,19 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     for (int k = 0; k < source.traits.numbers; ++k) {
         const std::vector<Draw> far = draws_moved_by(k, 0x1p-10), near = draws_moved_by(k, 0x1p-11),
                                 least = draws_moved_by(k, few_bits_step);
-        SmallFault out{Family::repeats, 0, 0, 0, {}, "only the first bits of a random number move the draw"};
+        SmallFault out{.family = Family::repeats,
+            .times = 0,
+            .of = 0,
+            .size = 0,
+            .first = {},
+            .what = "only the first bits of a random number move the draw"};
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double a = moved(at[i], far[i]), b = moved(at[i], near[i]);
             const bool smooth = b > 0 && a > 1.5 * b && a < 3 * b;
             if (!smooth || a * few_bits_step / 0x1p-10 < few_bits_move) continue;
             ++out.of;
             if (moved(at[i], least[i]) == 0 && out.times++ == 0) {
-                out.first = {u[i], at[i], 0, 0};
+                out.first = {.u = u[i], .draw = at[i], .p = 0, .expected = 0};
                 out.size = k;
             }
         }

@@ -30,7 +30,7 @@ std::vector<PrimarySample> few_numbers(int count) {
 void note(
     SmallFault& to, const PrimarySample& u, const Draw& d, double p, const char* what, std::optional<Vec3d> wo = {}) {
     if (to.times++ == 0) {
-        to.first = {u, d, p, 0};
+        to.first = {.u = u, .draw = d, .p = p, .expected = 0};
         to.what = what;
         to.wo = wo;
     }
@@ -164,7 +164,12 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const Strea
     }
     const std::vector<Vec3d> f = f_of(adapter, there), g = f_of(adapter, back), again = f_of(adapter, there);
     const int channels = traits.channels == 3 ? 3 : 1;
-    SmallFault out{Family::reciprocity, 0, 256.0 * channels, 0, {}, "f(a, b) differs from f(b, a)"};
+    SmallFault out{.family = Family::reciprocity,
+        .times = 0,
+        .of = 256.0 * channels,
+        .size = 0,
+        .first = {},
+        .what = "f(a, b) differs from f(b, a)"};
     for (std::size_t i = 0; i < there.size(); ++i)
         for (int c = 0; c < channels; ++c) {
             const Pair& p = there[i];
@@ -221,7 +226,7 @@ struct WeightedDraws {
 std::optional<SmallFault> mis_weights(const SamplerAdapter& adapter, Vec3d wo, const StreamKey& key) {
     if (adapter.techniques() < 2) return {};
     const Traits traits = adapter.traits();
-    SmallFault out{Family::mis, 0, 0, 0, {}, ""};
+    SmallFault out{.family = Family::mis, .times = 0, .of = 0, .size = 0, .first = {}, .what = ""};
     double too_small = 0;  // number of draws where a density is 0 and the weights sum to less than 1
     for (int t = 0; t < adapter.techniques(); ++t) {
         const std::vector<PrimarySample> u = first_numbers(key, 512, traits);
@@ -234,7 +239,8 @@ std::optional<SmallFault> mis_weights(const SamplerAdapter& adapter, Vec3d wo, c
             note(out, u[w.of[i]], draws[w.of[i]], w.sum[i], "", wo);
             if (!(std::fabs(w.sum[i] - 1) <= std::fabs(out.size))) out.size = w.sum[i] - 1;
             if (w.empty[i] < 0 || !(w.sum[i] < 1)) continue;
-            if (too_small++ == 0) out.first = {u[w.of[i]], draws[w.of[i]], w.sum[i], w.empty[i] + 1.0};
+            if (too_small++ == 0)
+                out.first = {.u = u[w.of[i]], .draw = draws[w.of[i]], .p = w.sum[i], .expected = w.empty[i] + 1.0};
         }
     }
     if (!(out.times > tolerated_breaks)) return {};

@@ -136,7 +136,8 @@ private:
         for (std::size_t k = 0; k < w_.size(); ++k) points_[k] = to_chart(w_[k]);
         plan_.tree.find(points_, leaf_);
         if (with_f) compare_weights(u, set);
-        if (with_f && set < 0) append_weights(source_, draws_, {at_, w_, p_, f_}, to_.weights);
+        if (with_f && set < 0)
+            append_weights(source_, draws_, {.at = at_, .wi = w_, .p = p_, .f_cos = f_}, to_.weights);
         for (std::size_t k = 0; k < w_.size(); ++k) {
             fetch_leaf(k + fetched_before, set);
             if (is_direction(source_.traits, draws_[at_[k]], p_[k])) add_direction(k, set, u[at_[k]]);
@@ -178,25 +179,26 @@ private:
             const double squared = dot(d.wi, d.wi);
             if (!chosen || !d.weight || !std::isfinite(*d.weight) || *d.weight < -negative_weight ||
                 !(std::fabs(squared - 1) <= 2 * unit_length))
-                c.invalid.add({u, d, 0, 0});
+                c.invalid.add({.u = u, .draw = d, .p = 0, .expected = 0});
             return false;
         }
         const double squared = dot(d.wi, d.wi);
         if (std::isnan(d.pdf) || d.pdf < 0 || std::isinf(d.pdf) || (d.pdf > 0 && !std::isfinite(squared)) ||
             std::isnan(squared)) {
-            c.invalid.add({u, d, 0, 0});
+            c.invalid.add({.u = u, .draw = d, .p = 0, .expected = 0});
             if (set < 0) ++c.unusable;
             return false;
         }
         const bool finite_weight = !d.weight || std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z);
         if (!(d.pdf > 0)) {
-            if (!finite_weight) c.invalid.add({u, d, 0, 0});
+            if (!finite_weight) c.invalid.add({.u = u, .draw = d, .p = 0, .expected = 0});
             if (set < 0) ++c.nothing;
             return false;
         }
         const bool bad_weight = !finite_weight ||
             (d.weight && std::min({*d.weight, d.weights.x, d.weights.y, d.weights.z}) < -negative_weight);
-        if (!(std::fabs(squared - 1) <= 2 * unit_length) || bad_weight) c.invalid.add({u, d, 0, 0});
+        if (!(std::fabs(squared - 1) <= 2 * unit_length) || bad_weight)
+            c.invalid.add({.u = u, .draw = d, .p = 0, .expected = 0});
         if (set < 0) c.bad_weights += bad_weight;
         return squared > 0;
     }
@@ -242,9 +244,9 @@ private:
             // At an edge beyond which p is 0 the density may have a pole, such as that of a sphere sampled by area.
             const bool at_edge = high > 0 && *std::min_element(first, last) == 0;
             if (d.pdf < low * (1 - same_number) || (d.pdf > high * (1 + same_number) && !at_edge))
-                to_.checks.pointwise.add({u[at_[k]], d, p_[k], 0});
+                to_.checks.pointwise.add({.u = u[at_[k]], .draw = d, .p = p_[k], .expected = 0});
             if (p_[k] > 0) continue;
-            if (high == 0) to_.checks.zero.add({u[at_[k]], d, 0, 0});
+            if (high == 0) to_.checks.zero.add({.u = u[at_[k]], .draw = d, .p = 0, .expected = 0});
             else if (d.wi.z > 0 || no_surface) p_[k] = d.pdf;
         }
     }
@@ -288,8 +290,9 @@ private:
             if (!derived) to_.weight_leaves[leaf_[k]][channel].add(w);
         }
         ++to_.checks.weights;
-        if (wrong && !random) to_.checks.weight.add({u, d, p_[k], f.x / d.pdf});
-        if (untrue && !source_.f_estimates) to_.checks.reference_f.add({u, d, f.x, expected.x});
+        if (wrong && !random) to_.checks.weight.add({.u = u, .draw = d, .p = p_[k], .expected = f.x / d.pdf});
+        if (untrue && !source_.f_estimates)
+            to_.checks.reference_f.add({.u = u, .draw = d, .p = f.x, .expected = expected.x});
     }
 
     /// If rounding leaves few directions, a direction may lie on a cut: the draws are spread over half a step about it.
@@ -440,7 +443,7 @@ Vec3d through_holes(Source& source) {
     constexpr std::uint32_t tried = 512;
     Source slanted(source.adapter, source.technique, tilt(source.wo.z > 0 ? 30 : 150), source.light);
     std::vector<PrimarySample> u;
-    const StreamKey key{1, 0, 0, 1, Purpose::light, 1};
+    const StreamKey key{.seed = 1, .place = 0, .technique = 0, .stage = 1, .purpose = Purpose::light, .part = 1};
     for (std::uint32_t i = 0; i < tried; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.resolution()));
     std::vector<Draw> draws(tried);
     slanted.draw(u, draws);

@@ -528,8 +528,15 @@ Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::ve
         median = math::log(*at);
     }
     key.purpose = Purpose::tree;
-    Plan plan{Tree(source, pilot.points, pilot.of, std::move(hints), step, budget, key), step, median, middle,
-        pilot.weight, {}, source.estimates || !source.has_density(), drawn, pilot.of};
+    Plan plan{.tree = Tree(source, pilot.points, pilot.of, std::move(hints), step, budget, key),
+        .step = step,
+        .median_log_p = median,
+        .middle = middle,
+        .usual = pilot.weight,
+        .per_step = {},
+        .estimates = source.estimates || !source.has_density(),
+        .drawn = drawn,
+        .of = pilot.of};
     if (!plan.estimates) plan.per_step = change_per_step(source, plan, pilot, steps);
     return plan;
 }

@@ -63,7 +63,7 @@ std::optional<Candidate> constant_candidate(std::span<const Place> places) {
             error = std::max(error, m.error);
         }
         const double known_to = std::max(4 * error / mean, detection_floor);
-        Cause cause{"constant", mean, error, ""};
+        Cause cause{.factor = "constant", .exponent = mean, .error = error, .text = ""};
         if (high->ratio - low->ratio > 2 * known_to * mean) {
             const auto at = [&](auto it) { return places[static_cast<std::size_t>(it - all.begin())].where(); };
             cause.text = fmt::format("p is a constant times what is drawn at each w_o, from {}{} to {}{}.",
@@ -115,7 +115,7 @@ Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
         std::ranges::all_of(f.hypothesis.constants, [](double c) { return std::fabs(c - 1) < 0.01; });
     out.preference = (std::fabs(f.exponent) == 1) + no_constant;
     out.make_cause = [f, places](const Hypothesis& h) {
-        return Cause{f.name, f.exponent, f.error, factor_sentence(f, h, places)};
+        return Cause{.factor = f.name, .exponent = f.exponent, .error = f.error, .text = factor_sentence(f, h, places)};
     };
     return out;
 }
@@ -123,27 +123,37 @@ Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
 Candidate candidate_of_power(FactorHypothesis f) {
     Candidate out{f.hypothesis};  // many densities that are no power of p are nearly one
     out.make_cause = [f](const Hypothesis&) {
-        return Cause{"p", f.exponent, f.error,
-            fmt::format("Draws follow p^({}), normalised: they are {} concentrated than p. An exponent or a roughness "
-                        "differs between sample and pdf.",
+        return Cause{.factor = "p",
+            .exponent = f.exponent,
+            .error = f.error,
+            .text = fmt::format(
+                "Draws follow p^({}), normalised: they are {} concentrated than p. An exponent or a roughness "
+                "differs between sample and pdf.",
                 with_error(1 + f.exponent, 1.96 * f.error), f.exponent > 0 ? "more" : "less")};
     };
     return out;
 }
 
 Candidate candidate_of(const Leak& leak, std::span<const Place> places) {
-    Candidate out{leak.hypothesis, {}, enough_for_fit, -1, leak.is_clear()};
+    Candidate out{.hypothesis = leak.hypothesis,
+        .make_cause = {},
+        .in_part = enough_for_fit,
+        .preference = -1,
+        .clear = leak.is_clear()};
     out.make_cause = [leak, traits = places[0].traits](const Hypothesis&) {
-        return Cause{"leak", leak.share, leak.error, leak_sentence(leak, traits)};
+        return Cause{
+            .factor = "leak", .exponent = leak.share, .error = leak.error, .text = leak_sentence(leak, traits)};
     };
     return out;
 }
 
 Candidate candidate_of(const Hypothesis& frame) {
-    Candidate out{frame, {}, enough_for_frame, -frame.place};
+    Candidate out{.hypothesis = frame, .make_cause = {}, .in_part = enough_for_frame, .preference = -frame.place};
     out.make_cause = [name = frame.name](const Hypothesis& h) {
-        return Cause{name, 0, 0,
-            h.explained < 0.9
+        return Cause{.factor = name,
+            .exponent = 0,
+            .error = 0,
+            .text = h.explained < 0.9
                 ? fmt::format(
                       "{:.0f} % of the difference is explained by {} between draws and p.", 100 * h.explained, name)
                 : fmt::format("Draws follow p with {}.{}", name + h.same,
@@ -164,7 +174,7 @@ Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, boo
         const Turn& t = turn.turns[most];
         const double angle = std::sqrt(dot(t.by, t.by));
         const Vec3d axis = t.by * (1 / std::max(angle, 1e-300));
-        Cause cause{about_z ? "turned about z" : "turned", angle, t.error, ""};
+        Cause cause{.factor = about_z ? "turned about z" : "turned", .exponent = angle, .error = t.error, .text = ""};
         if (about_z)
             cause.text = fmt::format(
                 "Draws are those of p turned about z by {} rad{}: a shift of a table's columns, or "
@@ -183,11 +193,14 @@ Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, boo
 
 /// A number with which p has the coordinate of a line, and sample another one.
 Candidate candidate_of(const FittedMove& move) {
-    Candidate out{move.hypothesis, {}, enough_for_fit, 1};
+    Candidate out{.hypothesis = move.hypothesis, .make_cause = {}, .in_part = enough_for_fit, .preference = 1};
     out.make_cause = [move](const Hypothesis& h) {
-        return Cause{move.factor, move.value, move.error,
-            fmt::format("Draws are those of p with {} multiplied by {}{}: a rate, a mean free path or another scale "
-                        "differs between sample and pdf.",
+        return Cause{.factor = move.factor,
+            .exponent = move.value,
+            .error = move.error,
+            .text = fmt::format(
+                "Draws are those of p with {} multiplied by {}{}: a rate, a mean free path or another scale "
+                "differs between sample and pdf.",
                 move.of, with_error(move.value, 1.96 * move.error), h.same)};
     };
     return out;
@@ -203,7 +216,7 @@ Candidate candidate_of_frame(const FoundTurn& turn) {
             "not that of pdf.",
             with_error(t.by.z, 1.96 * t.error));
         if (h.explained < 0.9) text += fmt::format(" That explains {:.0f} % of the difference.", 100 * h.explained);
-        return Cause{"turned about n", t.by.z, t.error, std::move(text)};
+        return Cause{.factor = "turned about n", .exponent = t.by.z, .error = t.error, .text = std::move(text)};
     };
     return out;
 }
@@ -321,8 +334,10 @@ std::optional<Cause> cause_from_map(std::span<const KnownRatio> ratios, std::spa
         candidate->hypothesis = times(*std::ranges::find(factors, c->name, &Factor::name), c->exponent);
         candidate->hypothesis.constants.assign(places.size(), c->constant);
         candidate->make_cause = [c, places](const Hypothesis&) {
-            return Cause{c->name, c->exponent, 0,
-                ratio_sentence("By the derivatives of sample(u), draws follow", "p", *c, places[0].traits) +
+            return Cause{.factor = c->name,
+                .exponent = c->exponent,
+                .error = 0,
+                .text = ratio_sentence("By the derivatives of sample(u), draws follow", "p", *c, places[0].traits) +
                     fmt::format(" In p {} is {}.", c->name, c->exponent > 0 ? "missing" : "once too often")};
         };
     }

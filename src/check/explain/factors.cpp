@@ -174,7 +174,10 @@ RatioCause agreeing(const std::vector<double>& logs, const std::vector<double>& 
     double middle = median(rest), near = 0;
     if (std::fabs(middle) < close / 2) middle = 0;
     for (std::size_t i = 0; i < rest.size(); ++i) near += std::fabs(rest[i] - middle) < close + 2 * ratios[i].error;
-    return {"", exponent, math::exp(middle), near / static_cast<double>(rest.size())};
+    return {.name = "",
+        .exponent = exponent,
+        .constant = math::exp(middle),
+        .explained = near / static_cast<double>(rest.size())};
 }
 
 }  // namespace

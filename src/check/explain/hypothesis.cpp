@@ -97,7 +97,7 @@ MassRatio mass_ratio(const CheckAt& c) {
         const double drawn = s.sum / n, ratio = drawn > 0 ? claimed.value / drawn : 0;
         const double variance = std::max(s.square / n - drawn * drawn, 0.0) / n;
         const double error = drawn > 0 ? std::sqrt(claimed.variance + ratio * ratio * variance) / drawn : 1;
-        return MassRatio{drawn, claimed.value, ratio, error};
+        return MassRatio{.drawn = drawn, .claimed = claimed.value, .ratio = ratio, .error = error};
     };
     MassRatio out = by(mass);
     const MassRatio other = by(bridge);

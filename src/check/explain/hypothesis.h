@@ -69,7 +69,12 @@ struct Place {
     Source source() const { return {adapter(), technique(), check_case->wo, check_case->light}; }
     /// Streams of the explanation; each has its own seed.
     StreamKey key(std::uint32_t seed, Purpose purpose, std::uint16_t part) const {
-        return {seed, static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(technique()), 8, purpose, part};
+        return {.seed = seed,
+            .place = static_cast<std::uint16_t>(number),
+            .technique = static_cast<std::uint8_t>(technique()),
+            .stage = 8,
+            .purpose = purpose,
+            .part = part};
     }
     /// " at w_o 60 deg"; "" for a sampler without w_o.
     std::string where() const { return traits.wo == Traits::WoDomain::none ? "" : " at " + check_case->text(); }

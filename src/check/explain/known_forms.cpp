@@ -94,8 +94,10 @@ std::optional<Cause> shadowing_cause(std::span<const KnownRatio> ratios, std::sp
         const bool round = std::fabs(s.alpha_x / s.alpha_y - 1) < 0.01;
         const std::string alpha = round ? fmt::format("alpha {:.3g}", (s.alpha_x + s.alpha_y) / 2)
                                         : fmt::format("alpha {:.3g} and {:.3g}", s.alpha_x, s.alpha_y);
-        return Cause{"G1", s.alpha_x, 0,
-            fmt::format(
+        return Cause{.factor = "G1",
+            .exponent = s.alpha_x,
+            .error = 0,
+            .text = fmt::format(
                 "By the derivatives of sample(u), draws follow p with G1(w_o) {} G1(w_i): p has the shadowing of "
                 "the other direction{} (Smith's G1 of GGX with {}).",
                 exchanged ? "in place of" : "but without", exchanged ? "" : " too", alpha)};
@@ -159,9 +161,12 @@ std::optional<Cause> plane_cause(std::span<const KnownRatio> ratios, std::span<c
         if (!agree(model, ratios)) continue;
         Hypothesis h = times(model, "light in a plane");
         if (!passes(h, places, 1)) continue;
-        return Cause{"light in a plane", static_cast<double>(power), 0,
-            fmt::format("By the derivatives of sample(u), draws over p is {} |n.w_i|^{}, with n = {}. For a light in a "
-                        "plane with this normal, {}.",
+        return Cause{.factor = "light in a plane",
+            .exponent = static_cast<double>(power),
+            .error = 0,
+            .text = fmt::format(
+                "By the derivatives of sample(u), draws over p is {} |n.w_i|^{}, with n = {}. For a light in a "
+                "plane with this normal, {}.",
                 crescent::figures(math::exp(-power * math::log(length(*n))), 4), -power,
                 direction_text(*n * (1 / length(*n))), what)};
     }

@@ -75,7 +75,9 @@ std::vector<NumberStep> jumps_along(Source& source, int number, std::span<const 
         std::vector<Draw> w(u.size());
         source.draw(u, w);
         for (std::size_t k = 0; k + 1 < scanned; ++k)
-            if (const NumberStep s{i, u[k][number], u[k + 1][number], w[k], w[k + 1]}; s.jumps()) out.push_back(s);
+            if (const NumberStep s{.of = i, .from = u[k][number], .to = u[k + 1][number], .a = w[k], .b = w[k + 1]};
+                s.jumps())
+                out.push_back(s);
     }
     if (out.size() > settings_of_others * most_lobes) return {};  // a table
     close_in(source, number, others, out);
@@ -114,8 +116,12 @@ LobeDraws draws_of(
     const Plan& plan = *place.at->plan;
     out.sum.resize(plan.tree.leaves().size());
     out.square.resize(out.sum.size());
-    StreamKey key{13, static_cast<std::uint16_t>(place.number), static_cast<std::uint8_t>(place.technique()), 8,
-        Purpose::draws, static_cast<std::uint16_t>(lobe)};
+    StreamKey key{.seed = 13,
+        .place = static_cast<std::uint16_t>(place.number),
+        .technique = static_cast<std::uint8_t>(place.technique()),
+        .stage = 8,
+        .purpose = Purpose::draws,
+        .part = static_cast<std::uint16_t>(lobe)};
     for (std::uint32_t from = 0; from < count; from += batch_size) {
         std::vector<PrimarySample> u(std::min(batch_size, count - from));
         for (std::uint32_t i = 0; i < u.size(); ++i) {
@@ -315,7 +321,8 @@ std::optional<Cause> lobe_cause(std::span<const Place> places) {
         if (!shares || !explains(*shares)) continue;
         const auto [least, most] = std::ranges::minmax_element(shares->x);
         if (*most - *least < known_share) continue;  // a constant
-        return Cause{"chooser", 0, 0, lobe_sentence(*chooser, *shares, place.where())};
+        return Cause{
+            .factor = "chooser", .exponent = 0, .error = 0, .text = lobe_sentence(*chooser, *shares, place.where())};
     }
     return {};
 }

@@ -207,8 +207,12 @@ std::optional<Cause> reciprocal_weight_cause(std::span<const CheckCase> check_ca
             ReservoirSums sums;
             add_points(source, sums);
             add_draws(source,
-                {23, static_cast<std::uint16_t>(outcome.check_cases[k]), static_cast<std::uint8_t>(c.technique), 8,
-                    Purpose::light, 0},
+                {.seed = 23,
+                    .place = static_cast<std::uint16_t>(outcome.check_cases[k]),
+                    .technique = static_cast<std::uint8_t>(c.technique),
+                    .stage = 8,
+                    .purpose = Purpose::light,
+                    .part = 0},
                 sums);
             std::optional<Cause> found;
             for (std::size_t f = 0; f < std::size(weight_factors); ++f) {
@@ -216,8 +220,11 @@ std::optional<Cause> reciprocal_weight_cause(std::span<const CheckCase> check_ca
                 if (fit.p < none_p) continue;
                 if (fit.p < least_p || found) return {};  // unclear, or two of them
                 if (f == by_constant && std::fabs(fit.constant - 1) < distinct_errors * fit.error) return {};
-                found = Cause{
-                    weight_factors[f].name, fit.constant, fit.error, text_of(f, fit, sums, source.traits), "mean"};
+                found = Cause{.factor = weight_factors[f].name,
+                    .exponent = fit.constant,
+                    .error = fit.error,
+                    .text = text_of(f, fit, sums, source.traits),
+                    .verdict = "mean"};
                 if (f == by_constant) return found;
             }
             return found;

@@ -171,7 +171,12 @@ std::vector<Row> rows_of(std::span<const Place> places, const std::vector<Factor
         for (std::size_t l = 0; l < c.integrals.leaves.size(); ++l) {
             const LeafIntegral& leaf = c.integrals.leaves[l];
             if (leaf.bridge.value * n < 1) continue;
-            Row r{g, c.observations.leaves[l], leaf.bridge.value * n, leaf.bridge.variance * n * n, h2 / h, {}};
+            Row r{.group = g,
+                .observed = c.observations.leaves[l],
+                .expected = leaf.bridge.value * n,
+                .variance = leaf.bridge.variance * n * n,
+                .unit = h2 / h,
+                .x = {}};
             const Leaf& of_tree = c.plan->tree.leaves()[l];
             for (const Factor& f : factors)
                 r.x.push_back(math::log(average(f, places[g].check_case->wo, c.plan->tree.rect(of_tree)) + 1e-12));
@@ -246,8 +251,12 @@ std::vector<FactorHypothesis> factor_hypotheses(std::span<const Place> places) {
     if (fits.size() > most_factors) fits.resize(most_factors);
     for (const auto& [f, k] : fits) {
         const double b = f.exponents[0], exponent = factors[k].any_exponent ? b : simple_of(b, f.errors[0]);
-        FactorHypothesis found{
-            times(factors[k], exponent), factors[k].name, exponent, b, f.errors[0], factors[k].usual_constant};
+        FactorHypothesis found{.hypothesis = times(factors[k], exponent),
+            .name = factors[k].name,
+            .exponent = exponent,
+            .fitted = b,
+            .error = f.errors[0],
+            .usual_constant = factors[k].usual_constant};
         for (double c : f.constants)
             found.hypothesis.constants.push_back(known_constant(c, factors[k].usual_constant, exponent));
         set_gain(found.hypothesis, f.likelihood - even.likelihood, places);
@@ -262,7 +271,8 @@ std::optional<FactorHypothesis> power_hypothesis(std::span<const Place> places) 
     const Fit f = fit(rows, places.size(), {0});
     const double b = f.exponents[0];
     if (!(std::fabs(b) > std::max(least_power, 4 * f.errors[0])) || !(std::fabs(b) < most_power)) return {};
-    FactorHypothesis out{{}, "p", b, b, f.errors[0], 1};
+    FactorHypothesis out{
+        .hypothesis = {}, .name = "p", .exponent = b, .fitted = b, .error = f.errors[0], .usual_constant = 1};
     out.hypothesis.name = "p";
     out.hypothesis.free = true;
     out.hypothesis.constants = f.constants;

@@ -199,8 +199,10 @@ std::optional<Cause> delta_cause(std::span<const Place> places) {
         const double share = static_cast<double>(most) / place.of,
                      half = 1.96 * std::sqrt(share * (1 - share) / place.of);
         if (share < least_part) continue;
-        return Cause{"delta", share, half / 1.96,
-            fmt::format("{} of the draws have one {}, {}{}, for any u. A density does not draw it{}.",
+        return Cause{.factor = "delta",
+            .exponent = share,
+            .error = half / 1.96,
+            .text = fmt::format("{} of the draws have one {}, {}{}, for any u. A density does not draw it{}.",
                 share > in_all ? "All" : percent_with_error(share, half), domain ? "point" : "direction",
                 place_text(place.traits, w[first]), place.where(),
                 domain ? "" : ": if it is a delta part, the sampler must declare it (delta) with its probability")};
@@ -214,8 +216,10 @@ std::optional<Cause> curve_cause(std::span<const Place> places) {
         const StreamKey key = place.key(11, Purpose::corners, 1);
         const std::vector<int> unused = numbers_without_effect(source, key);
         if (unused.empty() || source.traits.numbers - static_cast<int>(unused.size()) > 1) continue;
-        return Cause{
-            "curve", 0, 0, fmt::format("All draws lie on a curve: u{} has no effect on them.", unused.front() + 1)};
+        return Cause{.factor = "curve",
+            .exponent = 0,
+            .error = 0,
+            .text = fmt::format("All draws lie on a curve: u{} has no effect on them.", unused.front() + 1)};
     }
     return {};
 }
@@ -237,9 +241,12 @@ std::optional<Cause> unreached_cause(std::span<const Place> places) {
     if (!worst) return {};
     const double of = worst->at->integrals.sums[mass].value,
                  part = of * most.unreached / (most.unreached + most.reached);
-    return Cause{"unreached", part, 0,
-        fmt::format("p is positive where no draw falls: {:.3g} of the {:.3g} that it integrates to{}. Combined with "
-                    "another sampler by MIS the image is too dark.",
+    return Cause{.factor = "unreached",
+        .exponent = part,
+        .error = 0,
+        .text = fmt::format(
+            "p is positive where no draw falls: {:.3g} of the {:.3g} that it integrates to{}. Combined with "
+            "another sampler by MIS the image is too dark.",
             part, of, worst->where())};
 }
 

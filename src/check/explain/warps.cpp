@@ -80,9 +80,11 @@ std::optional<Cause> warp_cause(std::span<const Place> places) {
                 if (!explains(warp, places)) continue;
                 const Warped corrected(places[0].check_case->adapter, warp);
                 if (!follows_density(corrected, places, 1)) continue;
-                return Cause{"root", power, 0,
-                    fmt::format("With {} in place of u{} the draws follow p: in sample a {} is {}{}.", warp.text(),
-                        k + 1,
+                return Cause{.factor = "root",
+                    .exponent = power,
+                    .error = 0,
+                    .text = fmt::format("With {} in place of u{} the draws follow p: in sample a {} is {}{}.",
+                        warp.text(), k + 1,
                         power == 0.5     ? "square root"
                             : power < 1  ? "cubic root"
                             : power == 2 ? "square root"

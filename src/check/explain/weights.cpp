@@ -32,7 +32,12 @@ ByChannel channels_of(Vec3d v) { return {v.x, v.y, v.z}; }
 
 std::vector<Compared> compared_at(const CheckCase& check_case, int technique, std::uint16_t place) {
     Source source(*check_case.adapter, technique, check_case.wo, check_case.light);
-    const StreamKey key{17, place, static_cast<std::uint8_t>(technique), 8, Purpose::light, 1};
+    const StreamKey key{.seed = 17,
+        .place = place,
+        .technique = static_cast<std::uint8_t>(technique),
+        .stage = 8,
+        .purpose = Purpose::light,
+        .part = 1};
     const std::vector<PrimarySample> u = first_numbers(key, draws_to_compare, source.traits);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
@@ -51,8 +56,15 @@ std::vector<Compared> compared_at(const CheckCase& check_case, int technique, st
     std::vector<Compared> out;
     for (std::size_t i = 0; i < w.size(); ++i) {
         const Draw& d = *of[i];
-        Compared c{check_case.wo, w[i], d.pdf, p[i], d.weight.has_value() && source.has_f(), {}, {}, channels_of(f[i]),
-            channels_of(truth[i])};
+        Compared c{.wo = check_case.wo,
+            .wi = w[i],
+            .pdf = d.pdf,
+            .p = p[i],
+            .has_weight = d.weight.has_value() && source.has_f(),
+            .weight = {},
+            .expected = {},
+            .f = channels_of(f[i]),
+            .reference_f = channels_of(truth[i])};
         if (c.has_weight) {
             c.weight = source.channels() == 3 ? channels_of(d.weights) : ByChannel{*d.weight, *d.weight, *d.weight};
             c.expected = channels_of(f[i] * (1 / d.pdf));
@@ -95,8 +107,11 @@ std::optional<Cause> exchanged_channels(const std::vector<Compared>& all) {
     if (with_weight < 64 || 2 * plain > with_weight) return {};
     for (std::size_t k = 0; k < same.size(); ++k)
         if (same[k] >= 0.9 * with_weight)
-            return Cause{channel_exchanges[k].name, 0, 0,
-                fmt::format("Weights are f cos / p with {}.", channel_exchanges[k].name), "identity"};
+            return Cause{.factor = channel_exchanges[k].name,
+                .exponent = 0,
+                .error = 0,
+                .text = fmt::format("Weights are f cos / p with {}.", channel_exchanges[k].name),
+                .verdict = "identity"};
     return {};
 }
 
@@ -105,8 +120,11 @@ std::optional<Cause> ratio_cause(const std::vector<KnownRatio>& ratios, const Ch
     const std::vector<Factor> factors = factors_for(check_case.adapter->traits(), check_case.light);
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
     if (!c) return {};
-    return Cause{c->name, c->exponent == 0 ? c->constant : c->exponent, 0,
-        ratio_sentence(given, expected, *c, check_case.adapter->traits()), verdict};
+    return Cause{.factor = c->name,
+        .exponent = c->exponent == 0 ? c->constant : c->exponent,
+        .error = 0,
+        .text = ratio_sentence(given, expected, *c, check_case.adapter->traits()),
+        .verdict = verdict};
 }
 
 void add_ratio(std::vector<KnownRatio>& to, Vec3d wo, Vec3d wi, double given, double expected) {
@@ -117,7 +135,7 @@ void add_ratio(std::vector<KnownRatio>& to, Vec3d wo, Vec3d wi, double given, do
 std::vector<KnownRatio> reciprocity_ratios(const CheckCase& check_case) {
     const SamplerAdapter& s = *check_case.adapter;
     const Traits traits = s.traits();
-    Stream stream({19, 0, 0, 8, Purpose::pairs, 1});
+    Stream stream({.seed = 19, .place = 0, .technique = 0, .stage = 8, .purpose = Purpose::pairs, .part = 1});
     std::vector<Pair> there, back;
     for (int i = 0; i < 256; ++i) {
         const auto direction = [&](bool below) { return random_direction(stream, below, 0.05); };
@@ -147,12 +165,14 @@ std::optional<Cause> reciprocity_cause(const CheckCase& check_case) {
                            }});
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
     if (!c || c->exponent == 0 || std::fabs(c->constant - 1) > agrees_to) return {};
-    return Cause{c->name, c->exponent, 0,
-        fmt::format("f(a, b) over f(b, a) is off by {}{} across the surface: {} in f.",
+    return Cause{.factor = c->name,
+        .exponent = c->exponent,
+        .error = 0,
+        .text = fmt::format("f(a, b) over f(b, a) is off by {}{} across the surface: {} in f.",
             c->name == "eta^2" ? "eta^2" : "the ratio of the cosines (cos theta_i)",
             c->exponent == 1 || c->exponent == -1 ? "" : fmt::format(" to the power {:g}", c->exponent),
             c->name == "eta^2" ? "eta^2 is missing or inverted" : "cos theta_i is once too often or missing"),
-        "physics"};
+        .verdict = "physics"};
 }
 
 bool found(const CheckAt& c, Family family) {

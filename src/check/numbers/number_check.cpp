@@ -201,7 +201,7 @@ private:
             if (normal_two_sided(d.errors()) > screening / channels()) continue;
             if (!is_confirmed(k, c, d)) continue;
             ++confirmed_;
-            decision_ = {State::wrong, d, c, size};
+            decision_ = {.state = State::wrong, .difference = d, .channel = c, .hidden = size};
             return;
         }
         if (decision_.state == State::right && decision_.hidden > most_bias) decision_.state = State::inconclusive;

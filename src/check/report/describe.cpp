@@ -116,7 +116,7 @@ private:
         }
         const double middle = rect.middle(along_phi);
         const std::size_t child = nodes_.size();
-        nodes_[node] = {child, 0, along_phi, middle};
+        nodes_[node] = {.child = child, .cell = 0, .along_phi = along_phi, .middle = middle};
         nodes_.resize(child + 2);
         std::vector<ChartPoint> half[2];
         for (const ChartPoint& p : inside) half[(along_phi ? p.phi : p.t) >= middle].push_back(p);
@@ -199,7 +199,12 @@ Description describe_one(
     d.technique = technique;
     d.techniques = check_case.adapter->techniques();
     Source source(*check_case.adapter, technique, check_case.wo, check_case.light);
-    const StreamKey key{settings.seed, place, static_cast<std::uint8_t>(technique), 1, Purpose::draws, 0xffff};
+    const StreamKey key{.seed = settings.seed,
+        .place = place,
+        .technique = static_cast<std::uint8_t>(technique),
+        .stage = 1,
+        .purpose = Purpose::draws,
+        .part = 0xffff};
     const std::uint32_t n =
         source.available(key, check_case.adapter->limited() ? settings.draws_of_limited : settings.draws);
     std::vector<Vec3d> w;

@@ -57,9 +57,11 @@ std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles)
 /// distance decides and not order; one directly above that faces down (the axis of its frame is -z); and the example of
 /// every other kind of light. Radiances, m.
 CaseLighting light_named(const std::string& name) {
-    const CaseDiskLight oblique{20, 2.0 * tilt(35, 20), -1.0 * tilt(20, 60), 0.5};
-    const CaseDiskLight behind{12, 3.2 * tilt(48, 35), -1.0 * tilt(60, 40), 0.9};
-    const CaseDiskLight overhead{20, {0.1, -0.05, 2}, {0, 0, -1}, 0.6};
+    const CaseDiskLight oblique{
+        .radiance = 20, .center = 2.0 * tilt(35, 20), .normal = -1.0 * tilt(20, 60), .radius = 0.5};
+    const CaseDiskLight behind{
+        .radiance = 12, .center = 3.2 * tilt(48, 35), .normal = -1.0 * tilt(60, 40), .radius = 0.9};
+    const CaseDiskLight overhead{.radiance = 20, .center = {0.1, -0.05, 2}, .normal = {0, 0, -1}, .radius = 0.6};
     const auto has = [&](std::string_view word) { return name.find(word) != std::string::npos; };
     CaseLighting light;
     light.fill = has("fill") ? 1 : 0;
@@ -100,7 +102,13 @@ Setups setups_of(const SamplerInfo& arm) {
 /// The expected behaviour of an arm on a surface at theta_R = theta.
 ExpectedBehaviour theory_of(const SamplerInfo& arm, const CaseSetup& on, double theta_deg) {
     const SurfaceSetup& f = on.surface;
-    return arm.theory ? arm.theory({f.rho_d, f.rho_s, f.s, f.alpha, on.light.fill, theta_deg}) : ExpectedBehaviour{};
+    return arm.theory ? arm.theory({.rho_d = f.rho_d,
+                            .rho_s = f.rho_s,
+                            .s = f.s,
+                            .alpha = f.alpha,
+                            .fill = on.light.fill,
+                            .theta_deg = theta_deg})
+                      : ExpectedBehaviour{};
 }
 
 /// Sets the parameters of this surface and light; removes the keys that it uses from `unused`.

@@ -109,6 +109,6 @@ public:
 /// such a library, with what is missing, and SamplerError if it ends its process, throws or takes longer than
 /// limits.call_seconds, here or in a later call.
 std::shared_ptr<const PluginSampler> open_plugin(const std::string& path, const PipeLimits& limits = {},
-    const ExternalSurface& surface = {32, 0.24253562503633297, 0.5, 0.5});
+    const ExternalSurface& surface = {.s = 32, .alpha = 0.24253562503633297, .diffuse = 0.5, .lobe = 0.5});
 
 }  // namespace crescent

@@ -238,13 +238,19 @@ private:
         if (hello_.uses_lights())
             for (int byte = 0; byte < 4; ++byte) header += static_cast<char>(lights >> (8 * byte) & 255);
         const PipeConnection::Write write = writer(verb, given, in);
-        connection_.blocks({operation, count, given, got, in, out,
-            [&](std::size_t i) {
-                std::string line;
-                write(i, line);
-                return line;
-            },
-            std::move(header)});
+        connection_.blocks({.operation = operation,
+            .count = count,
+            .given = given,
+            .got = got,
+            .in = in,
+            .out = out,
+            .describe =
+                [&](std::size_t i) {
+                    std::string line;
+                    write(i, line);
+                    return line;
+                },
+            .header = std::move(header)});
     }
 
     bool read_sample(std::string_view s, std::span<double> to, std::vector<bool>& delta, std::size_t i) const {

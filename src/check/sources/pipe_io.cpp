@@ -116,7 +116,11 @@ void PipeConnection::run(Exchange& x) {
 
 void PipeConnection::lines(std::size_t count, std::string_view expected, const Write& write, const Read& read) {
     std::string line;
-    Exchange x{count, expected, [&](std::size_t i) { return write(i, line), line; }, {}, {}};
+    Exchange x{.count = count,
+        .expected = expected,
+        .describe = [&](std::size_t i) { return write(i, line), line; },
+        .produce = {},
+        .take = {}};
     x.produce = [&] {
         write(x.written++, line);
         x.outgoing += line;
@@ -155,7 +159,7 @@ void PipeConnection::blocks(const Rows& rows) {
     constexpr std::size_t most_rows =
         1 << 15;  // 65536 are allowed; smaller blocks let both sides work at the same time
     const std::string expected = fmt::format("a block of {} doubles a row", rows.got);
-    Exchange x{rows.count, expected, rows.describe, {}, {}};
+    Exchange x{.count = rows.count, .expected = expected, .describe = rows.describe, .produce = {}, .take = {}};
     check_open();
     const auto rows_from = [&](std::size_t row) { return std::min(rows.count - row, most_rows); };
     const auto head_of = [&](std::size_t row) {

@@ -108,8 +108,10 @@ public:
         std::ranges::copy(given, block.given);
         const std::size_t lights = batch.lights.size();
         const std::size_t surface = info_.uses.empty() ? 4 : context_columns(info_.uses, lights);
-        const PluginRequest head{operation, static_cast<std::uint32_t>(batch.runs.size()),
-            static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(surface)};
+        const PluginRequest head{.operation = operation,
+            .runs = static_cast<std::uint32_t>(batch.runs.size()),
+            .rows = static_cast<std::uint32_t>(rows),
+            .columns = static_cast<std::uint32_t>(surface)};
         std::vector<double> columns;
         for (std::size_t i = 0; i < batch.runs.size(); ++i) {
             const ExternalRun& r = batch.runs[i];
@@ -290,14 +292,15 @@ public:
 private:
     /// The surface of a check: a grey albedo.
     static ExternalRun on_surface(Vec3d wo, const ExternalSurface& surface, std::size_t rows) {
-        return {wo, surface, rows, {surface.diffuse, surface.diffuse, surface.diffuse}};
+        return {
+            .wo = wo, .surface = surface, .rows = rows, .rho_d = {surface.diffuse, surface.diffuse, surface.diffuse}};
     }
     /// Adds the light of a check if the plugin uses lights.
     ExternalBatch with_example_light(std::span<const ExternalRun> runs, std::span<const double> u) const {
         if (!uses_lights()) return {runs, u};
         static thread_local std::vector<ExternalLightAt> at;
         at.assign(runs.size(), example_.at);
-        return {runs, u, {&example_.light, 1}, at};
+        return {.runs = runs, .u = u, .lights = {&example_.light, 1}, .lights_at = at};
     }
     static std::span<double> doubles(std::span<Vec3d> v) { return {&v.data()->x, 3 * v.size()}; }
 

@@ -215,7 +215,7 @@ void SampleFile::read_samples(const std::string& path) {
             if (!(at(name) >= 0 && at(name) <= 1))
                 in.add(t.lines.empty() ? 0 : t.lines[r], static_cast<unsigned>(t.column(name)) + 1,
                     fmt::format("{} is {:g}; expected a number from 0 to 1", name, at(name)));
-        Draw d{{at("wix"), at("wiy"), at("wiz")}, at("pdf"), {}, {}};
+        Draw d{.wi = {at("wix"), at("wiy"), at("wiz")}, .pdf = at("pdf"), .weight = {}, .f = {}};
         if (f >= 0) d.f = t.at(r, static_cast<std::size_t>(f));
         draws_.push_back(d);
     }

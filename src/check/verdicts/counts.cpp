@@ -16,7 +16,13 @@ namespace {
 /// represents.
 void test_share(Family family, const Count& count, double of, double tolerated, const Visit& visit, double per = 1) {
     const double times = per * static_cast<double>(count.times);
-    visit({family, 0, of > 0 ? times / of : 0, 0, tolerated, times > tolerated * of + tolerated_breaks ? 0.0 : 1.0, 0});
+    visit({.family = family,
+        .member = 0,
+        .difference = of > 0 ? times / of : 0,
+        .sd = 0,
+        .floor = tolerated,
+        .p = times > tolerated * of + tolerated_breaks ? 0.0 : 1.0,
+        .expected = 0});
 }
 
 /// Equal keys side by side. Keys are hashes: the lower half of their bits separates nearly all.
@@ -46,8 +52,13 @@ void test_repeats(const Evidence& e, const Visit& visit) {
         equal += again;
         if (single) expected += std::min(again, o.independent * met[k].p * one_direction);
     }
-    visit({Family::repeats, 0, equal, std::sqrt(expected), repeats_floor,
-        equal > repeats_floor + repeats_factor * expected ? 0.0 : 1.0, expected});
+    visit({.family = Family::repeats,
+        .member = 0,
+        .difference = equal,
+        .sd = std::sqrt(expected),
+        .floor = repeats_floor,
+        .p = equal > repeats_floor + repeats_factor * expected ? 0.0 : 1.0,
+        .expected = expected});
 }
 
 }  // namespace
@@ -58,7 +69,13 @@ void test_counts(const Evidence& e, const Visit& visit) {
     // All rows of a file were tested before.
     const std::uint64_t of_draws = e.source.recorded() ? 0 : c.invalid.times;
     const double invalid = static_cast<double>(of_draws + e.source.invalid().count());
-    visit({Family::values, 0, invalid, 0, 0, invalid > 0 ? 0.0 : 1.0, 0});
+    visit({.family = Family::values,
+        .member = 0,
+        .difference = invalid,
+        .sd = 0,
+        .floor = 0,
+        .p = invalid > 0 ? 0.0 : 1.0,
+        .expected = 0});
     const double per =
         static_cast<double>(c.differing) / static_cast<double>(std::max<std::uint64_t>(c.differing_compared, 1));
     test_share(Family::pointwise, c.pointwise, followed, tolerated_share, visit, std::max(per, 1.0));
@@ -84,7 +101,13 @@ int member_of(const DeltaPart& p) {
 /// Compares the draws of a part with q by Bennett's inequality, which holds at every count.
 void test_delta_share(const DeltaPart& p, double n, const Visit& visit) {
     const double share = static_cast<double>(p.drawn) / n, floor = detection_floor * p.q, v = p.q * (1 - p.q) / n;
-    Answer a{Family::delta_share, member_of(p), share - p.q, std::sqrt(std::max(v, 0.0)), floor, 1, p.q};
+    Answer a{.family = Family::delta_share,
+        .member = member_of(p),
+        .difference = share - p.q,
+        .sd = std::sqrt(std::max(v, 0.0)),
+        .floor = floor,
+        .p = 1,
+        .expected = p.q};
     a.p = bennett_p(bennett_z2(std::fabs(a.difference) - floor, std::max(v, 0.0), 1 / n, 1e12));
     visit(a);
 }
@@ -101,9 +124,27 @@ void test_deltas(const Evidence& e, const Visit& visit) {
         otherwise += static_cast<double>(p.otherwise);
     }
     const bool certain = sum > 1 + same_number;
-    visit({Family::delta_share, -1, sum - 1, 0, same_number, certain ? 0.0 : 1.0, 1});
-    visit({Family::delta_scatter, 0, o.deltas.scattered() ? 1.0 : 0.0, 0, 0, o.deltas.scattered() ? 0.0 : 1.0, 0});
-    visit({Family::delta_weight, 0, otherwise, 0, tolerated_breaks, otherwise > tolerated_breaks ? 0.0 : 1.0, 0});
+    visit({.family = Family::delta_share,
+        .member = -1,
+        .difference = sum - 1,
+        .sd = 0,
+        .floor = same_number,
+        .p = certain ? 0.0 : 1.0,
+        .expected = 1});
+    visit({.family = Family::delta_scatter,
+        .member = 0,
+        .difference = o.deltas.scattered() ? 1.0 : 0.0,
+        .sd = 0,
+        .floor = 0,
+        .p = o.deltas.scattered() ? 0.0 : 1.0,
+        .expected = 0});
+    visit({.family = Family::delta_weight,
+        .member = 0,
+        .difference = otherwise,
+        .sd = 0,
+        .floor = tolerated_breaks,
+        .p = otherwise > tolerated_breaks ? 0.0 : 1.0,
+        .expected = 0});
 }
 
 }  // namespace crescent::check

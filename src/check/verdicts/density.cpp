@@ -35,8 +35,14 @@ std::vector<NodeSums> node_sums(const Evidence& e) {
         if (nodes[i].child < 0) {
             const auto l = static_cast<std::size_t>(nodes[i].leaf);
             const LeafIntegral& c = e.integrals.leaves[l];
-            s = {o.leaves[l] / o.independent, c.bridge.value, c.second, c.solid_angle, c.bridge.variance,
-                c.bridge.doubt, std::max(1 / o.independent, c.per_point * e.plan.tree.leaves()[l].q), known_to(e, l)};
+            s = {.drawn = o.leaves[l] / o.independent,
+                .claimed = c.bridge.value,
+                .second = c.second,
+                .solid_angle = c.solid_angle,
+                .variance = c.bridge.variance,
+                .doubt = c.bridge.doubt,
+                .largest = std::max(1 / o.independent, c.per_point * e.plan.tree.leaves()[l].q),
+                .known_to = known_to(e, l)};
             continue;
         }
         for (int half : {0, 1}) s += out[static_cast<std::size_t>(nodes[i].child + half)];
@@ -97,8 +103,14 @@ Answer answer_of_sets(const Evidence& e, const std::vector<Replicates>& sets, st
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = (half[k] - s.share * whole[k]) * draw;
     const ReplicateMean of_sets(y, s.one_draw * draw);
     const double v = of_sets.variance + s.claim_variance;
-    Answer a{Family::node_sets, static_cast<int>(node), of_sets.mean, std::sqrt(v), s.floor, 1, s.share,
-        s.claim_variance / (v + 1e-300)};
+    Answer a{.family = Family::node_sets,
+        .member = static_cast<int>(node),
+        .difference = of_sets.mean,
+        .sd = std::sqrt(v),
+        .floor = s.floor,
+        .p = 1,
+        .expected = s.share,
+        .claimed = s.claim_variance / (v + 1e-300)};
     a.p = student_p_of(std::fabs(of_sets.mean) - s.floor, v,
         freedom(v, s.doubt + 2 * of_sets.variance * of_sets.variance / (replicate_sets - 1)));
     return a;
@@ -120,8 +132,14 @@ void test_nodes(const Evidence& e, const Visit& visit) {
         const NodeSplit s = split_of(e, sums, i);
         const double z2 =
             bennett_z2(std::fabs(s.difference) - s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt));
-        visit({Family::node, static_cast<int>(i), s.difference, std::sqrt(s.variance), s.floor, bennett_p(z2),
-            s.share * sums[i].drawn, s.claim_variance / (s.variance + 1e-300)});
+        visit({.family = Family::node,
+            .member = static_cast<int>(i),
+            .difference = s.difference,
+            .sd = std::sqrt(s.variance),
+            .floor = s.floor,
+            .p = bennett_p(z2),
+            .expected = s.share * sums[i].drawn,
+            .claimed = s.claim_variance / (s.variance + 1e-300)});
         if (s.smaller_half < e.least) continue;
         const auto depth = static_cast<std::size_t>(nodes[i].depth);
         chi[depth] += std::min(z2, 1e6);
@@ -133,8 +151,13 @@ void test_nodes(const Evidence& e, const Visit& visit) {
     }
     for (std::size_t d = 0; d < chi.size(); ++d)
         if (degrees[d] > 0)
-            visit({Family::depth, static_cast<int>(d), chi[d] - degrees[d], std::sqrt(2 * degrees[d]), 0,
-                chi_squared_p(chi[d], degrees[d]), degrees[d]});
+            visit({.family = Family::depth,
+                .member = static_cast<int>(d),
+                .difference = chi[d] - degrees[d],
+                .sd = std::sqrt(2 * degrees[d]),
+                .floor = 0,
+                .p = chi_squared_p(chi[d], degrees[d]),
+                .expected = degrees[d]});
 }
 
 // ---- density, by bands of theta and of phi at every scale: the share of h in a band.
@@ -211,8 +234,14 @@ void test_bands(const Evidence& e, const Visit& visit) {
                 const NodeSplit s = split_between(a, b, n, detection_floor * std::min(share, 1 - share) + inside.moved);
                 const double z2 = bennett_z2(std::fabs(s.difference) - s.floor, s.variance,
                     std::max(a.largest, b.largest), freedom(s.variance, s.doubt));
-                visit({Family::band, band_member(axis, first, width), s.difference, std::sqrt(s.variance), s.floor,
-                    bennett_p(z2), s.share * (a.drawn + b.drawn), s.claim_variance / (s.variance + 1e-300)});
+                visit({.family = Family::band,
+                    .member = band_member(axis, first, width),
+                    .difference = s.difference,
+                    .sd = std::sqrt(s.variance),
+                    .floor = s.floor,
+                    .p = bennett_p(z2),
+                    .expected = s.share * (a.drawn + b.drawn),
+                    .claimed = s.claim_variance / (s.variance + 1e-300)});
             }
 }
 

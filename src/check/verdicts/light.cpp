@@ -23,8 +23,14 @@ void test_mean(const Evidence& e, int channel, const Visit& visit) {
     const Observations& o = e.observations;
     const Estimate drawn = mean_of(o.mean[c], o.weighted_draws), &expected = e.integrals.light.mean[c];
     const double v = drawn.variance + expected.variance, floor = detection_floor * expected.value;
-    Answer a{Family::mean, channel, drawn.value - expected.value, std::sqrt(v), floor, 1, expected.value,
-        expected.variance / (v + 1e-300)};
+    Answer a{.family = Family::mean,
+        .member = channel,
+        .difference = drawn.value - expected.value,
+        .sd = std::sqrt(v),
+        .floor = floor,
+        .p = 1,
+        .expected = expected.value,
+        .claimed = expected.variance / (v + 1e-300)};
     const bool bridged = is_bridged(e.source);
     const double largest = bridged ? e.plan.usual[c] : 0;  // upper bound of a bridged weight
     if (bridged && !(largest > 0)) return;
@@ -59,8 +65,13 @@ void test_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
             continue;
         const double mean = w.sum / n, v = std::max(w.square / n - mean * mean, 0.0) / n + expected[i].variance;
         const double floor = detection_floor * expected[i].value;
-        Answer a{Family::mean, static_cast<int>(3 * i) + channel, mean - expected[i].value, std::sqrt(v), floor, 1,
-            expected[i].value};
+        Answer a{.family = Family::mean,
+            .member = static_cast<int>(3 * i) + channel,
+            .difference = mean - expected[i].value,
+            .sd = std::sqrt(v),
+            .floor = floor,
+            .p = 1,
+            .expected = expected[i].value};
         a.p = student_p_of(std::fabs(a.difference) - floor, v, freedom(v, expected[i].doubt));
         visit(a);
     }
@@ -71,7 +82,14 @@ void test_albedo(const Evidence& e, int channel, const Visit& visit) {
     const Observations& o = e.observations;
     const Estimate& of_density = e.integrals.light.albedo[c];
     const double total = o.delta_power[c] + of_density.value, v = of_density.variance;
-    Answer a{Family::albedo, channel, total - 1, std::sqrt(v), albedo_excess, 1, 1, 1};
+    Answer a{.family = Family::albedo,
+        .member = channel,
+        .difference = total - 1,
+        .sd = std::sqrt(v),
+        .floor = albedo_excess,
+        .p = 1,
+        .expected = 1,
+        .claimed = 1};
     a.p = student_p_of(total - 1 - albedo_excess, v, freedom(v, of_density.doubt));
     visit(a);
 }
@@ -109,7 +127,14 @@ void test_light(const Evidence& e, const Visit& visit) {
     if (!e.source.has_density() || e.plan.estimates) return;
     const LightIntegrals& l = e.integrals.light;
     const double least = lost_light * l.lit.value;
-    Answer a{Family::support, 0, l.lost.value, std::sqrt(l.lost.variance), least, 1, l.lit.value, 1};
+    Answer a{.family = Family::support,
+        .member = 0,
+        .difference = l.lost.value,
+        .sd = std::sqrt(l.lost.variance),
+        .floor = least,
+        .p = 1,
+        .expected = l.lit.value,
+        .claimed = 1};
     // If at most `least` were lost, the sum over points with contributions of at most b would have a variance of at
     // most b times `least`.
     a.p = l.lost_again.value > least

@@ -89,8 +89,13 @@ void test_sums(const Evidence& e, const Visit& visit) {
         const Estimate& claimed = e.integrals.sums[at];
         const double mean = o.sums[at].sum / n;
         const double floor = floor_of_sum(e, q);
-        Answer a{
-            sum_kinds[q].family, q >= centre_x ? q - centre_x : 0, mean - claimed.value, 0, floor, 1, claimed.value};
+        Answer a{.family = sum_kinds[q].family,
+            .member = q >= centre_x ? q - centre_x : 0,
+            .difference = mean - claimed.value,
+            .sd = 0,
+            .floor = floor,
+            .p = 1,
+            .expected = claimed.value};
         const double v = drawn_variance(e, q) + claimed.variance;
         a.sd = std::sqrt(v);
         a.claimed = claimed.variance / (v + 1e-300);

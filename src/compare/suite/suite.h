@@ -58,7 +58,9 @@ struct SuiteOptions {
     Pairing pair = Pairing::automatic;
     NoiseDemand noise = NoiseDemand::not_more;
     OutlierDemand outliers = OutlierDemand::test;
-    ReadingOptions reading() const { return {encoding, space, channels, channel}; }
+    ReadingOptions reading() const {
+        return {.encoding = encoding, .space = space, .channels = channels, .channel = channel};
+    }
 };
 
 /// The file's statements about one view, and its renders.

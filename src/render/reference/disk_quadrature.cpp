@@ -92,19 +92,27 @@ private:
 };
 
 DiskIntegral operator+(const DiskIntegral& a, const DiskIntegral& b) {
-    return {a.diffuse + b.diffuse, a.lobe + b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
+    return {.diffuse = a.diffuse + b.diffuse,
+        .lobe = a.lobe + b.lobe,
+        .diffuse_error = a.diffuse_error + b.diffuse_error,
+        .lobe_error = a.lobe_error + b.lobe_error};
 }
 /// Returns a without b.
 DiskIntegral operator-(const DiskIntegral& a, const DiskIntegral& b) {
-    return {a.diffuse - b.diffuse, a.lobe - b.lobe, a.diffuse_error + b.diffuse_error, a.lobe_error + b.lobe_error};
+    return {.diffuse = a.diffuse - b.diffuse,
+        .lobe = a.lobe - b.lobe,
+        .diffuse_error = a.diffuse_error + b.diffuse_error,
+        .lobe_error = a.lobe_error + b.lobe_error};
 }
 /// Returns an estimate of a value between a and b.
 DiskIntegral enclosed(const DiskIntegral& a, const DiskIntegral& b) {
     const auto off = [](double p, double q, double error, double other) {
         return 0.5 * std::fabs(p - q) + std::max(error, other);
     };
-    return {0.5 * (a.diffuse + b.diffuse), 0.5 * (a.lobe + b.lobe),
-        off(a.diffuse, b.diffuse, a.diffuse_error, b.diffuse_error), off(a.lobe, b.lobe, a.lobe_error, b.lobe_error)};
+    return {.diffuse = 0.5 * (a.diffuse + b.diffuse),
+        .lobe = 0.5 * (a.lobe + b.lobe),
+        .diffuse_error = off(a.diffuse, b.diffuse, a.diffuse_error, b.diffuse_error),
+        .lobe_error = off(a.lobe, b.lobe, a.lobe_error, b.lobe_error)};
 }
 
 /// Returns the distance of the ball's nearest point, as a fraction of the distance to the middle of its figure.
@@ -196,7 +204,11 @@ void DiskQuadrature::operator()(const Hit& hit, std::span<const Surface> surface
     const Figure figure = light_.seen_from(hit.x);
     if (dot(middle_of(figure) - hit.x, hit.n) + half_extent_of(figure, hit.n) <= 0) return;
     const Frame<double> local = frame_about(hit.n);
-    DiskPoint point = {hit.x, local.to_local(hit.wo), local, surfaces[0], normal_of(figure)};
+    DiskPoint point = {.x = hit.x,
+        .wo = local.to_local(hit.wo),
+        .frame = local,
+        .surface = surfaces[0],
+        .light_normal = normal_of(figure)};
     const std::vector<const Blocker*> near = in_the_way(hit, figure);
     const lights::Sphere* ball = std::get_if<lights::Sphere>(&light_.form);
     const bool bulges = ball && std::any_of(near.begin(), near.end(), [&](const Blocker* b) {

@@ -346,7 +346,10 @@ OpenFan AllFans::look_at(double tau) {
     const Turn at = turn(tau);
     const math::SinCos azimuth = math::sincos(at.azimuth);
     const Fan fan(point_, figure_, about_, azimuth);
-    OpenFan out = {point_.frame.to_local(fan.axis), point_.frame.to_local(fan.aside), azimuth.cos, at.slope};
+    OpenFan out = {.axis = point_.frame.to_local(fan.axis),
+        .aside = point_.frame.to_local(fan.aside),
+        .cos_azimuth = azimuth.cos,
+        .slope = at.slope};
     out.first_part = parts_.size();
     out.edges = each_open(fan, [&](Interval open) {
         Direction from = fan.at(open.lo), to = fan.at(open.hi);

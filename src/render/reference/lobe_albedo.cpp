@@ -146,7 +146,8 @@ LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha, const YieldToHost&
     constexpr int even = 8, halvings = 12;
     std::vector<Cell> open(even), next;
     std::vector<std::array<double, 4>> between;
-    for (std::size_t k = 0; k < even; ++k) open[k] = {pi / 2 * static_cast<double>(k) / even, pi / 2 / even, {}, 0};
+    for (std::size_t k = 0; k < even; ++k)
+        open[k] = {.from = pi / 2 * static_cast<double>(k) / even, .size = pi / 2 / even, .value = {}, .error = 0};
     parallel_for(std::size_t{0}, open.size() * 5, [&](std::size_t i) {
         open[i / 5].value[i % 5] = exact(open[i / 5].from + open[i / 5].size * static_cast<double>(i % 5) / 4);
     });

@@ -33,7 +33,13 @@ Moments estimate(const ShadingPoints& points, const Combination& combination, st
     moments[0].resize(points);
     std::vector<std::byte> memory(points.kernel_memory());
     const std::array<std::uint64_t, 1> counts = {n};
-    const KernelCall call{&points, counts, seed, moments, stop, nullptr, memory.data()};
+    const KernelCall call{.shading_points = &points,
+        .sample_counts = counts,
+        .seed = seed,
+        .out = moments,
+        .stop = stop,
+        .samples = nullptr,
+        .memory = memory.data()};
     const PixelNumbers numbers = [&](std::uint32_t pixel, std::uint64_t sample, std::uint32_t block) {
         constexpr std::uint32_t salt = 0x50b01;  // the hashes of films have small numbers of pairs here
         const auto scramble = pcg4d(Vec4u<std::uint32_t>{pixel, block, seed, salt});

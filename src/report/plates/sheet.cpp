@@ -63,7 +63,9 @@ std::string joined(const std::vector<std::string>& parts, std::string_view betwe
     return all;
 }
 
-RunKey key_of(const PlateRun& run, const Experiment& e) { return {run.arm, run.n, run.s > 0 ? run.s : e.s(), e.seed}; }
+RunKey key_of(const PlateRun& run, const Experiment& e) {
+    return {.arm = run.arm, .n = run.n, .s = run.s > 0 ? run.s : e.s(), .seed = e.seed};
+}
 
 std::vector<RunKey> keys_of(const PlatePlan& plan, const Experiment& e) {
     std::vector<RunKey> keys;

@@ -70,10 +70,34 @@ inline constexpr Rect content_band{margin, 64, sheet_inner, 540};
 inline constexpr Rect caption_band{margin, 616, sheet_inner, 51};
 inline constexpr Rect footer_band{margin, 680, sheet_inner, 20};
 
-inline constexpr Text label_text{20, bright, Weight::medium, Align::left, Vertical::middle, 1, 15};
-inline constexpr Text title_text{24, bright, Weight::semibold, Align::left, Vertical::top, 1, 15};
-inline constexpr Text body_text{18, bright, Weight::regular, Align::left, Vertical::top, 1, 14};
-inline constexpr Text small_text{15, muted, Weight::regular, Align::left, Vertical::top, 1, 12};
+inline constexpr Text label_text{.px = 20,
+    .ink = bright,
+    .weight = Weight::medium,
+    .align = Align::left,
+    .vertical = Vertical::middle,
+    .lines = 1,
+    .least = 15};
+inline constexpr Text title_text{.px = 24,
+    .ink = bright,
+    .weight = Weight::semibold,
+    .align = Align::left,
+    .vertical = Vertical::top,
+    .lines = 1,
+    .least = 15};
+inline constexpr Text body_text{.px = 18,
+    .ink = bright,
+    .weight = Weight::regular,
+    .align = Align::left,
+    .vertical = Vertical::top,
+    .lines = 1,
+    .least = 14};
+inline constexpr Text small_text{.px = 15,
+    .ink = muted,
+    .weight = Weight::regular,
+    .align = Align::left,
+    .vertical = Vertical::top,
+    .lines = 1,
+    .least = 12};
 
 /// A text style with one thing changed.
 constexpr Text with(Text t, Align a) { return t.align = a, t; }

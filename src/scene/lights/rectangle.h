@@ -57,8 +57,10 @@ struct Rectangle {
         const auto before = [&](double at) { return math::asin(b0 * slope(at)) + math::asin(b1 * slope(at)); };
         const bool shines = shines_on(x);
         const double from = shines ? before(across - u / 2) : 0, all = shines ? before(across + u / 2) - from : 0;
-        return {frame.to_local(d), frame.to_local(b), frame.to_local(c),
-            {u / 2, v / 2, all > 1e-4 ? all : 0, from, b0, b0 + b1, shines ? 1.0 : 0.0}};
+        return {.a = frame.to_local(d),
+            .b = frame.to_local(b),
+            .c = frame.to_local(c),
+            .number = {u / 2, v / 2, all > 1e-4 ? all : 0, from, b0, b0 + b1, shines ? 1.0 : 0.0}};
     }
     template <class F> static MaskOf<F> shines(const LocalLight<F>& l) { return l.number[6] > number<F>(0); }
     /// From the centre to the middle of an edge, along edge_u and edge_v.

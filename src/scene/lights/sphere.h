@@ -40,7 +40,10 @@ struct Sphere {
         const Vec3d d = center - x;
         const double far = std::sqrt(dot(d, d)), gap = std::max(far - radius, 0.0);
         const double sin2 = std::min(1.0, sqr(radius) / dot(d, d)), cos = std::sqrt(gap * (far + radius)) / far;
-        return {frame.to_local(d), {}, {}, {radius, gap / far, sin2 / (1 + cos), shines_on(x) ? 1.0 : 0.0, far, gap}};
+        return {.a = frame.to_local(d),
+            .b = {},
+            .c = {},
+            .number = {radius, gap / far, sin2 / (1 + cos), shines_on(x) ? 1.0 : 0.0, far, gap}};
     }
     template <class F> static MaskOf<F> shines(const LocalLight<F>& l) { return l.number[3] > number<F>(0); }
 

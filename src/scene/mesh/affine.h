@@ -20,13 +20,13 @@ struct Affine {
     double det() const { return dot(x, cross(y, z)); }
     /// Returns the transform that applies `inner` first.
     Affine after(const Affine& inner) const {
-        return {vector(inner.x), vector(inner.y), vector(inner.z), point(inner.at)};
+        return {.x = vector(inner.x), .y = vector(inner.y), .z = vector(inner.z), .at = point(inner.at)};
     }
     /// Needs det() != 0.
     Affine inverse() const {
         const double scale = 1 / det();
         const Vec3d r0 = scale * cross(y, z), r1 = scale * cross(z, x), r2 = scale * cross(x, y);
-        Affine out = {{r0.x, r1.x, r2.x}, {r0.y, r1.y, r2.y}, {r0.z, r1.z, r2.z}, {}};
+        Affine out = {.x = {r0.x, r1.x, r2.x}, .y = {r0.y, r1.y, r2.y}, .z = {r0.z, r1.z, r2.z}, .at = {}};
         out.at = -out.vector(at);
         return out;
     }
@@ -35,18 +35,18 @@ struct Affine {
 };
 
 /// Returns the translation by `to`.
-inline Affine translation(Vec3d to) { return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, to}; }
+inline Affine translation(Vec3d to) { return {.x = {1, 0, 0}, .y = {0, 1, 0}, .z = {0, 0, 1}, .at = to}; }
 /// Returns the scaling of each axis.
-inline Affine scaling(Vec3d by) { return {{by.x, 0, 0}, {0, by.y, 0}, {0, 0, by.z}, {}}; }
+inline Affine scaling(Vec3d by) { return {.x = {by.x, 0, 0}, .y = {0, by.y, 0}, .z = {0, 0, by.z}, .at = {}}; }
 /// Returns the rotation about the x axis, then the y axis, then the z axis, counterclockwise seen from each axis' end.
 inline Affine rotation(Vec3d degrees) {
     const auto of = [](double angle) { return math::sincos(angle * (3.14159265358979323846 / 180)); };
     const auto [sx, cx] = of(degrees.x);
     const auto [sy, cy] = of(degrees.y);
     const auto [sz, cz] = of(degrees.z);
-    const Affine about_x = {{1, 0, 0}, {0, cx, sx}, {0, -sx, cx}, {}},
-                 about_y = {{cy, 0, -sy}, {0, 1, 0}, {sy, 0, cy}, {}},
-                 about_z = {{cz, sz, 0}, {-sz, cz, 0}, {0, 0, 1}, {}};
+    const Affine about_x = {.x = {1, 0, 0}, .y = {0, cx, sx}, .z = {0, -sx, cx}, .at = {}},
+                 about_y = {.x = {cy, 0, -sy}, .y = {0, 1, 0}, .z = {sy, 0, cy}, .at = {}},
+                 about_z = {.x = {cz, sz, 0}, .y = {-sz, cz, 0}, .z = {0, 0, 1}, .at = {}};
     return about_z.after(about_y.after(about_x));
 }
 

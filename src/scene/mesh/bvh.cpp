@@ -67,9 +67,9 @@ struct TriangleRay {
         const F4 low = least(u, least(v, w)), high = most(u, most(v, w)), det = (u + v) + w;
         const F4 zero = all4(0);
         const I4 inside = ((low >= zero) | (high <= zero)) & (det != zero);
-        if (bits_of(inside) == 0) return {0, zero, zero, zero};
+        if (bits_of(inside) == 0) return {.met = 0, .t = zero, .u = zero, .v = zero};
         const F4 t = ((u * az + v * bz) + w * cz) / det;
-        return {bits_of(inside & (t > zero) & (t < all4(t_max))), t, v / det, w / det};
+        return {.met = bits_of(inside & (t > zero) & (t < all4(t_max))), .t = t, .u = v / det, .v = w / det};
     }
 };
 
@@ -97,7 +97,7 @@ struct TriangleRay {
         const auto lane = static_cast<std::size_t>(std::countr_zero(met));
         const float t = t_in_box(block, lane, hits.t[lane], boxes, t_max);
         if (t < best.t || (t == best.t && t < infinity && block.triangle[lane] < best.triangle))
-            best = {t, block.triangle[lane], hits.u[lane], hits.v[lane]};
+            best = {.t = t, .triangle = block.triangle[lane], .u = hits.u[lane], .v = hits.v[lane]};
     }
 }
 

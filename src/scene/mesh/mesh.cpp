@@ -149,10 +149,14 @@ std::uint64_t hash_of(const Mesh& mesh) {
 
 std::string mesh_file(const Mesh& mesh) {
     const std::string content = content_of(mesh);
-    Header header{{}, mesh_kind, mesh_version, static_cast<std::uint32_t>(mesh.positions.size()),
-        static_cast<std::uint32_t>(mesh.triangles.size()),
-        (mesh.normals.empty() ? 0 : with_normals) | (mesh.uv.empty() ? 0 : with_uv), 0,
-        XXH3_64bits(content.data(), content.size())};
+    Header header{.magic = {},
+        .kind = mesh_kind,
+        .version = mesh_version,
+        .vertices = static_cast<std::uint32_t>(mesh.positions.size()),
+        .triangles = static_cast<std::uint32_t>(mesh.triangles.size()),
+        .flags = (mesh.normals.empty() ? 0 : with_normals) | (mesh.uv.empty() ? 0 : with_uv),
+        .reserved = 0,
+        .hash = XXH3_64bits(content.data(), content.size())};
     std::memcpy(header.magic, "crescent", 8);
     std::string out(sizeof header, '\0');
     std::memcpy(out.data(), &header, sizeof header);

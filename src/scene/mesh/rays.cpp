@@ -47,7 +47,7 @@ struct Rays::Made {
         if (hit.triangle == no_item) return;
         const float t = std::fmax(hit.t, entry);
         if (t < t_max && (t < best.t || (t == best.t && index < best.instance)))
-            best = {t, index, hit.triangle, hit.u, hit.v};
+            best = {.t = t, .instance = index, .triangle = hit.triangle, .u = hit.u, .v = hit.v};
     }
 };
 

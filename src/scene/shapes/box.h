@@ -91,7 +91,9 @@ struct Box {
     }
     Azimuths azimuths(Vec3d x, const Frame<double>& frame) const { return azimuths_of_corners(corners(), x, frame); }
 
-    BodyNumbers numbers(Vec3d origin) const { return {min - origin, max - origin, {}, 0, 0}; }
+    BodyNumbers numbers(Vec3d origin) const {
+        return {.a = min - origin, .b = max - origin, .c = {}, .radius = 0, .offset = 0};
+    }
     template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
         F near = number<F>(-1e30), far = number<F>(1e30);
         clip_slab(body.a.x, body.b.x, o.x, d.x, near, far);

@@ -30,7 +30,8 @@ struct Panel {
         Intersection best = crossing_at(parallelogram_t(corner + down, edge_u, edge_v, x, d), n);
         const auto side = [&](Vec3d from, Vec3d edge) {
             const double t = parallelogram_t(from, edge, down, x, d);
-            if (t >= opening && t < best.t) best = {t, t, normalize(cross(edge, down)), true};
+            if (t >= opening && t < best.t)
+                best = {.t = t, .order = t, .n = normalize(cross(edge, down)), .reveal = true};
         };
         side(corner, edge_u);
         side(corner, edge_v);

@@ -31,7 +31,7 @@ struct Plane {
 
     BodyNumbers numbers(Vec3d origin) const {
         const Vec3d a = point - origin;
-        return {a, normal, {}, 0, dot(normal, a)};
+        return {.a = a, .b = normal, .c = {}, .radius = 0, .offset = dot(normal, a)};
     }
     template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
         return within(plane_at(body.b, body.offset, o, d), lo, hi);

@@ -61,7 +61,7 @@ struct Quad {
     BodyNumbers numbers(Vec3d origin) const {
         const Vec3d a = corner - origin, n = cross(edge_u, edge_v);
         if (dot(edge_u, edge_u) < sqr(large_body) && dot(edge_v, edge_v) < sqr(large_body))
-            return {a, edge_u, edge_v, 0, dot(n, a)};
+            return {.a = a, .b = edge_u, .c = edge_v, .radius = 0, .offset = dot(n, a)};
         const double nn = dot(n, n);
         Vec3d b = (1 / nn) * cross(edge_v, n), c = (1 / nn) * cross(n, edge_u);
         double x = -dot(b, a), y = -dot(c, a);
@@ -73,7 +73,7 @@ struct Quad {
             c = -c;
             y = 1 - y;
         }
-        return {{x, y, 0}, b, c, 1, dot(cross(b, c), a)};
+        return {.a = {x, y, 0}, .b = b, .c = c, .radius = 1, .offset = dot(cross(b, c), a)};
     }
     template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
         const F zero = number<F>(0);

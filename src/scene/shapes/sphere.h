@@ -62,9 +62,10 @@ struct Sphere {
     BodyNumbers numbers(Vec3d origin) const {
         const Vec3d c = center - origin;
         const double far = std::sqrt(dot(c, c));
-        if (sqr(far) < large_body * radius && radius < large_body) return {c, {}, {}, radius, 0};
+        if (sqr(far) < large_body * radius && radius < large_body)
+            return {.a = c, .b = {}, .c = {}, .radius = radius, .offset = 0};
         const Vec3d n = far > 0 ? (-1 / far) * c : Vec3d{0, 1, 0};
-        return {c + radius * n, n, {}, radius, 1 / radius};
+        return {.a = c + radius * n, .b = n, .c = {}, .radius = radius, .offset = 1 / radius};
     }
     template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
         const F zero = number<F>(0);
