@@ -209,7 +209,8 @@ CheckCase number_case(const std::shared_ptr<const SamplerAdapter>& estimator) {
     return out;
 }
 
-/// The values of --estimates, one or one for each channel.
+}  // namespace
+
 std::array<double, 3> expected_values(const CheckFlags& flags, int channels) {
     std::vector<double> values;
     try {
@@ -220,6 +221,8 @@ std::array<double, 3> expected_values(const CheckFlags& flags, int channels) {
             channels == 3 ? "expected one value, or one for each of three channels" : "expected one value");
     return {values.front(), values[values.size() / 2], values.back()};
 }
+
+namespace {
 
 /// An estimator of a number against its expected value, or against another estimator.
 CheckResult check_of_number(
@@ -288,7 +291,8 @@ void check_shader_options(const CheckFlags& flags) {
         if (flags.domain == "number") throw InputError({"--domain number", 0, 0}, "is for programs and Python, so far");
         return;
     }
-    if (!flags.domain.empty() && flags.exec.empty()) throw InputError({"--domain", 0, 0}, "needs --exec or a shader");
+    if (!flags.domain.empty() && flags.exec.empty() && flags.samples.empty())
+        throw InputError({"--domain", 0, 0}, "needs --exec, --samples or a shader");
     std::string given = flags.over.empty() ? "" : "--over";
     for (const auto& [flag, values] : flags.shader)
         if (!values.empty() && flag != "--device") given = flag;
@@ -302,6 +306,24 @@ int list_adapters() {
     ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
     print_to_stderr("crescent check: cannot start /bin/sh\n");
     return unwritable;
+}
+
+/// The draws of --samples: directions at one w_o, or points of a domain.
+CheckCase case_of_file(const CheckFlags& flags) {
+    const std::optional<Domain> domain = domain_of(flags);
+    if (domain && !domain->is_direction()) {
+        if (!flags.wo.empty())
+            throw InputError({"--wo " + flags.wo[0], 0, 0}, "is for directions, and the domain is " + domain->name());
+        if (flags.table.empty()) throw InputError({"--samples", 0, 0}, "needs --pdf-table FILE");
+        return make_user_case(read_point_file(*domain, flags.samples, flags.table), 0, 0);
+    }
+    if (flags.wo.size() != 1 || flags.table.empty())
+        throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");
+    const Vec3d wo = direction_of(flags.wo[0]);
+    CheckCase t = make_user_case(std::make_shared<SampleFile>(flags.samples, flags.table),
+        math::acos(std::min(wo.z, 1.0)) * 180 / pi, math::atan2(wo.y, wo.x) * 180 / pi);
+    t.wo = wo;
+    return t;
 }
 
 std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor& monitor) {
@@ -324,13 +346,7 @@ std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor&
     }
     check_sides(flags, {});
     if (flags.samples.empty()) return make_cases(flags.arm, settings_of(flags), flags.full, grid_of(flags));
-    if (flags.wo.size() != 1 || flags.table.empty())
-        throw InputError({"--samples", 0, 0}, "needs --wo x,y,z and --pdf-table FILE");
-    const Vec3d wo = direction_of(flags.wo[0]);
-    CheckCase t = make_user_case(std::make_shared<SampleFile>(flags.samples, flags.table),
-        math::acos(std::min(wo.z, 1.0)) * 180 / pi, math::atan2(wo.y, wo.x) * 180 / pi);
-    t.wo = wo;
-    return {t};
+    return {case_of_file(flags)};
 }
 
 /// The sampler as the command line names it.

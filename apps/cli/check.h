@@ -1,6 +1,8 @@
 // Shared by `crescent check` and its self-tests.
 #pragma once
 
+#include <array>
+
 #include "commands.h"
 #include "crescent/crescent.h"
 #include "progress.h"
@@ -14,6 +16,8 @@ int exit_of(State state, const CheckFlags& flags);
 /// Prints at most 12 lines for one sampler; with `verbose`, or for several, the table and the details.
 void print_verdicts(const CheckResult& j, bool verbose);
 void write_files(const CheckFlags& flags, const CheckResult& j);
+/// The values of --estimates, one or one for each channel.
+std::array<double, 3> expected_values(const CheckFlags& flags, int channels);
 std::string shortest(double v);
 /// Returns the result for a program or plugin that could not be checked.
 CheckResult unchecked_result(const SamplerError& fault, const CheckFlags& flags, const std::string& command);

@@ -163,7 +163,8 @@ void add_check(CLI::App& app, Work& work) {
                         ->excludes(set);
     const auto [exec, plugin, samples] = own_samplers(*c, *f);
     shaders(*c, *f);
-    c->add_option("--domain", f->domain, "what a shader draws, or a program that does not say so; docs/domains.md")
+    c->add_option(
+         "--domain", f->domain, "what a shader or --samples draws, or a program that does not say; docs/domains.md")
         ->type_name("DOMAIN")
         ->check(not_empty);
     c->add_option("--estimates", f->estimates, "the expected value of a sampler of domain=number: 0.8187, exp(-0.2)")

@@ -139,6 +139,24 @@ grep -q "pdf is negative: 1 of 40000 rows, first at negative.csv:17: u = " print
 sed '7s/,[^,]*$/,oops/' right.csv >torn.csv
 expect 2 "$CRESCENT" check --quiet --samples torn.csv --wo 0,0,1 --pdf-table table.csv
 grep -q "^torn.csv:7:.*oops" said || die "no file, line and column: $(cat said)"
+
+python3 - <<'PY'
+import math, random
+random.seed(6)
+with open("disk.csv", "w") as right, open("no_root.csv", "w") as wrong:
+    for f in right, wrong: f.write("x1,x2,pdf\n")
+    for _ in range(40000):
+        u, phi = random.random(), 2 * math.pi * random.random()
+        for f, r in (right, math.sqrt(u)), (wrong, u):
+            f.write(f"{r * math.cos(phi)!r},{r * math.sin(phi)!r},{1 / math.pi!r}\n")
+with open("disk_table.csv", "w") as f: f.write(f"x1,x2,pdf\n0,0,{1 / math.pi!r}\n")
+PY
+expect 0 "$CRESCENT" check --quiet --samples disk.csv --domain disk --pdf-table disk_table.csv
+expect 1 "$CRESCENT" check --quiet --samples no_root.csv --domain disk --pdf-table disk_table.csv
+sed '7s/,[^,]*$/,oops/' disk.csv >torn.csv
+expect 2 "$CRESCENT" check --quiet --samples torn.csv --domain disk --pdf-table disk_table.csv
+grep -q "^torn.csv:7:.*oops" said || die "no file, line and column: $(cat said)"
+expect 2 "$CRESCENT" check --quiet --samples disk.csv --domain square --pdf-table disk_table.csv --wo 30
 for call in "phng" "--set q=1" "phong --set alpha=0.2" "--alpha 0" "--alpha 2" "--seed x" "--exec" \
     "--samples right.csv" "cosine --exec ./cosine" "cosine --wo 95" "cosine --wo 0,0,-1" "cosine --wo 1,2,3,4"; do
     expect 2 "$CRESCENT" check $call

@@ -26,7 +26,7 @@ std::string first_at(const Example& e, const Traits& traits, bool of_draw = fals
     bool any = of_draw;
     for (int k = 0; k < numbers; ++k) any = any || e.u[k] != 0;
     std::string out = "first at ";
-    if (any) out += "u = " + u_text(e.u, numbers) + ", ";
+    if (any && numbers > 0) out += "u = " + u_text(e.u, numbers) + ", ";
     return out + place_text(traits, e.draw.wi);
 }
 

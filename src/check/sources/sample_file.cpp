@@ -151,37 +151,9 @@ NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<s
 }
 
 // ---- The table is a full grid in cos theta and phi: cells if nine of ten samples have exactly the value of their
-// cell, otherwise points with linear interpolation, whose error is estimated from the curvature of p.
+// cell, otherwise points with linear interpolation.
 
 namespace {
-
-std::vector<double> edges_of(const std::vector<double>& centres, double first, double last) {
-    std::vector<double> out = {first};
-    for (std::size_t i = 0; i + 1 < centres.size(); ++i) out.push_back(0.5 * (centres[i] + centres[i + 1]));
-    out.push_back(last);
-    return out;
-}
-
-/// The values that differ by more than `tolerance`, in ascending order.
-std::vector<double> distinct(std::vector<double> v, double tolerance) {
-    std::sort(v.begin(), v.end());
-    std::vector<double> out;
-    for (double x : v)
-        if (out.empty() || x - out.back() > tolerance) out.push_back(x);
-    return out;
-}
-
-std::size_t cell_of(const std::vector<double>& edges, double v) {
-    const auto at = std::upper_bound(edges.begin(), edges.end(), v) - edges.begin() - 1;
-    return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, static_cast<std::ptrdiff_t>(edges.size()) - 2));
-}
-
-std::size_t nearest_of(const std::vector<double>& sorted, double v) {
-    const auto at = std::lower_bound(sorted.begin(), sorted.end(), v);
-    if (at == sorted.end() || (at != sorted.begin() && v - at[-1] < *at - v))
-        return static_cast<std::size_t>(at - sorted.begin()) - 1;
-    return static_cast<std::size_t>(at - sorted.begin());
-}
 
 double turned(double phi) { return phi < 0 ? phi + 2 * pi : phi; }
 double turned(Vec3d w) { return turned(math::atan2(w.y, w.x)); }
@@ -192,7 +164,6 @@ SampleFile::SampleFile(const std::string& samples, const std::string& table) : n
     read_samples(samples);
     read_table(table);
     cells_ = agrees_as_cells();
-    find_bends();
 }
 
 void SampleFile::read_samples(const std::string& path) {
@@ -226,37 +197,28 @@ void SampleFile::read_table(const std::string& path) {
     FileDiagnostics in{path, {}};
     const NumberTable t = read_table_file(in, {{"cos_theta", "phi", "pdf"}, {"wix", "wiy", "wiz", "pdf"}});
     const bool polar = t.column("cos_theta") >= 0;
-    std::vector<double> cos, phi, p;
+    std::vector<double> rows;
+    double lowest = 1;
     for (std::size_t r = 0; r < t.rows(); ++r) {
         const auto at = [&](const char* name) { return t.at(r, static_cast<std::size_t>(t.column(name))); };
-        cos.push_back(polar ? at("cos_theta") : at("wiz"));
-        phi.push_back(polar ? turned(at("phi")) : turned(Vec3d{at("wix"), at("wiy"), 0}));
-        p.push_back(at("pdf"));
-        if (!(std::fabs(cos.back()) <= 1 + 1e-6) || !(phi.back() >= 0 && phi.back() <= 2 * pi + 1e-6) ||
-            !std::isfinite(p.back()))
+        const double cos = polar ? at("cos_theta") : at("wiz"), p = at("pdf");
+        const double phi = polar ? turned(at("phi")) : turned(Vec3d{at("wix"), at("wiy"), 0});
+        rows.insert(rows.end(), {cos, phi, p});
+        lowest = std::min(lowest, cos);
+        if (!(std::fabs(cos) <= 1 + 1e-6) || !(phi >= 0 && phi <= 2 * pi + 1e-6) || !std::isfinite(p))
             in.add(t.lines.empty() ? 0 : t.lines[r], 1, "no direction of the sphere with a finite pdf");
     }
     in.throw_if_any();
-    for (double tolerance = 1e-7; rows_.size() * columns_.size() != p.size() && tolerance < 1e-2; tolerance *= 10) {
-        rows_ = distinct(cos, tolerance);
-        columns_ = distinct(phi, tolerance);
-    }
-    if (rows_.size() < 2 || columns_.size() < 2 || rows_.size() * columns_.size() != p.size()) {
-        in.add(0, 0,
-            fmt::format("expected a full grid: {} heights of cos theta and {} angles phi are not {} entries",
-                rows_.size(), columns_.size(), p.size()));
+    const bool sphere = lowest < -1e-6;
+    floor_ = sphere ? -1 : 0;
+    const GridAxis heights{.name = "cos_theta", .from = floor_, .to = 1, .poles = {sphere, true}, .fewest = 2};
+    const GridAxis angles{.name = "phi", .from = 0, .to = 2 * pi, .periodic = true, .fewest = 2};
+    try {
+        grid_ = DensityGrid({heights, angles}, rows);
+    } catch (const std::invalid_argument& e) {
+        in.add(0, 0, e.what());
         in.throw_if_any();
     }
-    row_edges_ = edges_of(rows_, rows_.front() < -1e-6 ? -1 : 0, 1);
-    column_edges_ = edges_of(columns_, 0, 2 * pi);
-    values_.assign(p.size(), std::nan(""));
-    for (std::size_t i = 0; i < p.size(); ++i)
-        values_[nearest_of(rows_, cos[i]) * columns_.size() + nearest_of(columns_, phi[i])] = p[i];
-    for (double v : values_)
-        if (std::isnan(v)) {
-            in.add(0, 0, "expected a full grid: a cell is missing and another occurs twice");
-            in.throw_if_any();
-        }
 }
 
 /// Whether nine of ten samples have exactly the value of their cell.
@@ -270,80 +232,22 @@ bool SampleFile::agrees_as_cells() const {
     return 10 * alike >= 9 * drawn;
 }
 
-/// Linear interpolation has an error of a quarter of the bend of p where p is smooth, and of all of it at a kink. At
-/// the first and the last row the line is extrapolated: the error is twice the bend of the next row, and towards a pole
-/// the variation of p around it.
-void SampleFile::find_bends() {
-    const std::size_t m = rows_.size(), n = columns_.size();
-    bent_.assign(values_.size(), 0);
-    if (cells_) return;
-    const auto p = [&](std::size_t i, std::size_t j) { return values_[i * n + j]; };
-    const auto around = [&](std::size_t i) {
-        const auto [least, most] = std::minmax_element(&values_[i * n], &values_[i * n] + n);
-        return *most - *least;
-    };
-    cap_below_ = row_edges_.front() == -1 ? around(0) : 0;
-    cap_above_ = around(m - 1);
-    for (std::size_t i = 0; i < m; ++i)
-        for (std::size_t j = 0; j < n; ++j) {
-            const std::size_t c = std::clamp<std::size_t>(i, 1, std::max<std::size_t>(m, 3) - 2),
-                              west = (j + n - 1) % n, east = (j + 1) % n;
-            double along = 0;
-            if (m > 2) {
-                const double t = (rows_[c] - rows_[c - 1]) / (rows_[c + 1] - rows_[c - 1]);
-                along = std::fabs(p(c, j) - (1 - t) * p(c - 1, j) - t * p(c + 1, j));
-            }
-            bent_[i * n + j] =
-                along * (i == 0 || i + 1 == m ? 2 : 1) + std::fabs(p(i, j) - 0.5 * (p(i, west) + p(i, east)));
-        }
-}
-
 double SampleFile::of_cell(Vec3d w) const {
-    return w.z < row_edges_.front()
-        ? 0
-        : values_[cell_of(row_edges_, w.z) * columns_.size() + cell_of(column_edges_, turned(w))];
-}
-
-SampleFile::GridCell SampleFile::cell_at(Vec3d w) const {
-    const auto row = std::upper_bound(rows_.begin(), rows_.end(), w.z) - rows_.begin();
-    GridCell at{};
-    at.i0 =
-        static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(row - 1, 0, static_cast<std::ptrdiff_t>(rows_.size()) - 2));
-    at.i1 = at.i0 + 1;
-    at.s = (w.z - rows_[at.i0]) / (rows_[at.i1] - rows_[at.i0]);
-    const double phi = turned(w);
-    const auto column =
-        static_cast<std::size_t>(std::upper_bound(columns_.begin(), columns_.end(), phi) - columns_.begin());
-    at.j1 = column % columns_.size();
-    at.j0 = (column + columns_.size() - 1) % columns_.size();
-    const double from = columns_[at.j0] - (column == 0 ? 2 * pi : 0),
-                 to = columns_[at.j1] + (column == columns_.size() ? 2 * pi : 0);
-    at.t = to > from ? (phi - from) / (to - from) : 0;
-    return at;
-}
-
-double SampleFile::between(const GridCell& at) const {
-    const std::size_t n = columns_.size();
-    const double low = (1 - at.t) * values_[at.i0 * n + at.j0] + at.t * values_[at.i0 * n + at.j1];
-    const double high = (1 - at.t) * values_[at.i1 * n + at.j0] + at.t * values_[at.i1 * n + at.j1];
-    return std::max((1 - at.s) * low + at.s * high, std::min({low, high, 0.0}));
+    const std::array<double, 2> at = {w.z, turned(w)};
+    return w.z < floor_ ? 0 : grid_.of_cell(at);
 }
 
 void SampleFile::pdf(int, std::span<const Pair> at, std::span<double> out) const {
     for (std::size_t i = 0; i < at.size(); ++i) {
         const Vec3d w = at[i].wi;
-        out[i] = w.z < row_edges_.front() ? 0 : cells_ ? of_cell(w) : between(cell_at(w));
+        const std::array<double, 2> place = {w.z, turned(w)};
+        out[i] = w.z < floor_ ? 0 : cells_ ? grid_.of_cell(place) : grid_.between(place);
     }
 }
 
 double SampleFile::tabulation_error(Vec3d w) const {
-    if (cells_ || w.z < row_edges_.front()) return 0;
-    const GridCell at = cell_at(w);
-    const std::size_t n = columns_.size();
-    const double cap = at.s > 1 ? cap_above_ : at.s < 0 ? cap_below_ : 0;
-    return cap +
-        std::max(
-            {bent_[at.i0 * n + at.j0], bent_[at.i0 * n + at.j1], bent_[at.i1 * n + at.j0], bent_[at.i1 * n + at.j1]});
+    const std::array<double, 2> place = {w.z, turned(w)};
+    return cells_ || w.z < floor_ ? 0 : grid_.error_between(place);
 }
 
 std::string SampleFile::place(std::size_t row) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "check/sources/density_grid.h"
 #include "check/sources/sampler_adapter.h"
 
 namespace crescent {
@@ -61,24 +62,15 @@ public:
     std::string place(std::size_t row) const override;
 
 private:
-    struct GridCell {  // between rows i and i + 1, columns j and j + 1
-        std::size_t i0, i1, j0, j1;
-        double s, t;
-    };
     std::string name_;
     bool has_drawn_f_ = false, cells_ = true;
     std::vector<unsigned> lines_;
-    std::vector<double> rows_, columns_;  // cos theta and phi of the entries
-    std::vector<double> row_edges_, column_edges_;
-    std::vector<double> values_, bent_;     // p by row; deviation of p from a straight line there
-    double cap_below_ = 0, cap_above_ = 0;  // variation of p around the poles, for the extrapolation
+    DensityGrid grid_;   // of cos theta and phi
+    double floor_ = -1;  // the least cos theta; p is 0 below
     void read_samples(const std::string& path);
     void read_table(const std::string& path);
-    void find_bends();
     bool agrees_as_cells() const;
     double of_cell(Vec3d w) const;
-    GridCell cell_at(Vec3d w) const;
-    double between(const GridCell& at) const;
 };
 
 }  // namespace crescent

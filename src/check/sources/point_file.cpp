@@ -1,0 +1,304 @@
+// The grid is read as cells, with constant p and the entries at their centres, if the pdf of the draws agrees with
+// that; otherwise p is linear between its points, and the tests allow for the error of that.
+#include "check/sources/point_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <stdexcept>
+
+#include "base/text.h"
+#include "check/estimate/stream.h"
+#include "check/sources/density_grid.h"
+#include "check/sources/sample_file.h"
+#include "math/functions.h"
+
+namespace crescent {
+
+namespace {
+
+using Point = std::array<double, Domain::most_coordinates>;
+using GridPoint = std::array<double, DensityGrid::most_axes>;
+constexpr std::size_t fewest_rows = 1000;
+constexpr double edge_slack = 1e-6;  // of a coordinate, by single precision
+
+bool is_direction(const DomainPart& part) {
+    return part.kind == DomainPart::Kind::sphere || part.kind == DomainPart::Kind::hemisphere;
+}
+
+/// The columns of the table but the last, and what they may contain.
+std::vector<GridAxis> axes_of(const Domain& domain) {
+    std::vector<GridAxis> out;
+    std::size_t coordinate = 1, directions = 0;
+    for (const DomainPart& part : domain.parts()) {
+        const bool sphere = part.kind == DomainPart::Kind::sphere;
+        if (is_direction(part)) {
+            const std::string number = ++directions > 1 ? std::to_string(directions) : "";
+            out.push_back(
+                {.name = "cos_theta" + number, .from = sphere ? -1.0 : 0.0, .poles = {sphere, true}, .fewest = 2});
+            out.push_back({.name = "phi" + number, .to = 2 * pi, .periodic = true, .fewest = 2});
+        } else
+            for (std::size_t k = 0; k < part.coordinates(); ++k) {
+                GridAxis axis{.name = fmt::format("x{}", coordinate + k)};
+                if (part.kind == DomainPart::Kind::disk) axis.from = -1;
+                if (part.kind == DomainPart::Kind::line) {
+                    axis.from = part.from;
+                    axis.to = part.to;
+                }
+                if (part.kind == DomainPart::Kind::set) {
+                    axis.to = part.count - 1.0;
+                    axis.whole = true;
+                }
+                out.push_back(std::move(axis));
+            }
+        coordinate += part.coordinates();
+    }
+    return out;
+}
+
+class PointFile : public RecordedSampler {
+public:
+    PointFile(const Domain& domain, const std::string& samples, const std::string& table)
+        : name_(printable(samples)), chart_(std::make_shared<DomainChart>(domain)) {
+        const NumberTable draws = read_draws(samples);
+        read_table(table);
+        take_draws(samples, draws);
+        cells_ = agrees_as_cells();
+    }
+    std::string name() const override { return name_; }
+    Traits traits() const override {
+        Traits out;
+        out.numbers = numbers_ + static_cast<int>(chart_->spreads());
+        out.wo = Traits::WoDomain::none;
+        out.u_bits = 53;
+        out.domain = chart_;
+        return out;
+    }
+    bool has_drawn_f() const override { return has_drawn_f_; }
+    void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            double factor = 0;
+            const GridPoint x = grid_point(pairs[i].wi, factor);
+            out[i] = !(factor > 0) || !grid_.contains(x) ? 0 : factor * (cells_ ? grid_.of_cell(x) : grid_.between(x));
+        }
+    }
+    double tabulation_error(Vec3d w) const override {
+        double factor = 0;
+        const GridPoint x = grid_point(w, factor);
+        return cells_ || !(factor > 0) || !grid_.contains(x) ? 0 : factor * grid_.error_between(x);
+    }
+    std::string place(std::size_t row) const override {
+        return row < lines_.size() ? fmt::format("{}:{}", name_, lines_[row]) : fmt::format("{}, row {}", name_, row);
+    }
+
+private:
+    std::string name_;
+    std::shared_ptr<DomainChart> chart_;
+    int numbers_ = 0;  // random numbers of a row
+    bool has_drawn_f_ = false, cells_ = true;
+    std::vector<unsigned> lines_;
+    std::vector<double> points_, densities_;  // of the draws, by row
+    DensityGrid grid_;
+
+    const Domain& domain() const { return chart_->domain(); }
+    std::size_t coordinates() const { return domain().coordinates(); }
+    std::span<const double> point_of_row(std::size_t row) const {
+        return std::span(points_).subspan(row * coordinates(), coordinates());
+    }
+
+    GridPoint grid_point(std::span<const double> point) const {
+        GridPoint out{};
+        std::size_t axis = 0;
+        for (const DomainPart& part : domain().parts()) {
+            if (is_direction(part)) {
+                const double phi = math::atan2(point[1], point[0]);
+                out[axis] = point[2];
+                out[axis + 1] = phi < 0 ? phi + 2 * pi : phi;
+            } else std::copy_n(point.begin(), part.coordinates(), out.begin() + static_cast<std::ptrdiff_t>(axis));
+            axis += part.dimensions();
+            point = point.subspan(part.coordinates());
+        }
+        return out;
+    }
+    GridPoint grid_point(Vec3d w, double& factor) const {
+        Point x{};
+        const std::span<double> point = std::span(x).first(coordinates());
+        factor = chart_->point(w, point);
+        return grid_point(point);
+    }
+
+    NumberTable read_draws(const std::string& path) {
+        FileDiagnostics in{path, {}};
+        std::vector<std::string> columns;
+        for (std::size_t k = 0; k < coordinates(); ++k) columns.push_back(fmt::format("x{}", k + 1));
+        columns.emplace_back("pdf");
+        std::vector<std::vector<std::string>> layouts = {columns, columns};
+        layouts[1].insert(layouts[1].begin(), {"u1", "u2"});
+        for (std::size_t k = 0; k < 2; ++k) {
+            layouts.push_back(layouts[k]);
+            layouts.back().emplace_back("f");
+        }
+        NumberTable t = read_table_file(in, layouts);
+        if (t.rows() < fewest_rows) {
+            in.add(
+                0, 0, fmt::format("{} samples are too few for a check; expected at least {}", t.rows(), fewest_rows));
+            in.throw_if_any();
+        }
+        return t;
+    }
+
+    void take_draws(const std::string& path, const NumberTable& t) {
+        FileDiagnostics in{path, {}};
+        const auto value = [&](std::size_t row, const char* name) {
+            return t.at(row, static_cast<std::size_t>(t.column(name)));
+        };
+        has_drawn_f_ = t.column("f") >= 0;
+        numbers_ = t.column("u1") >= 0 ? 2 : 0;
+        lines_ = t.lines;
+        std::vector<std::size_t> columns;
+        for (std::size_t k = 0; k < coordinates(); ++k)
+            columns.push_back(static_cast<std::size_t>(t.column(fmt::format("x{}", k + 1))));
+        for (std::size_t r = 0; r < t.rows(); ++r) {
+            for (std::size_t column : columns) points_.push_back(t.at(r, column));
+            densities_.push_back(value(r, "pdf"));
+            check_row(in, t, r);
+        }
+        in.throw_if_any();
+        chart_->fit(pilot_points());
+        const std::vector<PrimarySample> spreads = spreading_numbers(t.rows());
+        for (std::size_t r = 0; r < t.rows(); ++r) {
+            PrimarySample u = spreads[r];
+            if (numbers_ > 0) {
+                u.x = value(r, "u1");
+                u.y = value(r, "u2");
+            }
+            u_.push_back(u);
+            draws_.push_back(draw_of_point(*chart_, point_of_row(r), densities_[r], u, numbers_));
+            if (has_drawn_f_) draws_.back().f = value(r, "f") * factor_of(draws_.back());
+        }
+    }
+
+    /// The rows that test nothing, see check::Source::draw(): one of eight.
+    std::vector<double> pilot_points() const {
+        std::vector<double> out;
+        for (std::size_t r = 0; r < densities_.size(); r += 8)
+            if (densities_[r] > 0) out.insert(out.end(), point_of_row(r).begin(), point_of_row(r).end());
+        return out;
+    }
+
+    /// Random numbers of a row, and that an infinite line's table reaches as far as the draws.
+    void check_row(FileDiagnostics& in, const NumberTable& t, std::size_t r) const {
+        const unsigned line = t.lines.empty() ? 0 : t.lines[r];
+        for (const char* name : {"u1", "u2"}) {
+            const int column = t.column(name);
+            if (column < 0) continue;
+            const double u = t.at(r, static_cast<std::size_t>(column));
+            if (!(u >= 0 && u <= 1))
+                in.add(line, static_cast<unsigned>(column) + 1,
+                    fmt::format("{} is {:g}; expected a number from 0 to 1", name, u));
+        }
+        if (!domain().is_infinite() || !(densities_[r] > 0) || !domain().fault(point_of_row(r)).empty()) return;
+        const GridPoint x = grid_point(point_of_row(r));
+        std::size_t axis = 0;
+        for (const DomainPart& part : domain().parts()) {
+            if (part.is_infinite() && !(x[axis] >= grid_.first_edge(axis) && x[axis] <= grid_.last_edge(axis)))
+                in.add(line, 1,
+                    fmt::format("{} is outside the table of the density, which is from {:g} to {:g}",
+                        domain().text(point_of_row(r)), grid_.first_edge(axis), grid_.last_edge(axis)));
+            axis += part.dimensions();
+        }
+    }
+
+    /// Those that spread a point, after the random numbers of its row.
+    std::vector<PrimarySample> spreading_numbers(std::size_t rows) const {
+        constexpr check::StreamKey key{.seed = 0x66696c65, .purpose = check::Purpose::pilot};
+        const int count = numbers_ + static_cast<int>(chart_->spreads());
+        std::vector<PrimarySample> out(rows);
+        for (std::size_t r = 0; r < rows; ++r)
+            out[r] =
+                check::numbers_at(key, static_cast<std::uint32_t>(r), std::max(count, 1), check::Resolution::standard);
+        return out;
+    }
+
+    /// From a density over the domain to one over solid angle, at a draw.
+    double factor_of(const Draw& d) const {
+        Point x{};
+        return d.pdf > 0 && std::isfinite(d.wi.x) ? chart_->point(d.wi, std::span(x).first(coordinates())) : 1;
+    }
+
+    void read_table(const std::string& path) {
+        FileDiagnostics in{path, {}};
+        std::vector<GridAxis> axes = axes_of(domain());
+        std::vector<std::string> columns;
+        for (const GridAxis& axis : axes) columns.push_back(axis.name);
+        columns.emplace_back("pdf");
+        const NumberTable t = read_table_file(in, {columns});
+        std::vector<double> rows;
+        for (std::size_t r = 0; r < t.rows(); ++r) {
+            const unsigned line = t.lines.empty() ? 0 : t.lines[r];
+            for (std::size_t k = 0; k < columns.size(); ++k) {
+                const auto column = static_cast<std::size_t>(t.column(columns[k]));
+                const bool is_axis = k < axes.size();
+                double x = t.at(r, column);
+                if (is_axis && axes[k].periodic && x < 0) x += axes[k].to;
+                const double slack = is_axis && std::isfinite(axes[k].to - axes[k].from) ? edge_slack * axes[k].to : 0;
+                if (is_axis && !(std::isfinite(x) && x >= axes[k].from - slack && x <= axes[k].to + slack))
+                    in.add(line, static_cast<unsigned>(column) + 1,
+                        fmt::format("{} is {:g}; expected a number from {:g} to {:g}", columns[k], x, axes[k].from,
+                            axes[k].to));
+                if (is_axis && axes[k].whole && x != std::floor(x))
+                    in.add(line, static_cast<unsigned>(column) + 1,
+                        fmt::format("{} is {:g}; expected an integer, an entry of the set", columns[k], x));
+                if (!is_axis && !std::isfinite(x))
+                    in.add(line, static_cast<unsigned>(column) + 1, fmt::format("pdf is {:g}; expected a number", x));
+                rows.push_back(x);
+            }
+        }
+        in.throw_if_any();
+        set_scales(axes, rows);
+        try {
+            grid_ = DensityGrid(std::move(axes), rows);
+        } catch (const std::invalid_argument& e) {
+            in.add(0, 0, e.what());
+            in.throw_if_any();
+        }
+    }
+
+    /// Values of a line have any size.
+    void set_scales(std::vector<GridAxis>& axes, const std::vector<double>& rows) const {
+        std::size_t axis = 0;
+        for (const DomainPart& part : domain().parts()) {
+            if (part.kind == DomainPart::Kind::line) {
+                double low = rows[axis], high = rows[axis];
+                for (std::size_t i = axis; i < rows.size(); i += axes.size() + 1) {
+                    low = std::min(low, rows[i]);
+                    high = std::max(high, rows[i]);
+                }
+                axes[axis].scale = high > low ? high - low : std::max(std::fabs(low), 1e-300);
+            }
+            axis += part.dimensions();
+        }
+    }
+
+    /// Whether nine of ten draws have exactly the value of their cell.
+    bool agrees_as_cells() const {
+        std::size_t drawn = 0, alike = 0;
+        for (std::size_t r = 0; r < densities_.size(); ++r) {
+            const double p = densities_[r];
+            if (!(p > 0) || !domain().fault(point_of_row(r)).empty()) continue;
+            ++drawn;
+            alike += std::fabs(grid_.of_cell(grid_point(point_of_row(r))) - p) <= 1e-4 * p;
+        }
+        return 10 * alike >= 9 * drawn;
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const SamplerAdapter> read_point_file(
+    const Domain& domain, const std::string& samples, const std::string& table) {
+    return std::make_shared<PointFile>(domain, samples, table);
+}
+
+}  // namespace crescent
