@@ -534,7 +534,6 @@ int check(const CheckFlags& given) {
         const bool number = check_cases.front().adapter && check_cases.front().adapter->traits().number;
         if (number) {
             if (flags.describe) throw InputError({"--describe", 0, 0}, "is for samplers of directions and points");
-            if (!flags.repro.empty()) throw InputError({"--repro", 0, 0}, "is for samplers of directions");
             j = check_of_number(flags, check_cases.front().adapter, monitor);
         } else {
             if (!flags.estimates.empty())
@@ -544,8 +543,8 @@ int check(const CheckFlags& given) {
             if (!flags.against.empty()) return check_against(flags, check_cases, waivers, same, monitor);
             log_cost(check_cases, test_settings_of(flags), monitor);
             j = run_checks(check_cases, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
-            write_repro(flags, check_cases, j);
         }
+        write_repro(flags, check_cases, j);
     } catch (const SamplerError& fault) { j = unchecked_result(fault, flags, given_sampler(flags)); }
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();

@@ -17,6 +17,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "repro_points.h"
+#include "repro_reach.h"
+
 namespace crescent::cli {
 
 namespace {
@@ -405,46 +408,10 @@ std::vector<Angles> rounder(Angles worst) {
     return out;
 }
 
-/// How a script reaches the sampler.
-struct Reach {
-    bool hemisphere = false;
-    std::string lines;  // of Python: define sample(wo, u), pdf(wo, wi) and f(wo, wi)
-};
-
-std::string python_text(const std::string& text) { return nlohmann::json(text).dump(); }
-
-/// The first line that the program answers.
-Handshake handshake_with(const std::string& program) {
-    Handshake out;
-    const std::string command = "printf 'hello 2\\n' | (" + program + "\n) 2>/dev/null";
-    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
-    std::string line;
-    for (int c = 0; pipe && (c = std::fgetc(pipe.get())) != EOF && c != '\n';) line += static_cast<char>(c);
-    static_cast<void>(read_handshake(line, out));
-    return out;
-}
-
 Reach reach_program(const std::string& program) {
     const Handshake hello = handshake_with(program);
     Reach out{.hemisphere = hello.hemisphere, .lines = {}};
-    out.lines = "import subprocess, sys\nimport numpy as np\n\n\ndef ask(verb, *columns):  # the protocol of " +
-        std::string(hello.blocks ? "blocks" : "lines") + "\n    rows = np.hstack(columns)\n";
-    if (hello.blocks)
-        out.lines +=
-            "    block = verb.encode() + np.uint32(len(rows)).tobytes() + rows.astype('<f8').tobytes()\n"
-            "    said = subprocess.run(" +
-            python_text(program) +
-            ", shell=True, input=b'hello 2\\n' + block, stdout=-1).stdout\n"
-            "    return np.frombuffer(said.split(b'\\n', 1)[1][4:], '<f8').reshape(len(rows), -1)\n";
-    else
-        out.lines +=
-            "    lines = ['hello 2', *(' '.join([verb, *map(str, row)]) for row in rows.tolist())]\n"
-            "    said = subprocess.run(" +
-            python_text(program) +
-            ", shell=True, text=True, input='\\n'.join(lines) + '\\n', stdout=-1).stdout\n"
-            "    words = [line.replace('delta', '-').replace('- ', '-').split() for line in said.splitlines()[1:]]\n"
-            "    number = lambda x: np.nan if x == '-' else float.fromhex(x) if 'x' in x else float(x)\n"
-            "    return np.array([[number(x) for x in row[:4]] for row in words])\n";
+    out.lines = ask_lines(hello, program, 4);
     const auto verb = [&](const char* line, const char* block) { return hello.blocks ? block : line; };
     out.lines += fmt::format(
         "\n\ndef sample(wo, u): a = ask('{}', wo, u); return a[:, :3], a[:, 3]\n"
@@ -454,44 +421,15 @@ Reach reach_program(const std::string& program) {
     return out;
 }
 
-/// `word`: FILE.py, FILE.py:NAME or module:NAME, imported as crescent imports it.
+/// `word`: FILE.py, FILE.py:NAME or module:NAME.
 Reach reach_python(const std::string& word, Traits::WoDomain wo) {
-    namespace fs = std::filesystem;
-    const std::size_t colon = word.ends_with(".py") ? std::string::npos : word.rfind(':');
-    const std::string file = word.substr(0, colon), name = colon == std::string::npos ? "" : word.substr(colon + 1);
-    std::string module = file, folder = fs::current_path().string();
-    if (file.ends_with(".py")) {
-        const fs::path path = fs::absolute(file).lexically_normal();
-        fs::path top = path.parent_path();
-        while (fs::exists(top / "__init__.py")) top = top.parent_path();
-        folder = top.string();
-        module = path.lexically_relative(top).replace_extension().string();
-        std::ranges::replace(module, '/', '.');
-    }
-    Reach out;
-    out.lines = "import sys; sys.path.insert(0, " + python_text(folder) + ")\nimport numpy as np\n";
-    out.lines += name.empty() ? "import " + module + " as sampler\n"
-                              : "from " + module + " import " + name +
-            " as sampler\n"
-            "sampler = sampler() if isinstance(sampler, type) else sampler\n";
+    Reach out{.lines = import_lines(word)};
     const char* given = wo == Traits::WoDomain::none ? "" : "wo, ";
     out.lines += fmt::format(
         "\n\ndef sample(wo, u): return sampler.sample({0}u)[:2]\n"
         "def pdf(wo, wi): return sampler.pdf({0}wi)\n"
         "def f(wo, wi): return np.reshape(sampler.f({0}wi), (len(wi), -1))\n",
         given);
-    return out;
-}
-
-/// The lines without the functions that the script does not call.
-std::string without_unused(const std::string& lines, const std::string& script) {
-    static const std::regex definition("def (\\w+)\\(wo, .*");
-    std::string out;
-    std::istringstream in(lines);
-    for (std::string line; std::getline(in, line);)
-        if (std::smatch name; !std::regex_match(line, name, definition) ||
-            std::regex_search(script, std::regex("\\b" + name[1].str() + "\\(")))
-            out += line + "\n";
     return out;
 }
 
@@ -592,6 +530,8 @@ std::string lines_of(const ShownFault& fault, const Reach& reach, int numbers) {
 
 std::optional<std::string> repro_script(
     const CheckFlags& flags, std::span<const CheckCase> check_cases, const CheckResult& result) {
+    if (!check_cases.empty() && check_cases[0].adapter->traits().number)
+        return script_of_number(flags, *check_cases[0].adapter, result);
     std::optional<Reach> reach;
     for (const Finding& finding : findings_of(result)) {
         if (finding.state != State::wrong) continue;
@@ -599,7 +539,10 @@ std::optional<std::string> repro_script(
         if (worst == check_cases.end()) continue;
         const SamplerAdapter& sampler = *worst->adapter;
         const Traits traits = sampler.traits();
-        if (traits.domain) continue;  // a script has directions
+        if (traits.domain) {
+            if (std::optional<std::string> script = script_of_points(flags, *worst, finding)) return script;
+            continue;
+        }
         if (!reach) reach = flags.exec.empty() ? reach_python(flags.arm, traits.wo) : reach_program(flags.exec);
         const auto found = Bench(sampler, reach->hemisphere, worst->wo).find(finding.name);
         if (!found) continue;

@@ -75,6 +75,52 @@ shows "pdf integrates to" dim.py
 sed -i "s/\.\/dim/.\/block/" dim.py
 expect 0 /usr/bin/python3 dim.py
 
+# Points of a domain, and an estimator of a number.
+cat >points.c <<'C'
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+static const char *kind;
+
+static int has(const char *name) { return strcmp(kind, name) == 0; }
+
+int main(int count, char **words) {
+    static char line[4096];
+    kind = words[count - 1];
+    while (fgets(line, sizeof line, stdin)) {
+        double u = 0, v = 0;
+        sscanf(line, "%*s %lf %lf", &u, &v);
+        if (line[0] == 'h') puts(count > 2 ? "hello 2 estimator domain=number u=1" : "hello 2 lens domain=disk");
+        else if (count > 2) printf("%.17g\n", has("bad") && u > 0.9 ? NAN : has("bias") ? 2.04 * u : 2 * u);
+        else if (line[0] == 's') {
+            const double r = (has("root") ? u : sqrt(u)) * (has("outside") ? 1.1 : 1);
+            printf("%.17g %.17g %.17g\n", r * cos(2 * pi * v), r * sin(2 * pi * v), (has("two") ? 1.1 : 1) / pi);
+        } else if (line[0] == 'p') printf("%.17g\n", (has("factor") ? 1.2 : 1) / pi);
+        else puts("-");
+        fflush(stdout);
+    }
+    return 0;
+}
+C
+expect 0 "${CC:-cc}" -O2 -o points points.c -lm
+while read -r kind verdict words; do
+    case $kind in bias | bad) number=number estimates="--estimates 1" ;; *) number= estimates= ;; esac
+    expect 1 "$CRESCENT" check --quiet --exec "./points $number $kind" $estimates --repro $kind.py
+    grep -q "^# $verdict: " $kind.py || die "$kind is not shown by $verdict: $(head -n 1 $kind.py)"
+    shows "$words" $kind.py
+    sed -i "s/ $kind\"/ right\"/" $kind.py
+    expect 0 /usr/bin/python3 $kind.py
+done <<'END'
+root density of the draws
+outside valid the point
+two identity pdf of the draw
+factor normalised pdf integrates to 1.[12]
+bias mean expected 1
+bad valid values are not finite
+END
+
 # Without a fault there is no script; other samplers than a program and a Python file have none.
 expect 0 "$CRESCENT" check --quiet --exec "./faulty right" --wo 45 --repro none.py
 grep -q "no verdict is wrong" said && [ ! -e none.py ] || die "a script without a fault: $(cat said)"
