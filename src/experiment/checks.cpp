@@ -309,7 +309,7 @@ void check_names(ParseContext& context) {
     for (const Reference& r : context.references) {
         const bool arm = r.type == Type::arm, sampler = r.type == Type::sampler;
         if (sampler && is_unfinished_combination(context, r.path)) continue;
-        const std::vector<std::string> valid = sampler ? sampler_names() : arm ? arms : shapes;
+        const std::vector<std::string> valid = sampler ? sampler_words() : arm ? arms : shapes;
         if (std::count(valid.begin(), valid.end(), r.name)) continue;
         const char* what = sampler ? "sampler" : arm ? "arm" : "shape";
         context.report(r.path,

@@ -84,6 +84,40 @@ void add_combinations(const Experiment& experiment, ExternalSamplers& samplers) 
     Combinations(experiment, samplers).add_all();
 }
 
+// ---- The arm that samples as a renderer does: the balance heuristic of the material and each kind of light. Veach &
+// Guibas 1995; Pharr, Jakob & Humphreys 2023, "Physically Based Rendering", 13.4.
+
+std::vector<std::string> sampler_words() {
+    std::vector<std::string> words = sampler_names();
+    words.emplace_back(renderer_word);
+    return words;
+}
+
+void expand_renderers(ParseContext& context) {
+    Experiment& e = context.e;
+    const auto shines = [](const auto& light) { return std::ranges::max(light.radiance) > 0; };
+    std::vector<std::string> of = {"material"};
+    if (std::ranges::any_of(e.disks, shines) || std::ranges::any_of(e.lights, shines))
+        of.push_back("light-solid-angle");
+    if (e.sky) of.push_back("sky");
+    if (std::ranges::any_of(e.meshes, &MeshObject::emits)) of.push_back("light-triangle");
+    for (ArmPlan& arm : e.arms) {
+        if (arm.sampler != renderer_word || arm.is_combination()) continue;
+        for (const std::string& part : of)
+            if (const ArmPlan* other = e.find_arm(part); other && other->sampler != part && of.size() > 1)
+                context.report("arms." + other->name,
+                    fmt::format("arms.{0}: expected the sampler '{0}', which the arm '{1}' combines, or another name",
+                        other->name, arm.name));
+        if (of.size() == 1) {
+            arm.sampler = of[0];
+            continue;
+        }
+        arm.sampler.clear();
+        arm.combination.kind = CombinationKind::mis;
+        arm.combination.of = of;
+    }
+}
+
 // ---- Checks of arms that combine samplers: names that exist, no arm within itself, weights whose sum is one, parts
 // that can be combined.
 

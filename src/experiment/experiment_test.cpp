@@ -89,6 +89,30 @@ n = 4
     EXPECT_NE(hash(pinned), hash(moved));
 }
 
+TEST(Renderers, CombineTheMaterialWithEveryKindOfLight) {
+    const std::string scene = test::view_text + test::ball_text + "[arms.pt]\nsampler = \"renderer\"\nn = 4\n";
+    const std::string disk = "[disks.d]\ncenter = [0, 3, 0]\nnormal = [0, -1, 0]\nradius = 1\nradiance = [1, 1, 1]\n",
+                      sky = "[sky]\nfile = \"sky.exr\"\n";
+    const auto arm = [&](const std::string& lights) { return parse(scene + lights, "a.toml").arms.at(0); };
+    EXPECT_EQ(arm(test::fill_text).sampler, "material");
+    EXPECT_FALSE(arm(test::fill_text).is_combination());
+    EXPECT_THAT(arm(disk).combination.of, ElementsAre("material", "light-solid-angle"));
+    EXPECT_THAT(arm(sky).combination.of, ElementsAre("material", "sky"));
+    EXPECT_THAT(
+        arm(disk + sky + "[meshes.lamp]\nfile = \"l.mesh\"\nrho_d = [0, 0, 0]\nemission = [1, 1, 1]\n").combination.of,
+        ElementsAre("material", "light-solid-angle", "sky", "light-triangle"));
+    const std::string written = R"(
+[arms.pt]
+kind = "mis"
+of = ["material", "sky"]
+n = 4
+)";
+    EXPECT_EQ(
+        hash(parse(scene + sky, "a.toml")), hash(parse(test::view_text + test::ball_text + sky + written, "b.toml")));
+    EXPECT_EQ(canonical_text(parse(canonical_text(parse(scene + sky, "a.toml")), "a.toml")),
+        canonical_text(parse(scene + sky, "a.toml")));
+}
+
 TEST(WhatIfs, AreOneLineEach) {
     EXPECT_EQ(gallery({"seed=7"}).seed, 7u);
     EXPECT_EQ(gallery({"firefly_k=2.5"}).firefly_k, 2.5);

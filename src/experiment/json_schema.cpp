@@ -45,7 +45,7 @@ Json type_of(const Key& key) {
         case Type::shape: return {{"type", "string"}, {"maxLength", most_schema_characters}};
         case Type::texts: return one_or_more({{"type", "string"}, {"maxLength", most_schema_characters}});
         case Type::word: return {{"type", "string"}, {"enum", key.words}};
-        case Type::sampler: return {{"type", "string"}, {"enum", sampler_names()}};
+        case Type::sampler: return {{"type", "string"}, {"enum", sampler_words()}};
         case Type::flag: return {{"type", "boolean"}};
         case Type::integer: return number(key, true);
         case Type::number: return number(key, false);

@@ -122,6 +122,9 @@ const Mistake combinations[] = {
     {"", "[arms.both]\nkind = \"mis\"\nof = [\"cosine\", \"phong\"]\nprobabilities = [0.5, 0.5]\n", 56, 17,
         "expected draw = \"one\""},
     {"", "[arms.both]\nof = [\"cosine\", \"phong\"]\n", 54, 6, "expected a kind beside it"},
+    {"", "[arms.pt]\nsampler = \"rendrer\"\n", 54, 11, "did you mean 'renderer'?"},
+    {"", "[arms.pt]\nsampler = \"renderer\"\n[arms.material]\nsampler = \"cosine\"\n", 55, 7,
+        "expected the sampler 'material', which the arm 'pt' combines, or another name"},
     {"", "[arms.both]\nkind = \"mis\"\nof = [\"cosine\"]\n", 55, 6, "expected 2 to 16 samplers, found 1"},
 };
 

@@ -44,9 +44,7 @@ std::string light_over(const Ball& ball) {
         point(ball.middle + 2.5 * ball.radius * towards, ball.radius), point(-1.0 * towards, 1), 0.6 * ball.radius);
 }
 
-std::string arm(const std::string& name, const std::string& more = "") {
-    return fmt::format("[arms.{}]\n{}n = [4, 16, 64]\n\n", name, more);
-}
+std::string arm(const std::string& name) { return fmt::format("[arms.{}]\nn = [4, 16, 64]\n\n", name); }
 
 }  // namespace
 
@@ -80,9 +78,7 @@ std::string experiment_for(const std::vector<NamedMesh>& meshes, const std::opti
             table_name_of(file), file);
     out += sky ? fmt::format("[sky]\nfile = \"{}\"\n", *sky) : light_over(Ball(box));
     out += "\n[reference]\nn = 32\n\n";
-    const std::string aimed = sky ? "sky" : "light-solid-angle";
-    out += arm("cosine") + arm("ggx-vndf") +
-        arm("both", fmt::format("kind = \"mis\"\nof = [\"{}\", \"ggx-vndf\"]\n", aimed));
+    out += arm("cosine") + arm("material") + arm("renderer");
     return out + fmt::format("[regions.all]\nbox = [0, 0, {}, {}]\n", width - 1, height - 1);
 }
 
@@ -120,23 +116,12 @@ std::string experiment_for(const ModelScene& scene) {
             point(scene.camera->eye, ball.radius), point(scene.camera->target, ball.radius), point(scene.camera->up, 1),
             scene.camera->vfov_deg);
     else out += camera_table(scene.box) + "\n";
-    bool has_lobe = false, emits = false;
-    for (const ModelMesh& mesh : scene.meshes) {
-        out += mesh_table(mesh);
-        has_lobe = has_lobe || std::ranges::max(mesh.rho_s) > 0;
-        emits = emits || std::ranges::max(mesh.emission) > 0;
-    }
+    for (const ModelMesh& mesh : scene.meshes) out += mesh_table(mesh);
     out += scene.sky ? fmt::format("[sky]\nfile = \"{}\"\n", *scene.sky) : light_over(ball);
     out += "\n[reference]\nn = 64\n\n";
-    const std::string light = scene.sky ? "sky" : "light-solid-angle", surface = has_lobe ? "ggx-vndf" : "cosine";
-    out += arm("cosine");
-    if (has_lobe) out += arm("ggx-vndf");
-    out += arm(light);
-    out += arm("both",
-        fmt::format("kind = \"mis\"\nof = [\"{}\", \"{}\"{}]\n", light, surface, emits ? ", \"light-triangle\"" : ""));
+    out += arm("cosine") + arm("material") + arm(scene.sky ? "sky" : "light-solid-angle") + arm("renderer");
     out += fmt::format("[regions.all]\nbox = [0, 0, {}, {}]\n\n", width - 1, height - 1);
-    return out +
-        fmt::format("[plates.ladder]\nkind = \"ladder\"\nruns = [{{ arm = \"{}\" }}, {{ arm = \"both\" }}]\n", surface);
+    return out + "[plates.ladder]\nkind = \"ladder\"\nruns = [{ arm = \"material\" }, { arm = \"renderer\" }]\n";
 }
 
 }  // namespace crescent

@@ -401,6 +401,7 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
     Node root = read_toml(text, name);
     apply_overrides(context, root, overrides);
     read_tree(context, root);
+    expand_renderers(context);
     check_geometry(context);
     check_names(context);
     resolve_runs(context);

@@ -95,7 +95,15 @@ std::string why_not_run(const Experiment& e, const std::string& arm, std::uint64
 /// Parses every assertion and checks that all it names will be measured.
 void resolve_assertions(ParseContext& context);
 
-// ---- Checks of arms that combine samplers.
+// ---- Arms that combine samplers.
+
+/// The word for a sampler that is no sampler of its own but the combination a renderer uses in the scene.
+inline constexpr const char* renderer_word = "renderer";
+/// Returns the words of the key 'sampler'.
+std::vector<std::string> sampler_words();
+/// Makes each arm with that word the combination of `material` with a sampler for each kind of light of the scene;
+/// under a fill alone, `material`. After shapes, meshes and lights were read.
+void expand_renderers(ParseContext& context);
 
 /// Reports every mistake in an arm with a kind: after names and shapes were read.
 void check_combinations(ParseContext& context);

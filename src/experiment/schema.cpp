@@ -173,7 +173,7 @@ std::string manual_of(const Section& root) {
 
 std::string schema_text() {
     std::string out = manual_of(schema());
-    out += "\nSamplers\n" + wrapped(listed(sampler_names(), ", "), 2);
+    out += "\nSamplers\n" + wrapped(listed(sampler_words(), ", "), 2);
     out += "\nQuantities of a check\n";
     for (const QuantityWord& word : quantity_words()) out += wrapped(form_of(word), 2) + wrapped(word.means, 6);
     return out;

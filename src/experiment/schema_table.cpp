@@ -279,7 +279,9 @@ Section arms() {
                 "What a candidate is chosen by: \"product\" f L cos without shadows, \"brdf\" f cos, or an arm or "
                 "sampler whose density is the target.",
                 to<&ArmPlan::combination, &CombinationPlan::target>, {}, "ris"},
-            {"sampler", Type::sampler, none, "", defaulted, "the arm's own name", "Which sampler it is.",
+            {"sampler", Type::sampler, none, "", defaulted, "the arm's own name",
+                "Which sampler it is; \"renderer\": material with those of the scene's lights, by the balance "
+                "heuristic.",
                 to<&ArmPlan::sampler>},
             {"n", Type::integers, count_range, "samples/pixel", optional, "the experiment's n",
                 "The ladder, ascending; one integer is a ladder of one.", to<&ArmPlan::n>}},

@@ -61,6 +61,7 @@ template <class A, class L, class E, class F> struct Lane : E {
         shading_point = {load_lanes<F>(shading_points.wox, shading_points.woy, shading_points.woz, at),
             load_lanes<F>(shading_points.s, at), load_lanes<F>(shading_points.alpha, at),
             load_lanes<F>(shading_points.diffuse, at), load_lanes<F>(shading_points.rho_s, at)};
+        shading_point.lobe_kind = static_cast<LobeKind>(shading_points.lobe);
         this->show(shading_point);
     }
 

@@ -258,6 +258,7 @@ ShadingPoint<float> OpenPixel::aimed_from() const {
         .disk_count = static_cast<int>(local_.size()),
         .others = others_.data(),
         .other_count = static_cast<int>(others_.size())};
+    out.lobe_kind = static_cast<LobeKind>(p.lobe);
     if (!p.around) return out;
     out.around = p.around.get();
     out.position = at(p.px, p.py, p.pz);

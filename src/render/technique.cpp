@@ -57,6 +57,7 @@ private:
                 .alpha = p.alpha[run.point],
                 .diffuse = p.diffuse[run.point],
                 .lobe = p.rho_s[run.point]};
+            point.lobe_kind = static_cast<LobeKind>(p.lobe);
             lights.show(point);
             work(A<float>(point), run);
         }

@@ -11,6 +11,7 @@
 #include "samplers/light_area.h"
 #include "samplers/light_solid_angle.h"
 #include "samplers/light_triangle.h"
+#include "samplers/material.h"
 #include "samplers/mis.h"
 #include "samplers/mixture.h"
 #include "samplers/phong.h"
@@ -28,7 +29,7 @@ struct ArmList {
 };
 
 using Samplers = ArmList<Uniform, Cosine, Phong, Mixture, MisBalance, MisPower, LightSolidAngle, LightArea, Blinn, GgxD,
-    GgxVndf, GgxBoundedVndf, BeckmannD, SkyByTexel, LightTriangle>;
+    GgxVndf, GgxBoundedVndf, BeckmannD, SkyByTexel, LightTriangle, MaterialSampler>;
 
 /// Calls f.template operator()<A>() for every sampler A in the list's order.
 template <class Call, template <class> class... A> constexpr void for_each_sampler(ArmList<A...>, Call&& f) {

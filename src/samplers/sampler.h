@@ -9,6 +9,7 @@
 #include "math/simd/frame.h"
 #include "samplers/info.h"
 #include "scene/lights/all.h"
+#include "scene/lobes/lobe.h"
 #include "scene/surroundings.h"
 
 namespace crescent {
@@ -91,6 +92,7 @@ template <class F> struct ShadingPoint {
     const Surroundings* around = nullptr;  // the scene's sky and meshes; null: none, and the next two are not set
     Vec3<F> position{};                    // of the point, from the scene's origin along the world's axes, m
     Frame<F> frame{};                      // of the point, in the world
+    LobeKind lobe_kind = LobeKind::none;   // none where rho_s is 0
 };
 
 /// The light that samplers which aim only at lights cannot reach.

@@ -12,6 +12,7 @@ experiment() { # IMAGE [MORE]
     { cat body.toml && printf '\n[sky]\nfile = "%s"\n%s\n' "$1" "${2:-}" && cat arms; } >sky.toml
 }
 printf '\n[arms.sky]\nn = [4, 16]\n\n[arms.both]\nkind = "mis"\nof = ["sky", "mixture", "light-area"]\nn = [4, 16]\n' >arms
+printf '\n[arms.renderer]\nn = [4, 16]\n' >>arms
 run() { expect "$1" "$CRESCENT" run sky.toml --quiet "${@:2}"; }
 refuses() { # WORDS [IMAGE [MORE]]
     experiment "${2:-sunset.exr}" "${3:-}"

@@ -26,9 +26,17 @@ double brdf_value(const SurfaceSetup& surface, Vec3d wo, Vec3d wi);
 /// The shading point of an arm in number type F; `disks` and `others` must outlive it.
 template <class F> ShadingPoint<F> point_of(const SurfaceSetup& surface, Vec3d wo,
     const std::vector<LocalDisk<F>>& disks, const std::vector<LocalLight<F>>& others) {
-    return {as<F>(wo), static_cast<F>(surface.s), static_cast<F>(surface.alpha), static_cast<F>(surface.rho_d),
-        static_cast<F>(surface.rho_s), disks.data(), static_cast<int>(disks.size()), others.data(),
-        static_cast<int>(others.size())};
+    ShadingPoint<F> out{.wo = as<F>(wo),
+        .s = static_cast<F>(surface.s),
+        .alpha = static_cast<F>(surface.alpha),
+        .diffuse = static_cast<F>(surface.rho_d),
+        .lobe = static_cast<F>(surface.rho_s),
+        .disks = disks.data(),
+        .disk_count = static_cast<int>(disks.size()),
+        .others = others.data(),
+        .other_count = static_cast<int>(others.size())};
+    if (surface.rho_s > 0) out.lobe_kind = surface.lobe;
+    return out;
 }
 /// Power of the light: L r^2 of the disks plus that of the other lights.
 inline double power_of(const CaseLighting& light) {

@@ -136,6 +136,7 @@ ShadingPoint<double> point_of(const Experiment& e, double s, double tilt) {
     shading_point.alpha = surface.alpha;
     shading_point.diffuse = luminance(surface.rho_d);
     shading_point.lobe = surface.rho_s;
+    if (surface.rho_s > 0) shading_point.lobe_kind = material.brdf;
     return shading_point;
 }
 
