@@ -71,7 +71,7 @@ CRESCENT_EXPORT(drawn)()->void {
         cases_named(query.at("sampler").get<std::string>(), query.at("theta").get<double>()).front();
     const std::uint32_t seed = seed_of(TestSettings::quick().seed, 0);
     std::vector<PrimarySample> u(query.at("n").get<std::size_t>());
-    for (std::size_t k = 0; k < u.size(); ++k) u[k] = drawn_numbers(seed, 0, k, 0, PrimarySample::most);
+    for (std::size_t k = 0; k < u.size(); ++k) u[k] = drawn_numbers(seed, 0, k, 0, PrimarySample::most_numbers);
     std::vector<Draw> draws(u.size());
     check_case.adapter->sample(0, check_case.wo, u, draws);
     const Disk disk({-check_case.wo.x, -check_case.wo.y, check_case.wo.z});

@@ -150,7 +150,7 @@ Disk disk_of(const CheckCase& at) { return Disk({-at.wo.x, -at.wo.y, at.wo.z}); 
 std::vector<Draw> draws_of(const CheckCase& at, std::size_t n) {
     const std::uint32_t seed = seed_of(TestSettings::quick().seed, 0);
     std::vector<PrimarySample> u(n);
-    for (std::size_t k = 0; k < n; ++k) u[k] = drawn_numbers(seed, 0, k, 0, PrimarySample::most);
+    for (std::size_t k = 0; k < n; ++k) u[k] = drawn_numbers(seed, 0, k, 0, PrimarySample::most_numbers);
     std::vector<Draw> draws(n);
     at.adapter->sample(0, at.wo, u, draws);
     return draws;
@@ -165,7 +165,7 @@ std::shared_ptr<const ExternalSampler> page_sampler() {
 
 /// What the user's functions take: so many random numbers a sample, and the context as third argument or not.
 CRESCENT_EXPORT(user_takes)(int numbers, int context)->void {
-    numbers_of_sample = static_cast<std::size_t>(std::clamp(numbers, 1, PrimarySample::most));
+    numbers_of_sample = static_cast<std::size_t>(std::clamp(numbers, 1, PrimarySample::most_numbers));
     takes_context = context != 0;
 }
 

@@ -14,12 +14,12 @@ namespace crescent {
 
 namespace {
 
-std::string join(const std::vector<Diagnostic>& all) {
+std::string join(const std::vector<Diagnostic>& diagnostics) {
     std::string text;
-    for (const Diagnostic& c : all) {
+    for (const Diagnostic& c : diagnostics) {
         if (!text.empty()) text += '\n';
-        const std::string at = printable(to_string(c.at));
-        text += at.empty() ? c.message : at + ": " + c.message;
+        const std::string place = printable(to_string(c.at));
+        text += place.empty() ? c.message : place + ": " + c.message;
     }
     return text;
 }
@@ -44,19 +44,20 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string to_string(const SourceLocation& at) {
-    if (at.line == 0) return at.file;
-    return fmt::format("{}:{}:{}", at.file, at.line, at.column);
+std::string to_string(const SourceLocation& place) {
+    if (place.line == 0) return place.file;
+    return fmt::format("{}:{}:{}", place.file, place.line, place.column);
 }
 
-InputError::InputError(std::vector<Diagnostic> all) : std::invalid_argument(join(all)), all_(std::move(all)) {}
+InputError::InputError(std::vector<Diagnostic> diagnostics)
+    : std::invalid_argument(join(diagnostics)), all_(std::move(diagnostics)) {}
 
 OutputError not_built(std::string_view part) {
     return OutputError(fmt::format("{} is not built yet: ./build-all in the folder of the sources builds it", part));
 }
 
-Bug::Bug(const std::source_location& at, std::string_view claim)
-    : std::logic_error(fmt::format("{}:{}: internal check failed: {}", at.file_name(), at.line(), claim)) {}
+Bug::Bug(const std::source_location& place, std::string_view claim)
+    : std::logic_error(fmt::format("{}:{}: internal check failed: {}", place.file_name(), place.line(), claim)) {}
 
 std::string nearest(std::string_view word, const std::vector<std::string>& valid) {
     std::string best;

@@ -18,7 +18,7 @@ struct SourceLocation {
 };
 
 /// Returns "gallery.toml:14:9", or as much of it as is known.
-std::string to_string(const SourceLocation& at);
+std::string to_string(const SourceLocation& place);
 
 /// One mistake in the input: where, and what was expected.
 struct Diagnostic {
@@ -30,9 +30,9 @@ struct Diagnostic {
 class InputError : public std::invalid_argument {
 public:
     /// what() has one line per mistake.
-    explicit InputError(std::vector<Diagnostic> all);
-    InputError(const SourceLocation& at, const std::string& message)
-        : InputError(std::vector<Diagnostic>{{at, message}}) {}
+    explicit InputError(std::vector<Diagnostic> diagnostics);
+    InputError(const SourceLocation& place, const std::string& message)
+        : InputError(std::vector<Diagnostic>{{place, message}}) {}
     /// In file order; at least one.
     const std::vector<Diagnostic>& diagnostics() const { return all_; }
 
@@ -51,13 +51,13 @@ OutputError not_built(std::string_view part);
 /// An invariant of the program does not hold; what() contains file and line of the source.
 class Bug : public std::logic_error {
 public:
-    Bug(const std::source_location& at, std::string_view claim);
+    Bug(const std::source_location& place, std::string_view claim);
 };
 
 /// Throws Bug if an invariant does not hold, in release builds too.
 inline void ensure(
-    bool holds, std::string_view claim, const std::source_location& at = std::source_location::current()) {
-    if (!holds) throw Bug(at, claim);
+    bool holds, std::string_view claim, const std::source_location& place = std::source_location::current()) {
+    if (!holds) throw Bug(place, claim);
 }
 
 /// Returns the word of `valid` nearest to `word` by edit distance, "" if none is near.

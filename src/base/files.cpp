@@ -125,12 +125,12 @@ std::vector<std::string> entries(const fs::path& folder) {
     return out;
 }
 
-bool contains(const std::vector<std::string>& all, const std::string& one) {
-    return std::find(all.begin(), all.end(), one) != all.end();
+bool contains(const std::vector<std::string>& names, const std::string& one) {
+    return std::find(names.begin(), names.end(), one) != names.end();
 }
-bool any_below(const std::vector<std::string>& all, const fs::path& folder) {
+bool any_below(const std::vector<std::string>& names, const fs::path& folder) {
     return std::any_of(
-        all.begin(), all.end(), [&](const auto& name) { return name.starts_with(folder.string() + "/"); });
+        names.begin(), names.end(), [&](const auto& name) { return name.starts_with(folder.string() + "/"); });
 }
 
 bool stays_inside(const std::string& name) {
@@ -156,11 +156,11 @@ std::string list_of(const std::string& kind) { return std::string(list_prefix) +
 
 /// Returns what other kinds of work listed in a folder.
 std::vector<std::string> others_lists(const fs::path& out, const std::string& list) {
-    std::vector<std::string> all;
+    std::vector<std::string> names;
     for (const std::string& leaf : entries(out))
         if (leaf.starts_with(list_prefix) && leaf != list && !is_folder(out / leaf))
-            std::ranges::move(names_in(out / leaf), std::back_inserter(all));
-    return all;
+            std::ranges::move(names_in(out / leaf), std::back_inserter(names));
+    return names;
 }
 
 struct Moving {
@@ -178,13 +178,13 @@ Moving read_moving(const fs::path& work) {
 
 std::mutex lock_mutex;
 std::set<fs::path>& locked_here() {
-    static std::set<fs::path> all;
-    return all;
+    static std::set<fs::path> folders;
+    return folders;
 }
 
-/// Returns whether another folder cannot replace `out`: this process works in it, or `by` cannot get its owner and
-/// permissions.
-bool must_stay(const fs::path& out, const fs::path& by) {
+/// Returns whether another folder cannot replace `out`: this process works in it, or `replacement` cannot get its owner
+/// and permissions.
+bool must_stay(const fs::path& out, const fs::path& replacement) {
     struct stat s{};
     std::error_code none;
     const fs::path here = fs::current_path(none);
@@ -194,9 +194,9 @@ bool must_stay(const fs::path& out, const fs::path& by) {
         if (getxattr(out.c_str(), rights, nullptr, 0) >= 0) return true;
 #endif
     if (stat(out.c_str(), &s) != 0) return true;
-    for (const auto& entry : fs::recursive_directory_iterator(by, none))
+    for (const auto& entry : fs::recursive_directory_iterator(replacement, none))
         if (is_folder(entry) && chown(entry.path().c_str(), s.st_uid, s.st_gid) != 0) return true;
-    return chown(by.c_str(), s.st_uid, s.st_gid) != 0 || chmod(by.c_str(), s.st_mode & 07777) != 0;
+    return chown(replacement.c_str(), s.st_uid, s.st_gid) != 0 || chmod(replacement.c_str(), s.st_mode & 07777) != 0;
 }
 
 /// Returns whether a folder can exist next to `out` from which names can be moved into it.
@@ -259,8 +259,8 @@ bool Staging::take_lock() {
     const std::lock_guard one_at_a_time(lock_mutex);
     const OutputError in_use(fmt::format("{} is in use by another run; wait for it or choose another --out", shown_));
     if (locked_here().contains(work_)) throw in_use;
-    const std::vector<std::string> there = entries(work_);
-    const bool fresh = there.empty() || there == std::vector<std::string>{"lock"};
+    const std::vector<std::string> present = entries(work_);
+    const bool fresh = present.empty() || present == std::vector<std::string>{"lock"};
     struct stat s{};
     if (lstat(work_.c_str(), &s) != 0) return false;
     if (!S_ISDIR(s.st_mode) || s.st_uid != geteuid() || (!fresh && text_of(path) != lock_text))
@@ -322,18 +322,18 @@ void Staging::expect(const std::vector<std::string>& names) const {
 }
 
 std::string Staging::path(const std::string& name) {
-    const fs::path at = work_ / "new" / name;
+    const fs::path target = work_ / "new" / name;
     std::error_code error;
-    fs::create_directories(at.parent_path(), error);
-    if (error) fail("cannot make the folder", at.parent_path(), error.message());
+    fs::create_directories(target.parent_path(), error);
+    if (error) fail("cannot make the folder", target.parent_path(), error.message());
     if (!contains(names_, name)) names_.push_back(name);
-    return at;
+    return target;
 }
 
 void Staging::write(const std::string& name, std::span<const unsigned char> bytes) {
-    const std::string at = path(name);
-    if (!put(at, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}))
-        fail("cannot write", at, std::strerror(errno));
+    const std::string target = path(name);
+    if (!put(target, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}))
+        fail("cannot write", target, std::strerror(errno));
 }
 void Staging::write(const std::string& name, const std::string& text) {
     write(name, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
@@ -343,11 +343,11 @@ void Staging::adopt(const Names& names) {
     adopted_.insert(adopted_.end(), names.begin(), names.end());
     const fs::path list = out_ / list_of(kind_), new_list = work_ / "scratch" / "list";
     if (!is_there(out_)) return;
-    Names all = names_in(list);
+    Names listed = names_in(list);
     for (const std::string& name : names)
-        if (stays_inside(name) && is_there(out_ / name) && !contains(all, name)) all.push_back(name);
+        if (stays_inside(name) && is_there(out_ / name) && !contains(listed, name)) listed.push_back(name);
     std::string text(list_head);
-    for (const std::string& name : all) text += name + "\n";
+    for (const std::string& name : listed) text += name + "\n";
     if (!put(new_list, text) || !sync(new_list) || !move_to(new_list, list))
         fail("cannot write", list.string(), std::strerror(errno));
 }
@@ -357,15 +357,15 @@ void Staging::commit(ProgressMonitor& monitor) {
     std::sort(names_.begin(), names_.end());
     std::string text(list_head);
     for (const std::string& name : names_) text += name + "\n";
-    Names all = names_;
-    all.push_back(list);
+    Names names = names_;
+    names.push_back(list);
     if (!put(fresh_outputs / list, text)) fail("cannot write", (fresh_outputs / list).string(), std::strerror(errno));
-    expect(all);
+    expect(names);
     Names ours = names_in(out_ / list);
     ours.push_back(list);
     link_users_files("", ours);
     std::set<fs::path> synced;
-    for (const std::string& name : all) {
+    for (const std::string& name : names) {
         if (!fs::is_symlink(fresh_outputs / name)) synced.insert(fresh_outputs / name);
         for (fs::path up = fs::path(name).parent_path(); !up.empty(); up = up.parent_path())
             synced.insert(fresh_outputs / up);

@@ -89,9 +89,9 @@ PublishingFaults& publishing_faults();
 /// Returns the bytes of a file; "" if it cannot be read.
 inline std::string contents_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    std::ostringstream all;
-    all << file.rdbuf();
-    return std::move(all).str();
+    std::ostringstream contents;
+    contents << file.rdbuf();
+    return std::move(contents).str();
 }
 
 // ---- Writes one file so that readers find it complete or not at all. It is written without a name next to its place,

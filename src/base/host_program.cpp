@@ -15,14 +15,14 @@ namespace crescent {
 
 std::string host_program() {
     if (const char* given = std::getenv("CRESCENT_PLUGIN_HOST")) return given;
-    Dl_info own{};
-    if (dladdr(reinterpret_cast<const void*>(&host_program), &own) == 0) return host_program_name;
+    Dl_info ours{};
+    if (dladdr(reinterpret_cast<const void*>(&host_program), &ours) == 0) return host_program_name;
 #ifdef __linux__
     Dl_info program{};
-    if (dladdr(reinterpret_cast<const void*>(getauxval(AT_PHDR)), &program) != 0 && own.dli_fbase == program.dli_fbase)
+    if (dladdr(reinterpret_cast<const void*>(getauxval(AT_PHDR)), &program) != 0 && ours.dli_fbase == program.dli_fbase)
         return "/proc/self/exe";
 #endif
-    const std::filesystem::path host = std::filesystem::path(own.dli_fname).parent_path() / host_program_name;
+    const std::filesystem::path host = std::filesystem::path(ours.dli_fname).parent_path() / host_program_name;
     std::error_code unknown;
     return std::filesystem::exists(host, unknown) ? host.string() : host_program_name;
 }

@@ -28,8 +28,8 @@ namespace {
 constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
 
 /// Returns the folders of the process's group in one hierarchy and of its parent groups, the innermost first.
-std::vector<std::string> groups(const std::string& root, const std::string& own, const std::string& controller) {
-    std::istringstream lines(contents_of(own));
+std::vector<std::string> groups(const std::string& root, const std::string& own_group, const std::string& controller) {
+    std::istringstream lines(contents_of(own_group));
     std::vector<std::string> out;
     for (std::string line; std::getline(lines, line);) {
         const std::size_t first = line.find(':'), second = line.find(':', first + 1);
@@ -84,12 +84,12 @@ std::uint64_t left_in_address_space() {
 
 }  // namespace
 
-double granted_processors(const std::string& root, const std::string& own) {
+double granted_processors(const std::string& root, const std::string& own_group) {
     double least = 0;
     const auto grant = [&](double quota, double period) {
         if (quota > 0 && period > 0 && (least == 0 || quota / period < least)) least = quota / period;
     };
-    for (const std::string& group : groups(root, own, "cpu")) {
+    for (const std::string& group : groups(root, own_group, "cpu")) {
         std::istringstream both(contents_of(group + "/cpu.max"));  // "200000 100000" or "max 100000"
         double quota = 0, period = 0;
         if (both >> quota >> period) grant(quota, period);
@@ -99,9 +99,9 @@ double granted_processors(const std::string& root, const std::string& own) {
     return least;
 }
 
-std::uint64_t granted_memory(const std::string& root, const std::string& own) {
+std::uint64_t granted_memory(const std::string& root, const std::string& own_group) {
     std::uint64_t least = no_limit;
-    for (const std::string& group : groups(root, own, "memory")) {
+    for (const std::string& group : groups(root, own_group, "memory")) {
         least = std::min(least, left_in(group, "/memory.max", "/memory.current", "inactive_file"));
         least =
             std::min(least, left_in(group, "/memory.limit_in_bytes", "/memory.usage_in_bytes", "total_inactive_file"));

@@ -32,8 +32,8 @@ std::string program_file();
 /// --install` and of the Python package; "" if it does not exist.
 std::string shared_file(const std::string& name);
 
-/// The limits in files below `root` (in use: ""), for tests. `own`: the contents of /proc/self/cgroup.
-double granted_processors(const std::string& root, const std::string& own);     // 0: no limit
-std::uint64_t granted_memory(const std::string& root, const std::string& own);  // ~0: no limit
+/// The limits in files below `root` (in use: ""), for tests. `own_group`: the contents of /proc/self/cgroup.
+double granted_processors(const std::string& root, const std::string& own_group);     // 0: no limit
+std::uint64_t granted_memory(const std::string& root, const std::string& own_group);  // ~0: no limit
 
 }  // namespace crescent

@@ -28,8 +28,8 @@ public:
     /// Returns the text after 'key':.
     std::string_view value(std::string_view key) const {
         for (const char quote : {'\'', '"'}) {
-            const std::size_t at = text_.find(fmt::format("{}{}{}", quote, key, quote));
-            const std::size_t colon = at == std::string_view::npos ? at : text_.find(':', at);
+            const std::size_t key_start = text_.find(fmt::format("{}{}{}", quote, key, quote));
+            const std::size_t colon = key_start == std::string_view::npos ? key_start : text_.find(':', key_start);
             if (colon != std::string_view::npos) return without_blanks(text_.substr(colon + 1));
         }
         fail(fmt::format("'{}'", key));
@@ -78,9 +78,9 @@ double from_half(std::uint16_t bits) {
     return sign * (exponent ? std::ldexp(1024 + fraction, exponent - 25) : std::ldexp(fraction, -24));
 }
 
-template <class T> T as(const NpyHeader& header, const char* at) {
+template <class T> T as(const NpyHeader& header, const char* bytes_of_number) {
     char bytes[sizeof(T)];
-    std::memcpy(bytes, at, sizeof(T));
+    std::memcpy(bytes, bytes_of_number, sizeof(T));
     if (header.swapped) std::reverse(bytes, bytes + sizeof(T));
     T out;
     std::memcpy(&out, bytes, sizeof out);
@@ -91,7 +91,7 @@ template <class T> T as(const NpyHeader& header, const char* at) {
 
 NpyHeader read_npy_header(const std::string& path, std::string_view first_bytes) {
     const auto fail = [&](const std::string& message) { throw InputError({path, 0, 0}, message); };
-    const auto byte = [&](std::size_t at) { return std::size_t{static_cast<unsigned char>(first_bytes[at])}; };
+    const auto byte = [&](std::size_t offset) { return std::size_t{static_cast<unsigned char>(first_bytes[offset])}; };
     if (first_bytes.size() < 12 || !first_bytes.starts_with(magic)) fail("expected an NPY file");
     const std::size_t version = byte(6);
     if (version < 1 || version > 3) fail(fmt::format("byte 7: expected an NPY format of 1 to 3, found {}", version));
@@ -112,9 +112,9 @@ NpyHeader read_npy_header(const std::string& path, std::string_view first_bytes)
     return out;
 }
 
-double npy_number(const NpyHeader& header, const char* at) {
-    if (header.bytes == 2) return from_half(as<std::uint16_t>(header, at));
-    return header.bytes == 4 ? static_cast<double>(as<float>(header, at)) : as<double>(header, at);
+double npy_number(const NpyHeader& header, const char* bytes) {
+    if (header.bytes == 2) return from_half(as<std::uint16_t>(header, bytes));
+    return header.bytes == 4 ? static_cast<double>(as<float>(header, bytes)) : as<double>(header, bytes);
 }
 
 }  // namespace crescent

@@ -26,6 +26,6 @@ struct NpyHeader {
 NpyHeader read_npy_header(const std::string& path, std::string_view first_bytes);
 
 /// Returns the float in the file's bytes.
-double npy_number(const NpyHeader& header, const char* at);
+double npy_number(const NpyHeader& header, const char* bytes);
 
 }  // namespace crescent

@@ -88,9 +88,9 @@ struct Stream {
 class AllBlocked {
 public:
     AllBlocked() {
-        sigset_t all;
-        sigfillset(&all);
-        pthread_sigmask(SIG_SETMASK, &all, &before_);
+        sigset_t signals;
+        sigfillset(&signals);
+        pthread_sigmask(SIG_SETMASK, &signals, &before_);
     }
     ~AllBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
     AllBlocked(const AllBlocked&) = delete;
@@ -105,10 +105,10 @@ std::atomic<bool> adopting{false};
 /// Kills the children of the main thread, including adopted ones. Async-signal-safe.
 void kill_children() {
     char path[64] = "/proc/self/task/", digits[24], text[4096];
-    std::size_t at = std::strlen(path), count = 0;
+    std::size_t length = std::strlen(path), count = 0;
     for (pid_t id = ::getpid(); id > 0; id /= 10) digits[count++] = static_cast<char>('0' + id % 10);
-    while (count > 0) path[at++] = digits[--count];
-    std::memcpy(path + at, "/children", sizeof "/children");
+    while (count > 0) path[length++] = digits[--count];
+    std::memcpy(path + length, "/children", sizeof "/children");
     const int list = ::open(path, O_RDONLY | O_CLOEXEC);
     if (list < 0) return;
     const ssize_t n = ::read(list, text, sizeof text);
@@ -135,8 +135,8 @@ void close_at_exec_from(int first) {
     constexpr unsigned only_mark = 4;  // CLOSE_RANGE_CLOEXEC of Linux 5.11
     if (::syscall(SYS_close_range, static_cast<unsigned>(first), ~0u, only_mark) == 0) return;
 #endif
-    const long most = ::sysconf(_SC_OPEN_MAX);
-    for (int fd = first; fd < (most > 0 ? most : 1024); ++fd) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
+    const long limit = ::sysconf(_SC_OPEN_MAX);
+    for (int fd = first; fd < (limit > 0 ? limit : 1024); ++fd) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
 }
 
 void reset_signals() {
@@ -196,11 +196,11 @@ void print_piece(const std::string& label, std::string piece) {
     const char* term = std::getenv("TERM");
     const bool clear = ::isatty(STDERR_FILENO) && term && std::string_view(term) != "dumb";
     const std::string text = fmt::format("{}{}: {}\n", clear ? "\r\x1b[K" : "", label, printable(piece));
-    for (std::size_t at = 0; at < text.size();) {
-        const ssize_t n = ::write(STDERR_FILENO, text.data() + at, text.size() - at);
+    for (std::size_t written = 0; written < text.size();) {
+        const ssize_t n = ::write(STDERR_FILENO, text.data() + written, text.size() - written);
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0) return;  // reporting is no longer possible
-        at += static_cast<std::size_t>(n);
+        written += static_cast<std::size_t>(n);
     }
 }
 
@@ -279,7 +279,7 @@ ssize_t Process::write(std::string_view bytes) const {
     return n;
 }
 
-ssize_t Process::read(char* to, std::size_t most) const { return ::read(out_, to, most); }
+ssize_t Process::read(char* to, std::size_t limit) const { return ::read(out_, to, limit); }
 
 std::optional<ProcessEnd> Process::ended(int milliseconds) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);

@@ -53,7 +53,7 @@ public:
     /// Both like write(2) and read(2) without blocking: -1 and errno, including EAGAIN; read() returns 0 at the end. A
     /// program that closed its input gives EPIPE, and no signal of this process is changed.
     ssize_t write(std::string_view bytes) const;
-    ssize_t read(char* to, std::size_t most) const;
+    ssize_t read(char* to, std::size_t limit) const;
     /// Returns how it ended, waiting at most this long; empty while it runs.
     std::optional<ProcessEnd> ended(int milliseconds);
     /// Closes its input and waits for its end. Throws Interrupted if the monitor requests a stop.

@@ -12,23 +12,23 @@ namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
 
-/// Returns the bytes of the UTF-8 sequence that begins at `at`, 0 if it is invalid (RFC 3629, section 4).
-std::size_t sequence_length(std::string_view text, std::size_t at) {
+/// Returns the bytes of the UTF-8 sequence that begins at `start`, 0 if it is invalid (RFC 3629, section 4).
+std::size_t sequence_length(std::string_view text, std::size_t start) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const unsigned first = byte(at);
+    const unsigned first = byte(start);
     const std::size_t length = first < 0x80 ? 1
         : first >= 0xC2 && first < 0xE0     ? 2
         : first >= 0xE0 && first < 0xF0     ? 3
         : first >= 0xF0 && first < 0xF5     ? 4
                                             : 0;
-    if (length == 0 || at + length > text.size()) return 0;
+    if (length == 0 || start + length > text.size()) return 0;
     for (std::size_t i = 1; i < length; ++i)
-        if ((byte(at + i) & 0xC0) != 0x80) return 0;
+        if ((byte(start + i) & 0xC0) != 0x80) return 0;
     if (length < 3) return length;
-    const unsigned second = byte(at + 1);
+    const unsigned second = byte(start + 1);
     const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
     const bool outside = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
-    const bool noncharacter = first == 0xEF && second == 0xBF && byte(at + 2) >= 0xBE;  // U+FFFE, U+FFFF
+    const bool noncharacter = first == 0xEF && second == 0xBF && byte(start + 2) >= 0xBE;  // U+FFFE, U+FFFF
     return overlong || outside || noncharacter ? 0 : length;
 }
 
@@ -112,9 +112,9 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 }
 
 std::string expected_one_of(const std::vector<std::string>& valid, std::string_view word) {
-    std::string all;
-    for (const std::string& one : valid) all += (all.empty() ? "" : ", ") + one;
-    return "expected one of " + all + ", not '" + printable(std::string(word)) + "'" + did_you_mean(word, valid);
+    std::string words;
+    for (const std::string& one : valid) words += (words.empty() ? "" : ", ") + one;
+    return "expected one of " + words + ", not '" + printable(std::string(word)) + "'" + did_you_mean(word, valid);
 }
 
 }  // namespace crescent

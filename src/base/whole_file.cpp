@@ -67,10 +67,10 @@ public:
 private:
     /// Uses the same name for each call with that path, so that the leftover of a killed call is replaced.
     bool name_and_rename() const {
-        const std::string own = fmt::format("/proc/self/fd/{}", file_);
+        const std::string descriptor_path = fmt::format("/proc/self/fd/{}", file_);
         const std::string name = fmt::format("{}.crescent-{:016x}", folder_, std::hash<std::string>{}(path_));
         for (int tries = 0; tries < 100; ++tries) {
-            if (linkat(AT_FDCWD, own.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+            if (linkat(AT_FDCWD, descriptor_path.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
                 if (rename(name.c_str(), path_.c_str()) == 0) return true;
                 if (errno == ENOENT) continue;  // another process writes the same file
                 const int why = errno;

@@ -135,8 +135,9 @@ private:
     }
 
     void confirm(const std::vector<AgainstAnswer>& suspects, const Look& to, int look, Differences& out) const {
-        const Look most = plan_.budget.look(plan_.budget.looks - 1).divided_by(4);
-        const Look more = {0, std::max(to.independent, most.independent), std::max(to.scrambled, most.scrambled)};
+        const Look largest_look = plan_.budget.look(plan_.budget.looks - 1).divided_by(4);
+        const Look more = {
+            0, std::max(to.independent, largest_look.independent), std::max(to.scrambled, largest_look.scrambled)};
         AgainstSide a = a_, b = b_;
         a.key.stage = b.key.stage = static_cast<std::uint8_t>(2 + look);
         AgainstDraws of_a, of_b;
@@ -277,7 +278,7 @@ State worst_state(const std::vector<Verdict>& verdicts) {
 CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const CheckCase> b, const TestSettings& settings,
     bool expect_same, ProgressMonitor& monitor) {
     monitor.begin("two samplers", static_cast<double>(a.size()));
-    std::vector<std::vector<Verdict>> all(a.size());
+    std::vector<std::vector<Verdict>> verdicts(a.size());
     const std::vector<CheckCase> of_a = named_cases(a, "A"), of_b = named_cases(b, "B");
     const auto either = [&](auto is) { return std::ranges::any_of(a, is) || std::ranges::any_of(b, is); };
     const bool serial = either([](const CheckCase& t) { return t.adapter->serial(); });
@@ -289,8 +290,8 @@ CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const Check
         try {
             const auto stream = static_cast<std::uint32_t>(i);
             const Side side_a = cache_a.of(of_a[i], stream), side_b = cache_b.of(of_b[i], stream + streams_of_b);
-            all[i] = Comparison(side_a, side_b, plan).run();
-        } catch (const SamplerError& fault) { all[i] = failed_verdicts(a[i], b[i], fault); }
+            verdicts[i] = Comparison(side_a, side_b, plan).run();
+        } catch (const SamplerError& fault) { verdicts[i] = failed_verdicts(a[i], b[i], fault); }
         monitor.advance(1);
     };
     if (serial)
@@ -301,7 +302,7 @@ CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const Check
     for (std::size_t i = 0; i < a.size(); ++i) {
         out.questions = std::max(out.questions,
             a[i].adapter->spending().answers + (a[i].adapter == b[i].adapter ? 0 : b[i].adapter->spending().answers));
-        for (Verdict& v : all[i]) out.verdicts.push_back(std::move(v));
+        for (Verdict& v : verdicts[i]) out.verdicts.push_back(std::move(v));
     }
     out.state = worst_state(out.verdicts);
     out.as_expected = out.state == State::right;

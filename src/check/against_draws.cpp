@@ -46,14 +46,15 @@ Vec3d weight_of(const Draw& d, int channels) {
 }
 
 std::size_t nearest_delta(std::span<const Vec3d> delta_directions, Vec3d w) {
-    const auto off = [w](Vec3d direction) { return length(w - direction); };
-    return static_cast<std::size_t>(std::ranges::min_element(delta_directions, {}, off) - delta_directions.begin());
+    const auto distance = [w](Vec3d direction) { return length(w - direction); };
+    return static_cast<std::size_t>(
+        std::ranges::min_element(delta_directions, {}, distance) - delta_directions.begin());
 }
 
 /// Pilot draws of all techniques.
 std::uint32_t draw_pilots(
     const AgainstSide& side, const CheckBudget& budget, std::vector<Vec3d>& out, std::vector<DeltaPart>& parts) {
-    std::uint32_t of = 0;
+    std::uint32_t pilot_draws = 0;
     DeltaParts delta;
     for (int t = 0; t < side.check_case.adapter->techniques(); ++t) {
         DrawClassifier classifier(side, t);
@@ -71,10 +72,10 @@ std::uint32_t draw_pilots(
                 if (classifier.is_drawn(d)) out.push_back(normalize(d.wi));
                 else if (d.delta > 0 && d.delta <= 1) delta.add(d, weight_of(d, classifier.source().channels()));
         }
-        of += count;
+        pilot_draws += count;
     }
-    parts = delta.parts(of);
-    return of;
+    parts = delta.parts(pilot_draws);
+    return pilot_draws;
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ std::uint32_t draw_pilots(
 CommonTree common_tree(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget) {
     std::vector<Vec3d> of_a, of_b, drawn, delta_directions;
     std::vector<DeltaPart> delta_a, delta_b;
-    const std::uint32_t of = draw_pilots(a, budget, of_a, delta_a) + draw_pilots(b, budget, of_b, delta_b);
+    const std::uint32_t pilot_draws = draw_pilots(a, budget, of_a, delta_a) + draw_pilots(b, budget, of_b, delta_b);
     for (const auto* parts : {&delta_a, &delta_b})
         for (const DeltaPart& p : *parts)
             if (std::ranges::none_of(
@@ -103,7 +104,7 @@ CommonTree common_tree(const AgainstSide& a, const AgainstSide& b, const CheckBu
     source.by_draws = true;
     StreamKey key = a.key;
     key.purpose = Purpose::tree;
-    CommonTree out{.tree = Tree(source, std::move(pilots), of, {}, step, budget, key),
+    CommonTree out{.tree = Tree(source, std::move(pilots), pilot_draws, {}, step, budget, key),
         .step = step,
         .middle = middle,
         .log_q = 0,
@@ -111,13 +112,13 @@ CommonTree common_tree(const AgainstSide& a, const AgainstSide& b, const CheckBu
         .delta_a = std::move(delta_a),
         .delta_b = std::move(delta_b),
         .drawn = std::move(drawn)};
-    double all = 0;
+    double total = 0;
     for (const Leaf& leaf : out.tree.leaves()) {
         const double m = leaf.q * out.tree.rect(leaf).area();
         out.log_q += m * math::log(leaf.q);
-        all += m;
+        total += m;
     }
-    out.log_q /= all;
+    out.log_q /= total;
     return out;
 }
 
@@ -194,12 +195,12 @@ private:
 
     /// f L cos / p of the buffered draws, or the weight returned with them, summed over the techniques.
     void add_weights(std::uint32_t from) {
-        std::vector<std::size_t> at;
+        std::vector<std::size_t> indices;
         std::vector<Vec3d> w;
         for (std::size_t i = 0; i < draws_.size(); ++i) {
             const Draw& d = draws_[i];
             if (!classifier_.is_drawn(d)) continue;
-            at.push_back(i);
+            indices.push_back(i);
             w.push_back(d.wi);
             to_.has_weights = to_.has_weights && (d.weight || (source_.has_density() && (source_.has_f() || d.f)));
         }
@@ -207,7 +208,7 @@ private:
         if (source_.has_f()) source_.f_cos(w, f);
         const std::vector<double> drawn(w.size(), 1.0);
         std::vector<double> x;
-        append_weights(source_, draws_, {.at = at, .wi = w, .p = drawn, .f_cos = f}, x);
+        append_weights(source_, draws_, {.at = indices, .wi = w, .p = drawn, .f_cos = f}, x);
         if (to_.x.size() < from + x.size()) to_.x.resize(from + x.size());
         for (std::size_t i = 0; i < x.size(); ++i) to_.x[from + i] += x[i];
     }
@@ -309,9 +310,9 @@ void test_sums_against(const CommonTree& g, const AgainstDraws& a, const Against
     }
     const double ranges[against_sums] = {math::log(high / low), 2, 2, 2};
     for (int q = 0; q < against_sums; ++q) {
-        const auto at = static_cast<std::size_t>(q);
-        const auto mean = [&](const AgainstDraws& d) { return d.sums[at].sum / d.independent; };
-        const auto square = [&](const AgainstDraws& d) { return d.sums[at].square / d.independent; };
+        const auto index = static_cast<std::size_t>(q);
+        const auto mean = [&](const AgainstDraws& d) { return d.sums[index].sum / d.independent; };
+        const auto square = [&](const AgainstDraws& d) { return d.sums[index].square / d.independent; };
         const double floor = detection_floor * std::sqrt((square(a) + square(b)) / 2) + g.step;
         const double v = std::max(square(a) - sqr(mean(a)), 0.0) / a.independent +
             std::max(square(b) - sqr(mean(b)), 0.0) / b.independent;
@@ -325,7 +326,7 @@ void test_sums_against(const CommonTree& g, const AgainstDraws& a, const Against
         visit(out);
         if (a.scrambled == 0 || b.scrambled == 0) continue;
         const auto sets = [&](const AgainstDraws& d) {
-            Replicates y = d.by_set[at];
+            Replicates y = d.by_set[index];
             for (double& e : y) e *= replicate_sets / d.scrambled;
             return ReplicateMean<Replicates>(y, std::sqrt(square(d)) * replicate_sets / d.scrambled);
         };
@@ -345,17 +346,17 @@ void test_against(const CommonTree& g, const AgainstDraws& a, const AgainstDraws
                                   sets_b = both ? replicates_by_row(g.tree, b.node_by_set) : std::vector<Replicates>();
     for (std::size_t i = 0; i < counts.size(); ++i) {
         const TreeNode& x = g.tree.nodes()[i];
-        const NodeCounts& all = counts[i];
-        if (x.child < 0 || std::min(all.a, all.b) < least_count) continue;
+        const NodeCounts& node = counts[i];
+        if (x.child < 0 || std::min(node.a, node.b) < least_count) continue;
         const NodeCounts& half = counts[static_cast<std::size_t>(x.child)];
-        const TwoShares s(half.a, all.a, half.b, all.b);
+        const TwoShares s(half.a, node.a, half.b, node.b);
         const double floor = floor_of_cut(x, s.share);
         visit(answer_of(AgainstAnswer::nodes, static_cast<int>(i), s, floor));
         const auto in_each = [&](const AgainstDraws& d, double n) {
             return std::min(s.share, 1 - s.share) * n * d.scrambled / d.independent / replicate_sets;
         };
         // As for one sampler, the mean of a replicate must be nearly normal.
-        if (!both || x.depth >= replicated_depth || std::min(in_each(a, all.a), in_each(b, all.b)) < least_count)
+        if (!both || x.depth >= replicated_depth || std::min(in_each(a, node.a), in_each(b, node.b)) < least_count)
             continue;
         const auto row = static_cast<std::size_t>(x.row),
                    first = static_cast<std::size_t>(g.tree.nodes()[static_cast<std::size_t>(x.child)].row);
@@ -366,7 +367,7 @@ void test_against(const CommonTree& g, const AgainstDraws& a, const AgainstDraws
             return ReplicateMean<Replicates>(y, draw);
         };
         visit(by_sets(AgainstAnswer::nodes_by_sets, static_cast<int>(i), mean(sets_a, a), mean(sets_b, b),
-            floor * (all.a / a.independent + all.b / b.independent) / 2));
+            floor * (node.a / a.independent + node.b / b.independent) / 2));
     }
 }
 
@@ -388,31 +389,31 @@ AgainstSizes sizes_against(const CommonTree& g, const AgainstDraws& a, const Aga
     std::vector<std::pair<double, double>> leaves;
     for (std::size_t i = 0; i < counts.size(); ++i) {
         const TreeNode& x = g.tree.nodes()[i];
-        const NodeCounts& all = counts[i];
+        const NodeCounts& node = counts[i];
         if (x.child < 0) {
-            leaves.push_back({part[i], all.a / a.independent + all.b / b.independent});
+            leaves.push_back({part[i], node.a / a.independent + node.b / b.independent});
             continue;
         }
         const auto first = static_cast<std::size_t>(x.child);
         part[first] = part[first + 1] = part[i];
-        if (std::min(all.a, all.b) < least_count) continue;
-        const TwoShares s(counts[first].a, all.a, counts[first].b, all.b);
+        if (std::min(node.a, node.b) < least_count) continue;
+        const TwoShares s(counts[first].a, node.a, counts[first].b, node.b);
         const double needed =
             needed_by_bennett(floor_of_cut(x, s.share) / s.per_share, s.variance, 1, 1e12, level / tests) * s.per_share;
         for (std::size_t half : {first, first + 1}) {
             const double share = half == first ? s.share : 1 - s.share;
             // Relative to the draws of the node; the missing part may overlap several cells, with half of it in one.
             const double missing = needed / (1 - share + 1e-300);
-            const double of_all = std::max(all.a / a.independent, all.b / b.independent);
+            const double of_all = std::max(node.a / a.independent, node.b / b.independent);
             if (missing <= share) part[half] = std::min(part[half], 2 * missing * of_all);
         }
     }
     std::sort(leaves.begin(), leaves.end());
-    double all = 0, below = 0;
-    for (const auto& [size, m] : leaves) all += m;
+    double total = 0, below = 0;
+    for (const auto& [size, m] : leaves) total += m;
     for (const auto& [size, m] : leaves)
-        if ((below += m) >= stated_power * all) {
-            if (all > 0) out.part = size;
+        if ((below += m) >= stated_power * total) {
+            if (total > 0) out.part = size;
             break;
         }
     return out;

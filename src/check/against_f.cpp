@@ -22,9 +22,9 @@ struct SharedF {
     std::vector<double> a, b;
 };
 
-std::vector<double> f_at(const SamplerAdapter& adapter, std::span<const Pair> at) {
-    std::vector<double> out(at.size());
-    adapter.f(at, out);
+std::vector<double> f_at(const SamplerAdapter& adapter, std::span<const Pair> pairs) {
+    std::vector<double> out(pairs.size());
+    adapter.f(pairs, out);
     return out;
 }
 
@@ -56,44 +56,44 @@ SharedF f_of_both(const AgainstCase& c) {
         }
         out.wi.insert(out.wi.end(), c.common.drawn.begin(), c.common.drawn.end());
     }
-    std::vector<Pair> at;
-    for (Vec3d w : out.wi) at.push_back({c.a.check_case.wo, w});
-    if (out.a.empty()) out.a = f_at(a, at);
-    out.b = f_at(b, at);
+    std::vector<Pair> directions;
+    for (Vec3d w : out.wi) directions.push_back({c.a.check_case.wo, w});
+    if (out.a.empty()) out.a = f_at(a, directions);
+    out.b = f_at(b, directions);
     return out;
 }
 
 /// The change of f that rounding in single precision causes there.
 double moved_f(const SamplerAdapter& s, Vec3d wo, Vec3d wi, double f) {
-    std::vector<Pair> at;
+    std::vector<Pair> pairs;
     for (int k = 0; k < 6; ++k) {
-        const double by = (k % 2 ? 4 : -4) * ulp;
-        const Vec3d off{k / 2 == 0 ? by : 0, k / 2 == 1 ? by : 0, k / 2 == 2 ? by : 0};
-        at.push_back({wo, wi + off});
-        at.push_back({wo + off, wi});
+        const double shift = (k % 2 ? 4 : -4) * ulp;
+        const Vec3d offset{k / 2 == 0 ? shift : 0, k / 2 == 1 ? shift : 0, k / 2 == 2 ? shift : 0};
+        pairs.push_back({wo, wi + offset});
+        pairs.push_back({wo + offset, wi});
     }
-    double most = 0;
-    for (double v : f_at(s, at))
-        if (std::isfinite(v)) most = std::max(most, std::fabs(v - f));
-    return 2 * most;
+    double largest = 0;
+    for (double v : f_at(s, pairs))
+        if (std::isfinite(v)) largest = std::max(largest, std::fabs(v - f));
+    return 2 * largest;
 }
 
 void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
     const SamplerAdapter &a = *c.a.check_case.adapter, &b = *c.b.check_case.adapter;
     std::size_t count = 0, worst = 0;
-    double most = 0, sum_a = 0, sum_b = 0;
+    double largest = 0, sum_a = 0, sum_b = 0;
     for (std::size_t i = 0; i < both.wi.size(); ++i) {
-        const double fa = both.a[i], fb = both.b[i], off = std::fabs(fa - fb),
+        const double fa = both.a[i], fb = both.b[i], difference = std::fabs(fa - fb),
                      size = std::max(std::fabs(fa), std::fabs(fb));
         sum_a += fa;
         sum_b += fb;
-        if (off <= same_number * size + 1e-30) continue;
+        if (difference <= same_number * size + 1e-30) continue;
         const double of_file = only_at_draws(a) ? 4 * ulp * size / std::max(std::fabs(both.wi[i].z), 1e-9)
                                                 : moved_f(a, c.a.check_case.wo, both.wi[i], fa);
-        if (off <= same_number * size + of_file + moved_f(b, c.b.check_case.wo, both.wi[i], fb)) continue;
+        if (difference <= same_number * size + of_file + moved_f(b, c.b.check_case.wo, both.wi[i], fb)) continue;
         ++count;
-        if (off / size > most) {
-            most = off / size;
+        if (difference / size > largest) {
+            largest = difference / size;
             worst = i;
         }
     }
@@ -107,7 +107,7 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
         return;
     }
     const Vec3d w = both.wi[worst];
-    v.evidence["largest_relative"] = most;
+    v.evidence["largest_relative"] = largest;
     v.evidence["worst_wi"] = {w.x, w.y, w.z};
     v.evidence["f"] = {both.a[worst], both.b[worst]};
     v.message = fmt::format("f differs at {} of {} directions, most at {}: {:.6g} and {:.6g}", count, both.wi.size(),
@@ -335,7 +335,7 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
 }
 
 /// Whether the check of the sampler alone prevents a variance ratio.
-bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
+bool is_wrong_itself(const CheckAt& of_sampler, const char* who, Verdict& v) {
     static constexpr std::array<std::string_view, 6> counts = {
         "support", "normalised", "density", "identity", "mean", "valid"};
     const auto look = [&](Family family) {
@@ -347,8 +347,8 @@ bool is_wrong_itself(const CheckAt& own, const char* who, Verdict& v) {
                 who, name));
         return true;
     };
-    return std::ranges::any_of(own.findings, [&](const Finding& f) { return look(f.first.family); }) ||
-        std::ranges::any_of(own.small, [&](const SmallFault& f) { return look(f.family); });
+    return std::ranges::any_of(of_sampler.findings, [&](const Finding& f) { return look(f.first.family); }) ||
+        std::ranges::any_of(of_sampler.small, [&](const SmallFault& f) { return look(f.family); });
 }
 
 }  // namespace

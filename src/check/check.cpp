@@ -105,18 +105,18 @@ AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSett
 void report_cut(const CheckCase& check_case, const Cut& cut, const TestSettings& settings,
     std::vector<Verdict>& verdicts, CheckResult& j) {
     const AbortText text = abort_text(cut, check_case, settings);
-    SkippedCase left{.arm = check_case.arm, .check_case = check_case.text(), .verdicts = {}, .why = text.first};
+    SkippedCase skipped{.arm = check_case.arm, .check_case = check_case.text(), .verdicts = {}, .why = text.first};
     for (Verdict& v : verdicts) {
         if (cut.first_draws && v.name == verdict_names[0]) continue;
-        const bool first = left.verdicts.empty();
+        const bool first = skipped.verdicts.empty();
         v.state = text.state;
         v.message = first ? text.first : text.rest;
         v.evidence = nlohmann::ordered_json::object();
         if (first && cut.why == Cut::Why::fault) note_first_failure(cut.what, v);
         if (v.state == State::inconclusive) v.next.kind = NextStep::Kind::more_time;
-        left.verdicts.push_back(v.name);
+        skipped.verdicts.push_back(v.name);
     }
-    if (text.state != State::error) j.left_out.push_back(std::move(left));
+    if (text.state != State::error) j.left_out.push_back(std::move(skipped));
 }
 
 /// Reports at the first w_o that the tests of the whole sampler ended early.
@@ -158,8 +158,8 @@ std::optional<check::Cause> cause_of(
 void distribute(std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const TestSettings& settings,
     VerdictsByCase& to, CheckResult& j) {
     const std::optional<check::Cause> cause = cause_of(check_cases, outcome, settings);
-    std::vector<Verdict> all = check::verdicts_of(check_cases, outcome, cause);
-    auto next = all.begin();
+    std::vector<Verdict> verdicts = check::verdicts_of(check_cases, outcome, cause);
+    auto next = verdicts.begin();
     for (std::size_t k = 0; k < outcome.check_cases.size(); ++k) {
         const std::size_t i = outcome.check_cases[k];
         std::vector<Verdict>& mine = to[i];
@@ -178,9 +178,9 @@ void require_examined(std::span<const CheckOutcome> outcomes, CheckResult& j) {
         return std::ranges::any_of(o.cut, [](const std::optional<Cut>& cut) { return !cut; });
     };
     if (std::ranges::any_of(outcomes, whole)) return;
-    for (const SkippedCase& left : j.left_out)
+    for (const SkippedCase& skipped_case : j.left_out)
         for (Verdict& v : j.verdicts)
-            if (v.check_case == left.check_case && v.arm == left.arm && v.state == State::skipped) {
+            if (v.check_case == skipped_case.check_case && v.arm == skipped_case.arm && v.state == State::skipped) {
                 v.state = State::inconclusive;
                 v.next.kind = NextStep::Kind::more_time;
             }
@@ -199,9 +199,9 @@ void count(const CheckOutcome& outcome, CheckResult& j) {
 /// Ranks the cases against each other. No other thread runs during the timing. Cases that ended early keep their state.
 void rank(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> outcomes,
     const check::CheckSettings& settings, const ProgressMonitor& monitor, VerdictsByCase& verdicts) {
-    std::vector<check::Efficiency> all = check::variances_of(check_cases, outcomes, settings, monitor);
-    check::measure_costs(check_cases, settings.seed, all, monitor);
-    std::vector<Verdict> ranked = check::test_efficiency(check_cases, all);
+    std::vector<check::Efficiency> variances = check::variances_of(check_cases, outcomes, settings, monitor);
+    check::measure_costs(check_cases, settings.seed, variances, monitor);
+    std::vector<Verdict> ranked = check::test_efficiency(check_cases, variances);
     for (const CheckOutcome& o : outcomes)
         for (std::size_t k = 0; k < o.check_cases.size(); ++k) {
             if (o.cut[k]) continue;

@@ -72,7 +72,8 @@ template <class S> consteval bool takes_numbers() {
         }(std::make_index_sequence<count_of<T>>{});
         if constexpr (!known) return false;
         else
-            return numbers<S>() >= 1 && numbers<S>() <= PrimarySample::most && (without_wo<S>() || Direction<At<T, 0>>);
+            return numbers<S>() >= 1 && numbers<S>() <= PrimarySample::most_numbers &&
+                (without_wo<S>() || Direction<At<T, 0>>);
     }
 }
 template <class S> consteval bool gives_draws() {

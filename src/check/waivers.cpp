@@ -33,16 +33,16 @@ struct Origin {
     std::string text() const { return line == 0 ? file : fmt::format("{}:{}", file, line); }
 };
 
-Waiver read_one(const std::string& text, const Origin& at) {
-    const auto fault = [&](const std::string& message) { throw InputError({at.file, at.line, 0}, message); };
+Waiver read_one(const std::string& text, const Origin& origin) {
+    const auto fault = [&](const std::string& message) { throw InputError({origin.file, origin.line, 0}, message); };
     const std::size_t equals = text.find('='), colon = text.find(':', equals == text.npos ? 0 : equals);
     if (equals == text.npos) fault(fmt::format("expected [ARM ]VERDICT=STATE: REASON, got '{}'", printable(text)));
-    const std::string left = trimmed(text.substr(0, equals));
-    const std::size_t space = left.find_last_of(" \t");
+    const std::string left_side = trimmed(text.substr(0, equals));
+    const std::size_t space = left_side.find_last_of(" \t");
     Waiver out;
-    out.place = at.text();
-    out.verdict = space == left.npos ? left : left.substr(space + 1);
-    out.arm = space == left.npos ? "" : trimmed(left.substr(0, space));
+    out.place = origin.text();
+    out.verdict = space == left_side.npos ? left_side : left_side.substr(space + 1);
+    out.arm = space == left_side.npos ? "" : trimmed(left_side.substr(0, space));
     if (out.arm == "*") out.arm.clear();
     const std::string state = trimmed(text.substr(equals + 1, colon == text.npos ? colon : colon - equals - 1));
     if (colon != text.npos) out.reason = trimmed(text.substr(colon + 1));

@@ -118,11 +118,11 @@ struct RegionTests {
     Values p, seen;
 };
 
-RegionTests region_tests(const AllSides& all, std::size_t r, double level) {
+RegionTests region_tests(const AllSides& sides_of_all, std::size_t r, double level) {
     RegionTests out;
-    for (std::size_t q = 0; q < all.apart.size(); ++q) {
-        const BiasPair& sides = all.in_region(q, r);
-        const double share = level * level_share(q, all.apart.size());
+    for (std::size_t q = 0; q < sides_of_all.apart.size(); ++q) {
+        const BiasPair& sides = sides_of_all.in_region(q, r);
+        const double share = level * level_share(q, sides_of_all.apart.size());
         const MeanTest t = mean_test(sides, r, share);
         const double p = t.why.empty() ? t.welch.p : std::nan("");
         out.p.push_back(p);
@@ -137,9 +137,9 @@ RegionTests region_tests(const AllSides& all, std::size_t r, double level) {
 }
 
 /// Returns why a small p of a region is not reported as a difference; "" if the tests can detect the difference.
-std::string why_not_seen(const AllSides& all, const RegionTests& tests, std::size_t r, double level) {
+std::string why_not_seen(const AllSides& sides_of_all, const RegionTests& tests, std::size_t r, double level) {
     const std::size_t q = joint_p(tests.p).quantity;
-    const BiasPair& sides = all.in_region(q, r);
+    const BiasPair& sides = sides_of_all.in_region(q, r);
     const MeanTest& t = tests.each[q];
     const double pixels = static_cast<double>(sides.all.regions[r].pixels.size()),
                  share = level * level_share(q, tests.each.size());
@@ -148,18 +148,18 @@ std::string why_not_seen(const AllSides& all, const RegionTests& tests, std::siz
 }
 
 /// Returns p of "no region differs" (Bonferroni).
-double test_regions(const AllSides& all, const BiasLevel& of, BiasResult& out) {
-    const auto& regions = all.first().all.regions;
-    const double level = of.each / static_cast<double>(regions.size()),
-                 named = of.named / static_cast<double>(regions.size());
+double test_regions(const AllSides& sides_of_all, const BiasLevel& allowed, BiasResult& out) {
+    const auto& regions = sides_of_all.first().all.regions;
+    const double level = allowed.each / static_cast<double>(regions.size()),
+                 named = allowed.named / static_cast<double>(regions.size());
     std::vector<RegionTests> tests;
     Values p, seen;
     for (std::size_t r = 0; r < regions.size(); ++r) {
-        tests.push_back(region_tests(all, r, level));
+        tests.push_back(region_tests(sides_of_all, r, level));
         p.push_back(joint_p(tests[r].p).p);
         seen.push_back(joint_p(tests[r].seen).p);
     }
-    const std::vector<bool> small = holm(p, of.each), differs = holm(seen, of.named);
+    const std::vector<bool> small = holm(p, allowed.each), differs = holm(seen, allowed.named);
     for (std::size_t r = 0; r < regions.size(); ++r) {
         RegionTests& test = tests[r];
         for (std::size_t q = 0; q < test.each.size() && differs[r]; ++q)
@@ -168,7 +168,7 @@ double test_regions(const AllSides& all, const BiasLevel& of, BiasResult& out) {
         t.region = regions[r].name;
         t.joint_p = seen[r];
         t.channels.assign(test.each.begin() + 1, test.each.end());
-        if (small[r] && !differs[r]) t.caveat = why_not_seen(all, tests[r], r, level);
+        if (small[r] && !differs[r]) t.caveat = why_not_seen(sides_of_all, tests[r], r, level);
     }
     double least = std::nan("");
     for (const double each : seen) least = std::fmin(least, each);
@@ -198,7 +198,7 @@ TileTest test_tile(const BiasPair& sides, std::size_t t, double level) {
     return out;
 }
 
-void name_tiles(const AllSides& all, BiasResult& result) {
+void name_tiles(const AllSides& sides_of_all, BiasResult& result) {
     PlaceTests& out = result.tiles;
     std::vector<std::size_t> found;
     for (std::size_t t = 0; t < out.p.size(); ++t)
@@ -210,26 +210,26 @@ void name_tiles(const AllSides& all, BiasResult& result) {
     std::sort(found.begin(), found.end(),
         [&](std::size_t s, std::size_t t) { return out.p[s] != out.p[t] ? out.p[s] < out.p[t] : s < t; });
     for (std::size_t k = 0; k < std::min(found.size(), named_most); ++k) {
-        const RenderStats& readings = all.first().all;
+        const RenderStats& readings = sides_of_all.first().all;
         const Box box = readings.tiles.box(found[k], readings.width, readings.height);
         const std::size_t q = out.quantity[found[k]];
-        const double b = all.apart[q].noise_of(box).mean_b;
+        const double b = sides_of_all.apart[q].noise_of(box).mean_b;
         result.tiles_found.push_back({box, b + out.difference[q][found[k]], b, out.p[found[k]], q});
     }
 }
 
 /// Returns p of "no tile differs".
-double test_tiles(const AllSides& all, const BiasLevel& of, BiasResult& result) {
+double test_tiles(const AllSides& sides_of_all, const BiasLevel& allowed, BiasResult& result) {
     PlaceTests& out = result.tiles;
-    const std::size_t count = all.first().all.tiles.count(), quantities = all.apart.size();
+    const std::size_t count = sides_of_all.first().all.tiles.count(), quantities = sides_of_all.apart.size();
     out.difference.assign(quantities, Values(count, std::nan("")));
     result.tiles_by.assign(quantities, 0);
     for (std::size_t t = 0; t < count; ++t) {
         Values p;
         bool left_out = false;
         for (std::size_t q = 0; q < quantities; ++q) {
-            const double level = of.each / static_cast<double>(count) * level_share(q, quantities);
-            const TileTest test = test_tile(all.in_tile(q, t), t, level);
+            const double level = allowed.each / static_cast<double>(count) * level_share(q, quantities);
+            const TileTest test = test_tile(sides_of_all.in_tile(q, t), t, level);
             p.push_back(test.p);
             out.difference[q][t] = test.difference;
             left_out |= test.left_out;
@@ -240,23 +240,23 @@ double test_tiles(const AllSides& all, const BiasLevel& of, BiasResult& result) 
         if (std::isnan(joint.p)) out.left_out += left_out;
         else ++out.tested;
     }
-    out.differs = discoveries(out.p, of.named, all.first().dependent);
-    name_tiles(all, result);
+    out.differs = discoveries(out.p, allowed.named, sides_of_all.first().dependent);
+    name_tiles(sides_of_all, result);
     std::vector<double> p;
     std::copy_if(out.p.begin(), out.p.end(), std::back_inserter(p), [](double x) { return !std::isnan(x); });
     std::sort(p.begin(), p.end());
-    return simes_p(p, static_cast<double>(p.size()), all.first().dependent);
+    return simes_p(p, static_cast<double>(p.size()), sides_of_all.first().dependent);
 }
 
-std::optional<MissedEvents> missed_events(const AllSides& all, const BiasResult& found, double alpha) {
+std::optional<MissedEvents> missed_events(const AllSides& sides_of_all, const BiasResult& found, double alpha) {
     std::optional<MissedEvents> hardest;
-    const std::size_t quantities = all.apart.size();
+    const std::size_t quantities = sides_of_all.apart.size();
     const auto consider = [&](const Found& place, double pixels, double level) {
-        const auto events =
-            all.apart[place.quantity].events_for(place, pixels, level * level_share(place.quantity, quantities));
+        const auto events = sides_of_all.apart[place.quantity].events_for(
+            place, pixels, level * level_share(place.quantity, quantities));
         if (events && (!hardest || events->size > hardest->size)) hardest = events;
     };
-    const auto& regions = all.first().all.regions;
+    const auto& regions = sides_of_all.first().all.regions;
     for (std::size_t r = 0; r < found.regions.size(); ++r) {
         const double pixels = static_cast<double>(regions[r].pixels.size()),
                      level = alpha / static_cast<double>(regions.size());
@@ -266,9 +266,10 @@ std::optional<MissedEvents> missed_events(const AllSides& all, const BiasResult&
             if (y.channels[c].differs) consider({{}, y.channels[c].a, y.channels[c].b, 0, c + 1}, pixels, level);
     }
     for (const Found& tile : found.tiles_found)
-        consider(
-            tile, all.first().noise_of(tile.box).pixels, found.place_alpha / static_cast<double>(found.tiles.p.size()));
-    for (const Found& pixel : found.pixels_found) consider(pixel, 1, pixel_level(all.first(), found.place_alpha));
+        consider(tile, sides_of_all.first().noise_of(tile.box).pixels,
+            found.place_alpha / static_cast<double>(found.tiles.p.size()));
+    for (const Found& pixel : found.pixels_found)
+        consider(pixel, 1, pixel_level(sides_of_all.first(), found.place_alpha));
     return hardest;
 }
 
@@ -288,15 +289,15 @@ SingleDifference single_difference(const BiasPair& sides) {
     const auto& pixels = sides.all.regions.back().pixels;
     double squares = 0;
     for (const std::uint32_t i : pixels) {
-        double most = 0;
+        double largest = 0;
         for (std::size_t q = 0; q < sides.all.quantities; ++q)
-            most = std::max(most, std::fabs(sides.a.film.of(q).mean[i] - sides.b.film.of(q).mean[i]));
+            largest = std::max(largest, std::fabs(sides.a.film.of(q).mean[i] - sides.b.film.of(q).mean[i]));
         const double y = sides.a.film.y()[i] - sides.b.film.y()[i];
         squares += y * y;
-        out.different += most > 0;
-        if (most <= out.largest) continue;
+        out.different += largest > 0;
+        if (largest <= out.largest) continue;
         const int x = static_cast<int>(i) % sides.all.width, row = static_cast<int>(i) / sides.all.width;
-        out.largest = most;
+        out.largest = largest;
         out.at = {x, row, x, row};
     }
     out.pixels = pixels.size();
@@ -318,25 +319,26 @@ std::vector<RenderPair> pairs_for(const ComparePlan& plan, const BiasPair& sides
 }
 
 /// Tests the means of renders that are not identical.
-void test_means(const ComparePlan& plan, const CompareResult& measured, const RenderStats& all, const BiasLevel& of,
-    BiasResult& out, ProgressMonitor& monitor) {
+void test_means(const ComparePlan& plan, const CompareResult& measured, const RenderStats& stats,
+    const BiasLevel& allowed, BiasResult& out, ProgressMonitor& monitor) {
     AllSides sides;
     const auto sides_of = [&](std::vector<BiasPair>& to, const PairedRenders* paired) {
-        for (std::size_t q = 0; q < all.quantities; ++q)
-            to.emplace_back(plan, all, measured, out.arm_a, out.arm_b, q, paired);
+        for (std::size_t q = 0; q < stats.quantities; ++q)
+            to.emplace_back(plan, stats, measured, out.arm_a, out.arm_b, q, paired);
     };
     sides_of(sides.apart, nullptr);
     const BiasPair& first = sides.first();
-    const double region = of.each / 2 / static_cast<double>(all.regions.size()) * level_share(0, all.quantities);
+    const double region =
+        allowed.each / 2 / static_cast<double>(stats.regions.size()) * level_share(0, stats.quantities);
     std::optional<PairedRenders> paired;
     if (auto pairs = pairs_for(plan, first, region, out); !pairs.empty())
-        paired = paired_renders(plan, all, out.arm_a, out.arm_b, std::move(pairs), monitor);
+        paired = paired_renders(plan, stats, out.arm_a, out.arm_b, std::move(pairs), monitor);
     if (paired) sides_of(sides.paired, &*paired);
     out.paired = paired.has_value();
-    const BiasLevel half{of.each / 2, of.named / 2}, quarter{of.each / 4, of.named / 4};
+    const BiasLevel half{allowed.each / 2, allowed.named / 2}, quarter{allowed.each / 4, allowed.named / 4};
     out.p = 2 * test_regions(sides, half, out);
     const bool renders = first.a.files.size() >= 2 && (first.referred || first.b.files.size() >= 2);
-    if (renders && !all.regions.back().pixels.empty()) {
+    if (renders && !stats.regions.back().pixels.empty()) {
         out.p = std::fmin(out.p, 4 * test_tiles(sides, quarter, out));
         out.p = std::fmin(out.p, 4 * test_pixels(paired ? sides.paired : sides.apart, quarter, out));
     }
@@ -345,7 +347,7 @@ void test_means(const ComparePlan& plan, const CompareResult& measured, const Re
         out.single = single_difference(first);  // equal values may differ in the bits of -0 and of NaN
         out.identical = out.single->pixels > 0 && out.single->different == 0 && !out.non_finite.differs();
     }
-    if (out.differs()) out.missed_events = missed_events(sides, out, of.each / 2);
+    if (out.differs()) out.missed_events = missed_events(sides, out, allowed.each / 2);
 }
 
 }  // namespace
@@ -369,8 +371,8 @@ bool BiasResult::differs() const {
 
 std::size_t BiasResult::shown() const {
     std::vector<std::uint64_t> counts(most_quantities);
-    for (const auto* by : {&tiles_by, &pixels_by})
-        for (std::size_t q = 0; q < by->size(); ++q) counts[q] += (*by)[q];
+    for (const auto* counts_by_quantity : {&tiles_by, &pixels_by})
+        for (std::size_t q = 0; q < counts_by_quantity->size(); ++q) counts[q] += (*counts_by_quantity)[q];
     for (const MeanTest& t : regions) {
         counts[0] += t.differs;
         for (std::size_t c = 0; c < t.channels.size(); ++c) counts[c + 1] += t.channels[c].differs;
@@ -386,9 +388,9 @@ std::string reference_error_from(const ArmStats& reference) {
            "neighbouring pixels";
 }
 
-BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
+BiasResult test_bias(const ComparePlan& plan, const RenderStats& stats, const CompareResult& measured, std::size_t a,
     std::size_t b, const BiasLevel& level, ProgressMonitor& monitor) {
-    const BiasPair sides(plan, all, measured, a, b);
+    const BiasPair sides(plan, stats, measured, a, b);
     BiasResult out;
     out.a = plan.arms[a].name;
     out.b = sides.referred ? the_reference : plan.arms[b].name;
@@ -397,23 +399,23 @@ BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const Comp
     out.dependent = sides.dependent;
     if (sides.referred) out.reference_error = reference_error_from(sides.b);
     const double looks = plan.look > 0 ? look_factor(plan.look) : 1;  // these tests do not hold at any time
-    out.non_finite = compare_non_finite(all, sides.a, sides.b, level.named / 2 / looks);
+    out.non_finite = compare_non_finite(stats, sides.a, sides.b, level.named / 2 / looks);
     const double share = out.non_finite.any() ? 0.5 : 1;
     const BiasLevel rest{level.each * share, level.named * share};
     out.place_alpha = rest.each / 4;
     out.identical = same_renders(sides.a, sides.b);
     if (out.identical)
-        for (std::size_t r = 0; r < all.regions.size(); ++r) {
+        for (std::size_t r = 0; r < stats.regions.size(); ++r) {
             MeanTest& t = out.regions.emplace_back();
-            t.region = all.regions[r].name;
+            t.region = stats.regions[r].name;
             t.joint_p = 1;
             t.a = t.b = mean_interval(sides.region_means(sides.a, r), confidence).mean;
         }
-    else test_means(plan, measured, all, rest, out, monitor);
+    else test_means(plan, measured, stats, rest, out, monitor);
     if (out.identical) out.p = 1;
     out.p /= share;
     if (out.non_finite.any()) out.p = std::fmin(out.p, 2 * looks * out.non_finite.p);
-    out.sentence = sentence_of(all, out, rest.each / 2);
+    out.sentence = sentence_of(stats, out, rest.each / 2);
     return out;
 }
 
@@ -433,8 +435,8 @@ constexpr std::size_t table_from = 1u << 17;
 class Bins {
 public:
     /// The table is faster only for many pixels; without it (most = 0) each p is computed.
-    explicit Bins(double most) {
-        for (double df = 1; most > 0 && df <= most + 1; df += 1.0 / 8) {
+    explicit Bins(double largest_df) {
+        for (double df = 1; largest_df > 0 && df <= largest_df + 1; df += 1.0 / 8) {
             std::array<double, bins> limits{};  // |t| at p = (k + 1)/bins
             for (std::size_t k = 0; k + 1 < bins; ++k)
                 limits[k] = student_quantile(1 - static_cast<double>(k + 1) / (2.0 * bins), df);
@@ -543,17 +545,17 @@ PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double a
     const auto& pixels = sides[0].all.regions.back().pixels;
     PixelCounts out;
     for (std::size_t k = begin; k < std::min(pixels.size(), begin + pixels_at_once); ++k) {
-        bool known = false, small = false;
+        bool is_known = false, small = false;
         for (const BiasPair& s : sides) {
             const Moments m = moments(s, pixels[k], false);
             if (!m.known) continue;
             if (s.quantity == 0 && table)
                 ++out.histogram[m.se > 0 ? table->of(m.difference / m.se, m.df) : m.difference == 0 ? bins - 1 : 0];
-            known = true;
+            is_known = true;
             small |= m.se > 0 ? !(std::fabs(m.difference) < least[s.quantity] * m.se) : m.difference != 0;
         }
-        out.tested += known;
-        if (!known || !small) continue;
+        out.tested += is_known;
+        if (!is_known || !small) continue;
         std::array<double, most_quantities> p{};
         for (const BiasPair& s : sides)
             p[s.quantity] = pixel_p(s, pixels[k], level * level_share(s.quantity, sides.size()));
@@ -599,9 +601,10 @@ double test_pixels(std::span<const BiasPair> sides, const BiasLevel& levels, Bia
         out.different_pixels.push_back(c.pixel);
         if (out.pixels_found.size() == named_most) continue;
         const int x = static_cast<int>(c.pixel) % s.all.width, y = static_cast<int>(c.pixel) / s.all.width;
-        const BiasPair& of = sides[c.p.quantity];
-        const double b = of.mean_b(c.pixel);
-        out.pixels_found.push_back({{x, y, x, y}, b + moments(of, c.pixel, false).difference, b, c.p.p, c.p.quantity});
+        const BiasPair& pair = sides[c.p.quantity];
+        const double b = pair.mean_b(c.pixel);
+        out.pixels_found.push_back(
+            {{x, y, x, y}, b + moments(pair, c.pixel, false).difference, b, c.p.p, c.p.quantity});
     }
     std::sort(out.different_pixels.begin(), out.different_pixels.end());
     return simes_p(p, static_cast<double>(out.pixels_tested), s.dependent);

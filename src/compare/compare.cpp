@@ -31,16 +31,16 @@ std::optional<double> stated_mean(const std::optional<double>& plan, const ArmSt
 
 }  // namespace
 
-ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size_t a, ProgressMonitor& monitor) {
+ArmResult measure_arm(const ComparePlan& plan, const RenderStats& stats, std::size_t a, ProgressMonitor& monitor) {
     ArmResult out;
-    const ArmStats& arm = all.arms[a];
+    const ArmStats& arm = stats.arms[a];
     out.name = plan.arms[a].name;
     out.renders = arm.files.size();
     out.spp = stated_mean(plan.arms[a].spp, arm, [](const RenderFile& f) { return f.spp; });
     out.seconds = stated_mean(plan.arms[a].seconds, arm, [](const RenderFile& f) { return f.seconds; });
-    const std::vector<Flips> flip = measure_flip(plan, all, a, monitor);
-    for (std::size_t r = 0; r < all.regions.size(); ++r)
-        out.regions.push_back(measure_region(all, arm, r, {out.seconds, out.spp}, flip[r]));
+    const std::vector<Flips> flip = measure_flip(plan, stats, a, monitor);
+    for (std::size_t r = 0; r < stats.regions.size(); ++r)
+        out.regions.push_back(measure_region(stats, arm, r, {out.seconds, out.spp}, flip[r]));
     return out;
 }
 
@@ -59,23 +59,23 @@ double value_of(const ParsedQuantity& side, const CompareResult& result, std::st
 
 /// Returns why no metric of a region can be asserted: some of its pixels are not finite on one side of a pair; "" if
 /// all are.
-std::string why_not_finite(const RenderStats& all, const CompareResult& result, const std::string& region) {
+std::string why_not_finite(const RenderStats& stats, const CompareResult& result, const std::string& region) {
     const auto set =
-        std::find_if(all.regions.begin(), all.regions.end(), [&](const PixelSet& s) { return s.name == region; });
+        std::find_if(stats.regions.begin(), stats.regions.end(), [&](const PixelSet& s) { return s.name == region; });
     const auto inside = [&](const FailingPixels& failing) {
         return std::any_of(failing.pixels.begin(), failing.pixels.end(),
             [&](std::uint32_t i) { return std::binary_search(set->left_out.begin(), set->left_out.end(), i); });
     };
     for (const BiasResult& b : result.bias)
-        if (inside(b.non_finite.a) || inside(b.non_finite.b)) return failing_pixels(all, b);
-    if (all.arms.size() > 1 || all.reference) return {};
-    const ArmStats& only = all.arms[0];
+        if (inside(b.non_finite.a) || inside(b.non_finite.b)) return failing_pixels(stats, b);
+    if (stats.arms.size() > 1 || stats.reference) return {};
+    const ArmStats& only = stats.arms[0];
     const auto fails = [&](std::uint32_t i) { return only.not_finite[i] == only.files.size(); };
     const auto count = std::count_if(set->left_out.begin(), set->left_out.end(), fails);
     return count ? fmt::format("{} of its pixels are finite in no render", count) : "";
 }
 
-AssertionResult asserted(const AssertionPlan& plan, const RenderStats& all, CompareResult& result) {
+AssertionResult asserted(const AssertionPlan& plan, const RenderStats& stats, CompareResult& result) {
     AssertionResult out;
     out.name = plan.name;
     out.op = plan.check.op;
@@ -87,7 +87,7 @@ AssertionResult asserted(const AssertionPlan& plan, const RenderStats& all, Comp
     out.pass = holds(out.measured, out.op, out.bound);
     for (const ParsedQuantity* side : {&plan.check.left, &plan.check.right}) {
         if (side->number) continue;
-        const std::string bad = why_not_finite(all, result, side->region);
+        const std::string bad = why_not_finite(stats, result, side->region);
         if (bad.empty()) continue;
         out.pass = false;
         out.text += fmt::format(" (cannot hold in {}: {})", side->region, bad);
@@ -144,27 +144,27 @@ void conclude(const ComparePlan& plan, CompareResult& result) {
 
 }  // namespace
 
-CompareResult test_differences(const ComparePlan& plan, const RenderStats& all, ProgressMonitor& monitor) {
+CompareResult test_differences(const ComparePlan& plan, const RenderStats& stats, ProgressMonitor& monitor) {
     CompareResult out;
-    out.warnings = all.warnings;
-    const std::size_t arms = all.arms.size();
-    for (std::size_t a = 0; a < arms; ++a) out.arms.push_back(measure_arm(plan, all, a, monitor));
-    for (std::size_t r = 0; r < all.regions.size() && all.reference; ++r)
-        out.reference_error[all.regions[r].name] = std::sqrt(reference_variance(all, r));
-    if (all.reference) out.reference_error_from = reference_error_from(*all.reference);
-    const std::size_t pairs = arms * (arms - 1) / 2 + (all.reference ? arms : 0);
+    out.warnings = stats.warnings;
+    const std::size_t arms = stats.arms.size();
+    for (std::size_t a = 0; a < arms; ++a) out.arms.push_back(measure_arm(plan, stats, a, monitor));
+    for (std::size_t r = 0; r < stats.regions.size() && stats.reference; ++r)
+        out.reference_error[stats.regions[r].name] = std::sqrt(reference_variance(stats, r));
+    if (stats.reference) out.reference_error_from = reference_error_from(*stats.reference);
+    const std::size_t pairs = arms * (arms - 1) / 2 + (stats.reference ? arms : 0);
     const double alpha = pairs ? plan.alpha / static_cast<double>(pairs) : plan.alpha;
     for (std::size_t a = 0; a < arms; ++a) {
-        if (all.reference) out.bias.push_back(test_bias(plan, all, out, a, arms, {alpha, alpha}, monitor));
+        if (stats.reference) out.bias.push_back(test_bias(plan, stats, out, a, arms, {alpha, alpha}, monitor));
         for (std::size_t b = 0; b < a; ++b) {
-            out.bias.push_back(test_bias(plan, all, out, a, b, {alpha, alpha}, monitor));
-            if (all.arms[a].files.size() > 1 && all.arms[b].files.size() > 1)
-                out.noise.push_back(compare_noise(plan, all, a, b, alpha));
+            out.bias.push_back(test_bias(plan, stats, out, a, b, {alpha, alpha}, monitor));
+            if (stats.arms[a].files.size() > 1 && stats.arms[b].files.size() > 1)
+                out.noise.push_back(compare_noise(plan, stats, a, b, alpha));
         }
     }
     out.rankings = rank(out);
     out.ladders = ladders_of(out);
-    for (const AssertionPlan& a : plan.assertions) out.assertions.push_back(asserted(a, all, out));
+    for (const AssertionPlan& a : plan.assertions) out.assertions.push_back(asserted(a, stats, out));
     conclude(plan, out);
     return out;
 }
@@ -173,22 +173,22 @@ CompareResult compare_renders(const ComparePlan& plan, const CompareOptions& opt
     ProgressMonitor& monitor, std::string& summary) {
     const plates::Canvas font_check(1, 1, {});  // reports a missing font, and a folder in use, before the work
     Staging staging(options.out);
-    const RenderStats all = read_all(plan, monitor);
-    const CompareResult result = test_differences(plan, all, monitor);
+    const RenderStats stats = read_all(plan, monitor);
+    const CompareResult result = test_differences(plan, stats, monitor);
     std::map<std::string, std::vector<unsigned char>> pictures;
-    for (const auto& [name, picture] : compare_plates(plan, all, result))
+    for (const auto& [name, picture] : compare_plates(plan, stats, result))
         pictures[name] = encode_png(picture,
             {{"Software", "crescent " + provenance.version}, {"Title", name}, {"Command", provenance.command}});
     monitor.check();
     for (const auto& [name, png] : pictures) staging.write("plates/" + name + ".png", png);
     if (!result.ladders.empty()) staging.write("plates/ladders.svg", ladders_svg(result, plan.theme));
-    const Json stored = compare_result_json(plan, all, result, provenance);
+    const Json stored = compare_result_json(plan, stats, result, provenance);
     staging.write("metrics.json", text(stored));
     staging.write("metrics.csv", compare_csv(result));
     staging.write("junit.xml", compare_junit(plan, result));
     staging.write("report.html", compare_html(stored, pictures));
     staging.commit(monitor);
-    summary = compare_summary(plan, all, result, options.out);
+    summary = compare_summary(plan, stats, result, options.out);
     return result;
 }
 

@@ -22,18 +22,18 @@ struct Flips {
 
 /// Returns FLIP of the arm's first render, one per region; empty values without a reference.
 std::vector<Flips> measure_flip(
-    const ComparePlan& plan, const RenderStats& all, std::size_t arm, ProgressMonitor& monitor);
+    const ComparePlan& plan, const RenderStats& stats, std::size_t arm, ProgressMonitor& monitor);
 
 /// Returns every metric of one arm in one region.
 RegionResult measure_region(
-    const RenderStats& all, const ArmStats& arm, std::size_t region, const Cost& cost, const Flips& flips);
+    const RenderStats& stats, const ArmStats& arm, std::size_t region, const Cost& cost, const Flips& flips);
 
 /// Returns the metrics of one arm in all regions.
-ArmResult measure_arm(const ComparePlan& plan, const RenderStats& all, std::size_t arm, ProgressMonitor& monitor);
+ArmResult measure_arm(const ComparePlan& plan, const RenderStats& stats, std::size_t arm, ProgressMonitor& monitor);
 
 /// Returns the mean over a region of the squared error of the reference's Y: over its files, else as its file states
 /// it, else estimated by roughness() from its differences from the arms.
-double reference_variance(const RenderStats& all, std::size_t region);
+double reference_variance(const RenderStats& stats, std::size_t region);
 /// Returns the source of that error, in words.
 std::string reference_error_from(const ArmStats& reference);
 
@@ -43,19 +43,20 @@ struct BiasLevel {
     double each, named;
 };
 /// Tests whether two arms (b = arms.size(): the reference) have the same expectation.
-BiasResult test_bias(const ComparePlan& plan, const RenderStats& all, const CompareResult& measured, std::size_t a,
+BiasResult test_bias(const ComparePlan& plan, const RenderStats& stats, const CompareResult& measured, std::size_t a,
     std::size_t b, const BiasLevel& level, ProgressMonitor& monitor);
 
 /// Returns the result as one sentence; `alpha` is the level of its regions.
-std::string sentence_of(const RenderStats& all, const BiasResult& bias, double alpha);
+std::string sentence_of(const RenderStats& stats, const BiasResult& bias, double alpha);
 /// Describes the pixels of a pair that differ because they are not finite; "" if there are none.
-std::string failing_pixels(const RenderStats& all, const BiasResult& bias);
+std::string failing_pixels(const RenderStats& stats, const BiasResult& bias);
 
 /// Returns the sentences of all pairs; of many pairs, those without a difference share one sentence.
 std::vector<std::string> found_about_means(const CompareResult& result);
 
 /// Finds where the variance of arm a differs from that of b.
-NoiseResult compare_noise(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b, double alpha);
+NoiseResult compare_noise(
+    const ComparePlan& plan, const RenderStats& stats, std::size_t a, std::size_t b, double alpha);
 
 /// Ranks the arms by variance at equal time or at equal samples, in each region.
 std::vector<Ranking> rank(const CompareResult& result);
@@ -68,7 +69,7 @@ const char* ladder_metric_name(const MetricValue& rmse);
 std::vector<SppLadder> ladders_of(const CompareResult& result);
 
 /// Computes the metrics and tests of the plan and checks its assertions.
-CompareResult test_differences(const ComparePlan& plan, const RenderStats& all, ProgressMonitor& monitor);
+CompareResult test_differences(const ComparePlan& plan, const RenderStats& stats, ProgressMonitor& monitor);
 
 /// The folder of the outputs.
 struct CompareOptions {

@@ -106,9 +106,9 @@ ExrPart part_of(const OpenFile& file, exr_const_context_t context, int index) {
 }  // namespace
 
 const ExrChannel* ExrPart::channel(const std::string& wanted) const {
-    const auto at =
+    const auto found =
         std::find_if(channels.begin(), channels.end(), [&](const ExrChannel& c) { return c.name == wanted; });
-    return at == channels.end() ? nullptr : &*at;
+    return found == channels.end() ? nullptr : &*found;
 }
 
 ExrFile::ExrFile(const OpenFile& file) : file_(file) {
@@ -240,7 +240,7 @@ std::uint64_t ExrChunks::unpacked_size(const PixelWindow& w) const {
 
 void ExrChunks::check() const {
     std::uint64_t packed = 0;
-    const double most = most_per_byte(part_.compression);
+    const double largest_ratio = most_per_byte(part_.compression);
     for (std::int64_t k = 0; k < count_; ++k) {
         const exr_chunk_info_t chunk = info(k);
         const PixelWindow w = window(k);
@@ -248,13 +248,13 @@ void ExrChunks::check() const {
         packed += chunk.packed_size;
         const bool flat = part_.compression == EXR_COMPRESSION_NONE;
         if (flat ? chunk.packed_size != unpacked
-                 : static_cast<double>(chunk.packed_size) * most < static_cast<double>(unpacked))
-            file_.fail(
-                fmt::format("block {} of {} at byte {}: expected {}{} bytes for {} x {} pixels of {} channels, "
-                            "found {}",
-                    k + 1, count_, chunk.data_offset, flat ? "" : "at least ",
-                    flat ? unpacked : static_cast<std::uint64_t>(std::ceil(static_cast<double>(unpacked) / most)),
-                    w.width(), w.height(), part_.channels.size(), chunk.packed_size));
+                 : static_cast<double>(chunk.packed_size) * largest_ratio < static_cast<double>(unpacked))
+            file_.fail(fmt::format(
+                "block {} of {} at byte {}: expected {}{} bytes for {} x {} pixels of {} channels, "
+                "found {}",
+                k + 1, count_, chunk.data_offset, flat ? "" : "at least ",
+                flat ? unpacked : static_cast<std::uint64_t>(std::ceil(static_cast<double>(unpacked) / largest_ratio)),
+                w.width(), w.height(), part_.channels.size(), chunk.packed_size));
     }
     if (packed > file_.size())
         file_.fail(fmt::format("blocks overlap: they have {} bytes, the file {}", packed, file_.size()));

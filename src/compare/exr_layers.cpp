@@ -63,10 +63,10 @@ std::string samples_in(const std::string& layer, const ColourChannels& colours) 
 }  // namespace
 
 ExrExtra exr_extra(const ExrPart& part) {
-    const auto all = exr_channels(part);
+    const auto layers = exr_channels(part);
     ExrExtra out;
-    const bool pbrt = all.contains("RelativeVariance");
-    for (const auto& [layer, colours] : all) {
+    const bool pbrt = layers.contains("RelativeVariance");
+    for (const auto& [layer, colours] : layers) {
         const std::string name = last_name(layer.empty() ? part.name : layer);
         if (const std::string samples = samples_in(layer, colours); !samples.empty()) out.samples = samples;
         using Kind = ExrExtra::Kind;
@@ -78,8 +78,8 @@ ExrExtra exr_extra(const ExrPart& part) {
             out.kind = kind;
             out.spread = of_light(colours);
         }
-        const auto mean = layer.starts_with("m2_") ? all.find(layer.substr(3)) : all.end();
-        if (mean != all.end() && mean->second.contains("y") && colours.contains("y")) {
+        const auto mean = layer.starts_with("m2_") ? layers.find(layer.substr(3)) : layers.end();
+        if (mean != layers.end() && mean->second.contains("y") && colours.contains("y")) {
             out.kind = Kind::moments;
             out.spread = {colours.at("y"), mean->second.at("y")};
         }
@@ -109,15 +109,15 @@ void set_variance(Render& out, const ExrExtra& extra, const std::vector<std::vec
 }
 
 void set_samples(Render& out, const ExrExtra& extra, const std::vector<float>& plane) {
-    double sum = 0, most = 0;
+    double sum = 0, greatest = 0;
     for (const float n : plane) {
         if (!std::isfinite(n) || n < 0)
             throw InputError({out.file, 0, 0},
                 fmt::format("channel '{}': expected samples a pixel, 0 or more, found {}", extra.samples, n));
         sum += static_cast<double>(n);
-        most = std::max(most, static_cast<double>(n));
+        greatest = std::max(greatest, static_cast<double>(n));
     }
-    if (!(most > 1)) return;
+    if (!(greatest > 1)) return;
     out.sample_channel = extra.samples;
     if (!out.spp) out.spp = sum / static_cast<double>(plane.size());
 }
@@ -147,8 +147,8 @@ std::string colour_of(const std::string& word) {
     std::erase_if(name, [](char c) { return c == '[' || c == ']' || c == '(' || c == ')' || c == ' '; });
     static const std::map<std::string, std::string> words = {{"r", "r"}, {"red", "r"}, {"g", "g"}, {"green", "g"},
         {"b", "b"}, {"blue", "b"}, {"y", "y"}, {"ry", "ry"}, {"by", "by"}, {"x", "x"}, {"z", "z"}};
-    const auto at = words.find(name);
-    return at == words.end() ? "" : at->second;
+    const auto found = words.find(name);
+    return found == words.end() ? "" : found->second;
 }
 
 /// "Combined.R" -> Combined, r; a name that is not a colour is kept in lower case.
@@ -165,9 +165,9 @@ std::pair<std::string, std::string> layer_and_colour(const std::string& channel)
 std::pair<std::string, std::string> doubled(const ExrPart& part, const ExrLayer& layer) {
     for (const std::string& taken : layer.channels) {
         const auto [prefix, colour] = layer_and_colour(taken);
-        std::string own = colour;
-        for (char& c : own) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-        if (taken.ends_with(own)) continue;
+        std::string upper = colour;
+        for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        if (taken.ends_with(upper)) continue;
         for (const ExrChannel& other : part.channels)
             if (other.name != taken && layer_and_colour(other.name) == std::pair{prefix, colour})
                 return {taken, other.name};
@@ -205,20 +205,20 @@ void add_layers(std::vector<ExrLayer>& out, const ExrPart& part, bool alone) {
     const std::string part_name = alone ? "" : part.name;
     for (const auto& [prefix, colours] : exr_channels(part)) {
         ExrLayer layer{Kind::rgb, part.index, joined(part_name, prefix), joined(part.name, prefix), prefix, {}, true};
-        const auto all = [&](std::initializer_list<const char*> names) {
+        const auto every = [&](std::initializer_list<const char*> names) {
             std::vector<std::string> channels;
             for (const char* name : names)
-                if (const auto at = colours.find(name); at != colours.end()) channels.push_back(at->second);
+                if (const auto found = colours.find(name); found != colours.end()) channels.push_back(found->second);
             return channels.size() == names.size() ? channels : std::vector<std::string>{};
         };
         layer.radiance = !is_data(prefix) && !(prefix.empty() && is_data(part_name));
-        if (layer.channels = all({"r", "g", "b"}); !layer.channels.empty()) {
-        } else if (layer.channels = all({"x", "y", "z"}); !layer.channels.empty()) {
+        if (layer.channels = every({"r", "g", "b"}); !layer.channels.empty()) {
+        } else if (layer.channels = every({"x", "y", "z"}); !layer.channels.empty()) {
             layer.kind = Kind::xyz;
             layer.radiance = layer.radiance && is_xyz_colour(layer.name);
-        } else if (layer.channels = all({"y", "ry", "by"}); !layer.channels.empty()) {
+        } else if (layer.channels = every({"y", "ry", "by"}); !layer.channels.empty()) {
             layer.kind = Kind::luminance_chroma;
-        } else if (layer.channels = all({"y"}); !layer.channels.empty()) {
+        } else if (layer.channels = every({"y"}); !layer.channels.empty()) {
             layer.kind = Kind::grey;
             const bool vector = colours.contains("x") || (colours.contains("z") && !is_usual(layer.name));
             layer.radiance = layer.radiance && !vector && !colours.contains("ry") && !colours.contains("by") &&
@@ -237,27 +237,27 @@ std::string names_of(const std::vector<ExrLayer>& layers) {
 }
 
 std::string channels_found(const ExrFile& file) {
-    constexpr std::size_t most = 40;
+    constexpr std::size_t limit = 40;
     std::vector<std::string> names;
     for (const ExrPart& part : file.parts())
         for (const ExrChannel& c : part.channels)
             names.push_back(printable(file.parts().size() > 1 ? joined(part.name, c.name) : c.name, 80));
-    const std::size_t all = names.size();
-    names.resize(std::min(all, most));
-    return fmt::format("{}{}", fmt::join(names, ", "), all > most ? fmt::format(" and {} more", all - most) : "");
+    const std::size_t total = names.size();
+    names.resize(std::min(total, limit));
+    return fmt::format("{}{}", fmt::join(names, ", "), total > limit ? fmt::format(" and {} more", total - limit) : "");
 }
 
 /// Returns the beauty: the channels without a layer, else the only layer, else the only one with a usual name; null if
 /// it is ambiguous.
 const ExrLayer* beauty(const std::vector<ExrLayer>& layers) {
-    std::vector<const ExrLayer*> all, usual;
+    std::vector<const ExrLayer*> candidates, usual;
     for (const ExrLayer& layer : layers) {
         if (!layer.radiance) continue;
         if (layer.name.empty()) return &layer;
-        all.push_back(&layer);
+        candidates.push_back(&layer);
         if (is_usual(layer.name)) usual.push_back(&layer);
     }
-    if (all.size() == 1) return all[0];
+    if (candidates.size() == 1) return candidates[0];
     return usual.size() == 1 ? usual[0] : nullptr;
 }
 
@@ -270,8 +270,8 @@ std::string lower(std::string text) {
 
 std::string last_name(const std::string& layer) {
     const std::string name = lower(layer);
-    const std::size_t at = name.find_last_of("./:");
-    return at == std::string::npos ? name : name.substr(at + 1);
+    const std::size_t separator = name.find_last_of("./:");
+    return separator == std::string::npos ? name : name.substr(separator + 1);
 }
 
 std::map<std::string, ColourChannels> exr_channels(const ExrPart& part) {

@@ -39,9 +39,9 @@ private:
 };
 
 /// Reads a little-endian number.
-template <class T> T number_at(const char* at) {
+template <class T> T number_at(const char* bytes_in) {
     char bytes[sizeof(T)];
-    std::memcpy(bytes, at, sizeof(T));
+    std::memcpy(bytes, bytes_in, sizeof(T));
     if constexpr (std::endian::native == std::endian::big) std::reverse(bytes, bytes + sizeof(T));
     T out;
     std::memcpy(&out, bytes, sizeof out);
@@ -58,15 +58,15 @@ void convert_row(const ExrChannel& channel, const char* from, std::span<float> t
 /// Copies the rows of one chunk to the planes (null: the channel is not read).
 void place_chunk(
     const ExrPart& part, const PixelWindow& w, std::span<const char> bytes, const std::vector<float*>& planes) {
-    const char* at = bytes.data();
+    const char* source = bytes.data();
     for (std::int64_t y = w.y0; y <= w.y1; ++y) {
         const std::int64_t begin = (part.data.y1 - y) * part.data.width() + (w.x0 - part.data.x0);
         for (std::size_t c = 0; c < part.channels.size(); ++c) {
             const ExrChannel& channel = part.channels[c];
             if (y % channel.y_sampling != 0) continue;
             const std::size_t n = ExrChunks::samples(channel.x_sampling, w.x0, w.width());
-            if (planes[c]) convert_row(channel, at, {planes[c] + begin, n});
-            at += n * channel.bytes();
+            if (planes[c]) convert_row(channel, source, {planes[c] + begin, n});
+            source += n * channel.bytes();
         }
     }
 }
@@ -276,10 +276,10 @@ Matrix3 inverse(const Matrix3& m) {
 
 /// Returns a matrix with a column per primary: its x, y and z times its amount.
 Matrix3 columns(const Chromaticities& c, const Rgb& amounts) {
-    const Rgb of[3] = {xyz_of(c.red), xyz_of(c.green), xyz_of(c.blue)};
+    const Rgb primary[3] = {xyz_of(c.red), xyz_of(c.green), xyz_of(c.blue)};
     Matrix3 out;
     for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) out[i][j] = of[j][i] * amounts[j];
+        for (std::size_t j = 0; j < 3; ++j) out[i][j] = primary[j][i] * amounts[j];
     return out;
 }
 

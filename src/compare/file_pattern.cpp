@@ -25,7 +25,7 @@ constexpr std::size_t wildcards_most = 32, length_most = 4096;  // 4096: of a pa
 std::size_t byte_of(char c) { return static_cast<unsigned char>(c); }
 
 /// Reads what stands between [ and ]. Throws InputError.
-PatternPiece set_of(std::string_view inside, std::string_view pattern, const SourceLocation& at) {
+PatternPiece set_of(std::string_view inside, std::string_view pattern, const SourceLocation& place) {
     PatternPiece out;
     out.kind = PieceKind::set;
     const bool negated = inside.size() > 1 && inside[0] == '!';
@@ -34,7 +34,7 @@ PatternPiece set_of(std::string_view inside, std::string_view pattern, const Sou
         const bool range = i + 2 < inside.size() && inside[i + 1] == '-';
         const std::size_t first = byte_of(inside[i]), last = byte_of(inside[range ? i + 2 : i]);
         if (last < first)
-            throw InputError(at,
+            throw InputError(place,
                 fmt::format("expected a range in ascending order in the pattern '{}', found [{}]", pattern, inside));
         for (std::size_t c = first; c <= last; ++c) out.set.set(c);
         if (range) i += 2;
@@ -57,7 +57,7 @@ void add_text(Pieces& to, std::string_view text) {
 }
 
 /// Reads a part of a pattern without '/'.
-Pieces pieces_of(std::string_view part, std::string_view pattern, const SourceLocation& at, bool has_views) {
+Pieces pieces_of(std::string_view part, std::string_view pattern, const SourceLocation& place, bool has_views) {
     Pieces out;
     const auto add = [&](PieceKind kind) { out.emplace_back().kind = kind; };
     while (!part.empty()) {
@@ -75,7 +75,7 @@ Pieces pieces_of(std::string_view part, std::string_view pattern, const SourceLo
             length = end + 1;
             const std::string_view inside = part.substr(1, end - 1);
             if (inside.size() == 1) add_text(out, inside);
-            else out.push_back(set_of(inside, pattern, at));
+            else out.push_back(set_of(inside, pattern, place));
         } else add_text(out, part.substr(0, 1));
         part.remove_prefix(length);
     }
@@ -118,22 +118,23 @@ private:
 
     bool alternatives(std::size_t piece, std::size_t from, Match& out) {
         const PatternPiece& p = pieces_[piece];
-        const std::size_t left = std::min(text_.find('/', from), text_.size()) - from;
+        const std::size_t remaining = std::min(text_.find('/', from), text_.size()) - from;
         if (p.kind == PieceKind::text)
             return text_.substr(from).starts_with(p.text) && rest(piece + 1, from + p.text.size(), out);
-        if (p.kind == PieceKind::view) return view(piece, from, left, out);
+        if (p.kind == PieceKind::view) return view(piece, from, remaining, out);
         if (p.kind == PieceKind::one || p.kind == PieceKind::set) {
-            const bool fits = left > 0 && (p.kind == PieceKind::one || p.set[byte_of(text_[from])]);
+            const bool fits = remaining > 0 && (p.kind == PieceKind::one || p.set[byte_of(text_[from])]);
             return fits && wildcard(piece, from, 1, out);
         }
         if (p.kind == PieceKind::digits) {
-            std::size_t most = 0;
-            while (most < left && text_[from + most] >= '0' && text_[from + most] <= '9') ++most;
-            for (std::size_t length = most; length > 0; --length)
+            std::size_t digit_count = 0;
+            while (digit_count < remaining && text_[from + digit_count] >= '0' && text_[from + digit_count] <= '9')
+                ++digit_count;
+            for (std::size_t length = digit_count; length > 0; --length)
                 if (wildcard(piece, from, length, out)) return true;
             return false;
         }
-        for (std::size_t length = 0; length <= left; ++length)
+        for (std::size_t length = 0; length <= remaining; ++length)
             if (wildcard(piece, from, length, out)) return true;
         return false;
     }
@@ -146,9 +147,9 @@ private:
     }
 
     /// The longest view that matches; each later {view} matches the same text.
-    bool view(std::size_t piece, std::size_t from, std::size_t left, Match& out) {
+    bool view(std::size_t piece, std::size_t from, std::size_t remaining, Match& out) {
         if (out.view) return text_.substr(from).starts_with(*out.view) && rest(piece + 1, from + out.view->size(), out);
-        for (std::size_t length = left; length > 0; --length) {
+        for (std::size_t length = remaining; length > 0; --length) {
             if (any_view_) {
                 if (rest(piece + 1, from + length, out)) return true;
                 continue;
@@ -197,8 +198,8 @@ std::vector<std::string> names_in(const std::string& folder) {
 
 }  // namespace
 
-FilePattern::FilePattern(std::string pattern, SourceLocation at, bool has_views)
-    : text_(std::move(pattern)), at_(std::move(at)), rooted_(text_.starts_with('/')) {
+FilePattern::FilePattern(std::string pattern, SourceLocation place, bool has_views)
+    : text_(std::move(pattern)), at_(std::move(place)), rooted_(text_.starts_with('/')) {
     if (text_.size() > length_most)
         throw InputError(
             at_, fmt::format("expected a pattern of at most {} characters, found {}", length_most, text_.size()));

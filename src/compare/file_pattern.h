@@ -29,9 +29,9 @@ struct MatchedFile {
 
 class FilePattern {
 public:
-    /// Throws InputError at `at` for a set that is no set, such as [z-a], and for more than 32 wildcards. Without
+    /// Throws InputError at `place` for a set that is no set, such as [z-a], and for more than 32 wildcards. Without
     /// `has_views`, {view} is text.
-    FilePattern(std::string pattern, SourceLocation at, bool has_views);
+    FilePattern(std::string pattern, SourceLocation place, bool has_views);
 
     const std::string& text() const { return text_; }
     const SourceLocation& at() const { return at_; }

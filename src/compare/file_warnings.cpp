@@ -13,11 +13,11 @@ namespace crescent {
 void FileWarnings::add(
     const std::string& file, const std::string& text, std::uint64_t pixels, const std::string& kind) {
     const std::string& key = kind.empty() ? text : kind;
-    auto at = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& k) { return k.kind == key; });
-    if (at == kinds_.end()) at = kinds_.insert(kinds_.end(), {key, file, text, 0, pixels, pixels});
-    ++at->files;
-    at->fewest = std::min(at->fewest, pixels);
-    at->most = std::max(at->most, pixels);
+    auto found = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& k) { return k.kind == key; });
+    if (found == kinds_.end()) found = kinds_.insert(kinds_.end(), {key, file, text, 0, pixels, pixels});
+    ++found->files;
+    found->fewest = std::min(found->fewest, pixels);
+    found->most = std::max(found->most, pixels);
 }
 
 std::vector<std::string> FileWarnings::lines() const {
@@ -59,10 +59,10 @@ public:
             for (const int step : {1, width_ - 1, width_, width_ + 1}) {
                 const int column = step == 1 || step == width_ + 1 ? x - 1 : step == width_ ? x : x + 1;
                 if (column < 0 || column >= width_ || pixels[k] < static_cast<std::uint32_t>(step)) continue;
-                const auto at =
+                const auto neighbour =
                     std::lower_bound(pixels.begin(), pixels.end(), pixels[k] - static_cast<std::uint32_t>(step));
-                if (at == pixels.end() || *at != pixels[k] - static_cast<std::uint32_t>(step)) continue;
-                groups -= join(k, static_cast<std::size_t>(at - pixels.begin()));
+                if (neighbour == pixels.end() || *neighbour != pixels[k] - static_cast<std::uint32_t>(step)) continue;
+                groups -= join(k, static_cast<std::size_t>(neighbour - pixels.begin()));
             }
         }
         return groups;
@@ -93,8 +93,8 @@ struct Counts {
 
 class NonFiniteTest {
 public:
-    NonFiniteTest(const RenderStats& all, const ArmStats& a, const ArmStats& b)
-        : all_(all), a_(a), b_(b), na_(a.files.size()), nb_(b.files.size()) {}
+    NonFiniteTest(const RenderStats& stats, const ArmStats& a, const ArmStats& b)
+        : all_(stats), a_(a), b_(b), na_(a.files.size()), nb_(b.files.size()) {}
 
     NonFinite result(double alpha) {
         for (const std::uint32_t i : all_.regions.back().left_out)
@@ -158,11 +158,11 @@ private:
         }
     }
 
-    static void put(FailingPixels& to, std::uint32_t pixel, std::uint32_t own, std::uint32_t other) {
+    static void put(FailingPixels& to, std::uint32_t pixel, std::uint32_t failed_here, std::uint32_t other) {
         const bool first = to.pixels.empty();
         to.pixels.push_back(pixel);
-        to.least = first ? own : std::min(to.least, own);
-        to.most = std::max(to.most, own);
+        to.least = first ? failed_here : std::min(to.least, failed_here);
+        to.most = std::max(to.most, failed_here);
         to.other_least = first ? other : std::min(to.other_least, other);
         to.other_most = std::max(to.other_most, other);
     }
@@ -192,19 +192,19 @@ std::uint32_t touching_groups(const std::vector<std::uint32_t>& pixels, int widt
     return Groups(width).count(pixels);
 }
 
-std::vector<std::uint32_t> failed_groups(const Render& render, const RenderStats& all) {
+std::vector<std::uint32_t> failed_groups(const Render& render, const RenderStats& stats) {
     std::vector<std::uint32_t> out;
-    for (const PixelSet& set : all.regions) {
+    for (const PixelSet& set : stats.regions) {
         std::vector<std::uint32_t> bad;
         std::copy_if(set.left_out.begin(), set.left_out.end(), std::back_inserter(bad),
             [&](std::uint32_t i) { return !finite(render, i); });
-        out.push_back(touching_groups(bad, all.width));
+        out.push_back(touching_groups(bad, stats.width));
     }
     return out;
 }
 
-NonFinite compare_non_finite(const RenderStats& all, const ArmStats& a, const ArmStats& b, double alpha) {
-    return NonFiniteTest(all, a, b).result(alpha);
+NonFinite compare_non_finite(const RenderStats& stats, const ArmStats& a, const ArmStats& b, double alpha) {
+    return NonFiniteTest(stats, a, b).result(alpha);
 }
 
 std::string places_of(const FailingPixels& failing, int width) {

@@ -30,7 +30,7 @@ private:
 std::uint32_t touching_groups(const std::vector<std::uint32_t>& pixels, int width);
 
 /// Counts the groups of touching pixels (8 neighbours) of a render that are not finite, one count per region.
-std::vector<std::uint32_t> failed_groups(const Render& render, const RenderStats& all);
+std::vector<std::uint32_t> failed_groups(const Render& render, const RenderStats& stats);
 
 /// Pixels of one side that fail (are not finite) more often than on the other side.
 struct FailingPixels {
@@ -63,7 +63,7 @@ struct NonFinite {
 /// controlled; regions by the exact binomial test of the counts of groups (Holm). If a region differs, all its pixels
 /// that fail more often on that side are reported. A pixel is undecided if it fails in half of the renders of one side
 /// or more and in none of the other, and these tests find no difference.
-NonFinite compare_non_finite(const RenderStats& all, const ArmStats& a, const ArmStats& b, double alpha);
+NonFinite compare_non_finite(const RenderStats& stats, const ArmStats& a, const ArmStats& b, double alpha);
 
 /// Returns "(3, 4), (5, 4), ... within x 3–9 y 4–7".
 std::string places_of(const FailingPixels& failing, int width);

@@ -81,7 +81,9 @@ MetricValue squared_bias(const ArmStats& arm, const PixelSet& set, std::size_t r
         sum += render[region].with_sum;
         squares += render[region].mse;
     }
-    const auto statistic = [&](double all, double each, double n) { return (all - each) / (n * (n - 1)) - reference; };
+    const auto statistic = [&](double total, double each, double n) {
+        return (total - each) / (n * (n - 1)) - reference;
+    };
     MetricValue out{statistic(sum, squares, k), {}, ""};
     if (heavy) out.why = "heavy tail";
     else if (arm.files.size() < 3) out.why = "three renders or more have an interval";
@@ -112,14 +114,14 @@ template <class Transform> MetricValue transformed_metric(const MetricValue& fro
 }
 
 void costs(const MetricValue& var, const Cost& cost, RegionResult& out) {
-    const auto by = [&](const std::optional<double>& each, const char* why) {
+    const auto per_unit = [&](const std::optional<double>& each, const char* why) {
         return each ? transformed_metric(var, [&](double v) { return v * *each; }) : missing(why);
     };
     const char* no_time = "no render time: give --seconds";
     out.metrics.emplace_back("efficiency",
         cost.seconds ? transformed_metric(var, [&](double v) { return 1 / (v * *cost.seconds); }) : missing(no_time));
-    out.metrics.emplace_back("unit_time", by(cost.seconds, no_time));
-    out.metrics.emplace_back("sample_var", by(cost.spp, "no samples a pixel: give --spp"));
+    out.metrics.emplace_back("unit_time", per_unit(cost.seconds, no_time));
+    out.metrics.emplace_back("sample_var", per_unit(cost.spp, "no samples a pixel: give --spp"));
 }
 
 /// Returns the number of renders for which the largest error would be a twentieth of the sum: the largest of n grows as
@@ -189,28 +191,28 @@ const RegionResult& ArmResult::region(const std::string& wanted) const {
     return *it;
 }
 
-double reference_variance(const RenderStats& all, std::size_t region) {
-    const ArmStats& reference = *all.reference;
+double reference_variance(const RenderStats& stats, std::size_t region) {
+    const ArmStats& reference = *stats.reference;
     const double stated =
-        mean_variance(reference.film, all.regions[region]) / static_cast<double>(reference.film.count);
+        mean_variance(reference.film, stats.regions[region]) / static_cast<double>(reference.film.count);
     if (!std::isnan(stated)) return stated;
     double least =
         HUGE_VAL;  // a bias increases the roughness of an arm's difference, so the smallest estimate is the best
-    for (const ArmStats& arm : all.arms)
+    for (const ArmStats& arm : stats.arms)
         if (arm.film.count > 1 || !arm.film.stated_variance.empty())
-            least = std::min(least, roughness(all, arm, all.regions[region]));
+            least = std::min(least, roughness(stats, arm, stats.regions[region]));
     return std::isfinite(least) ? least : 0;
 }
 
 RegionResult measure_region(
-    const RenderStats& all, const ArmStats& arm, std::size_t region, const Cost& cost, const Flips& flips) {
-    const PixelSet& set = all.regions[region];
+    const RenderStats& stats, const ArmStats& arm, std::size_t region, const Cost& cost, const Flips& flips) {
+    const PixelSet& set = stats.regions[region];
     if (set.pixels.empty()) return without_pixels(set, compare_words());
     RegionResult out;
     out.region = set.name;
     out.pixels = set.pixels.size();
     tail_of(arm, region, out);
-    const bool heavy = out.heavy(), mean_heavy = out.mean_heavy(), referred = all.reference.has_value();
+    const bool heavy = out.heavy(), mean_heavy = out.mean_heavy(), referred = stats.reference.has_value();
     const auto against = [&](const char* name, auto read, auto transform, bool no_interval) {
         out.metrics.emplace_back(name,
             referred ? mean_of(over_renders(arm, region, read), no_interval, transform) : missing("no reference"));
@@ -219,7 +221,7 @@ RegionResult measure_region(
     const MetricValue var = variance(arm, set, region, heavy);
     out.metrics.emplace_back("var", var);
     out.metrics.emplace_back("bias2",
-        referred ? squared_bias(arm, set, region, reference_variance(all, region), heavy) : missing("no reference"));
+        referred ? squared_bias(arm, set, region, reference_variance(stats, region), heavy) : missing("no reference"));
     against("relmse", [](const RegionStats& r) { return r.relmse; }, at_least_0, heavy);
     against("mape", [](const RegionStats& r) { return r.mape; }, at_least_0, mean_heavy);
     const Values fireflies = over_renders(arm, region, [](const RegionStats& r) { return r.fireflies; });
@@ -275,22 +277,22 @@ void blacken(Render& image, const std::vector<bool>& bad) {
 }  // namespace
 
 std::vector<Flips> measure_flip(
-    const ComparePlan& plan, const RenderStats& all, std::size_t a, ProgressMonitor& monitor) {
-    std::vector<Flips> out(all.regions.size());
-    if (!all.reference || !plan.flip) return out;
+    const ComparePlan& plan, const RenderStats& stats, std::size_t a, ProgressMonitor& monitor) {
+    std::vector<Flips> out(stats.regions.size());
+    if (!stats.reference || !plan.flip) return out;
     monitor.begin("FLIP", 1);
-    Render ref = in_rec709(all, all.reference->film);
-    Render test = in_rec709(all, all.source.read(all.arms[a].files[0].path, plan.arms[a].layer));
-    for (Render* image : {&test, &ref}) blacken(*image, all.bad);
-    const std::vector<float> hdr = hdr_flip({all.width, all.height, ref.r, ref.g, ref.b},
-        {all.width, all.height, test.r, test.g, test.b}, plan.pixels_per_degree);
+    Render ref = in_rec709(stats, stats.reference->film);
+    Render test = in_rec709(stats, stats.source.read(stats.arms[a].files[0].path, plan.arms[a].layer));
+    for (Render* image : {&test, &ref}) blacken(*image, stats.bad);
+    const std::vector<float> hdr = hdr_flip({stats.width, stats.height, ref.r, ref.g, ref.b},
+        {stats.width, stats.height, test.r, test.g, test.b}, plan.pixels_per_degree);
     const auto test_photo = photograph(test.r, test.g, test.b, plan.exposure),
                reference_photo = photograph(ref.r, ref.g, ref.b, plan.exposure);
     const std::vector<float> ldr =
-        ldr_flip({all.width, all.height, reference_photo[0], reference_photo[1], reference_photo[2]},
-            {all.width, all.height, test_photo[0], test_photo[1], test_photo[2]}, plan.pixels_per_degree);
-    for (std::size_t r = 0; r < all.regions.size(); ++r)
-        out[r] = {mean_over(hdr, all.regions[r]), mean_over(ldr, all.regions[r])};
+        ldr_flip({stats.width, stats.height, reference_photo[0], reference_photo[1], reference_photo[2]},
+            {stats.width, stats.height, test_photo[0], test_photo[1], test_photo[2]}, plan.pixels_per_degree);
+    for (std::size_t r = 0; r < stats.regions.size(); ++r)
+        out[r] = {mean_over(hdr, stats.regions[r]), mean_over(ldr, stats.regions[r])};
     monitor.advance(1);
     return out;
 }
@@ -306,9 +308,9 @@ bool is_grey(const Render& render) {
 }
 
 void add_value(MeanPlane& plane, std::size_t i, float x, double n) {
-    const double value = static_cast<double>(x), off = value - plane.mean[i];
-    plane.mean[i] += off / n;
-    plane.m2[i] += off * (value - plane.mean[i]);
+    const double value = static_cast<double>(x), deviation = value - plane.mean[i];
+    plane.mean[i] += deviation / n;
+    plane.m2[i] += deviation * (value - plane.mean[i]);
 }
 
 }  // namespace
@@ -347,8 +349,8 @@ std::vector<float> MeanFilm::radiance(std::size_t channel) const {
 
 double MeanFilm::variance(std::size_t i, std::size_t quantity) const {
     if (count >= 2) return of(quantity).m2[i] / static_cast<double>(count - 1);
-    const bool known = !stated_variance.empty() && (quantity == 0 || planes.size() == 1);
-    return known ? static_cast<double>(stated_variance[i]) / static_cast<double>(count) : std::nan("");
+    const bool is_known = !stated_variance.empty() && (quantity == 0 || planes.size() == 1);
+    return is_known ? static_cast<double>(stated_variance[i]) / static_cast<double>(count) : std::nan("");
 }
 
 }  // namespace crescent

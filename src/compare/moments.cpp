@@ -71,12 +71,12 @@ std::vector<Plane> planes_of(const ArmStats& arm, double scale) {
 /// Returns a power of two that scales the largest standard deviation of a channel to at most 2^14, within the range of
 /// half.
 double deviation_scale(const MeanFilm& film) {
-    double most = 0;
+    double largest = 0;
     for (std::size_t q = 1; q < film.planes.size() && film.count > 1; ++q)
         for (const double m2 : film.planes[q].m2)
-            if (std::isfinite(m2)) most = std::max(most, m2 / static_cast<double>(film.count - 1));
+            if (std::isfinite(m2)) largest = std::max(largest, m2 / static_cast<double>(film.count - 1));
     constexpr int bits = 14;
-    return most > 0 ? std::ldexp(1.0, std::ilogb(std::sqrt(most)) + 1 - bits) : 1;
+    return largest > 0 ? std::ldexp(1.0, std::ilogb(std::sqrt(largest)) + 1 - bits) : 1;
 }
 
 double deviation_of(const std::vector<double>& values) {
@@ -84,8 +84,8 @@ double deviation_of(const std::vector<double>& values) {
     return m.n > 1 ? m.se * std::sqrt(static_cast<double>(m.n)) : 0;
 }
 
-void put_readings(Imf::Header& header, const RenderStats& all, const ArmStats& arm) {
-    for (std::size_t r = 0; r < all.regions.size(); ++r) {
+void put_readings(Imf::Header& header, const RenderStats& stats, const ArmStats& arm) {
+    for (std::size_t r = 0; r < stats.regions.size(); ++r) {
         std::vector<double> spread;
         for (const auto& render : arm.regions) spread.push_back(render[r].spread);
         put(header, moments_attribute("spread", r, 0), spread);
@@ -106,15 +106,15 @@ void put_readings(Imf::Header& header, const RenderStats& all, const ArmStats& a
     for (std::size_t q = 0; q < arm.quantities.size(); ++q) {
         const QuantityReadings& readings = arm.quantities[q];
         std::vector<double> deviations, largest;
-        for (std::size_t t = 0; t < all.tiles.count(); ++t) {
+        for (std::size_t t = 0; t < stats.tiles.count(); ++t) {
             std::vector<double> means;
-            double most = 0;
+            double largest_value = 0;
             for (const auto& render : readings.tiles) {
                 means.push_back(render[t].mean);
-                most = std::max(most, render[t].largest);
+                largest_value = std::max(largest_value, render[t].largest);
             }
             deviations.push_back(deviation_of(means));
-            largest.push_back(most);
+            largest.push_back(largest_value);
         }
         put(header, moments_attribute("tiles", 0, q), deviations);
         put(header, moments_attribute("tiles", 1, q), largest);
@@ -122,16 +122,16 @@ void put_readings(Imf::Header& header, const RenderStats& all, const ArmStats& a
     }
 }
 
-std::string header_text(const RenderStats& all, const ArmStats& arm, bool constant) {
+std::string header_text(const RenderStats& stats, const ArmStats& arm, bool constant) {
     Json out = {{"format", moments_format}, {"renders", arm.files.size()}, {"constant", constant},
-        {"quantities", arm.quantities.size()}, {"rounding", arm.film.rounding}, {"tile", all.tiles.size},
+        {"quantities", arm.quantities.size()}, {"rounding", arm.film.rounding}, {"tile", stats.tiles.size},
         {"regions", Json::array()}};
     if (const Quantisation& steps = arm.film.steps; steps.levels > 0) {
         out["levels"] = steps.levels;
         out["srgb"] = steps.srgb;
     }
-    for (const PixelSet& set : all.regions) {
-        const Box box = set.box.value_or(all.frame());
+    for (const PixelSet& set : stats.regions) {
+        const Box box = set.box.value_or(stats.frame());
         out["regions"].push_back({{"name", set.name}, {"box", {box.x0, box.y0, box.x1, box.y1}}});
     }
     return out.dump();
@@ -149,26 +149,26 @@ bool has_moments(const std::string& path) {
     return first.starts_with("\x76\x2f\x31\x01") && first.find(moments_text) != std::string::npos;
 }
 
-void write_moments(const std::string& path, const RenderStats& all, std::size_t a, bool constant) {
-    const ArmStats& arm = all.arms[a];
+void write_moments(const std::string& path, const RenderStats& stats, std::size_t a, bool constant) {
+    const ArmStats& arm = stats.arms[a];
     if (arm.files.size() > moments_renders_most)
         throw OutputError(fmt::format("cannot write {}: expected moments of at most {} renders, found {}", path,
             moments_renders_most, arm.files.size()));
     const double scale = deviation_scale(arm.film);
     std::vector<Plane> planes = planes_of(arm, scale);
     try {
-        Imf::Header header(all.width, all.height);
+        Imf::Header header(stats.width, stats.height);
         header.compression() = Imf::ZIP_COMPRESSION;
         header.insert(moments_scale, Imf::FloatVectorAttribute({static_cast<float>(scale)}));
-        header.insert(moments_text, Imf::StringAttribute(header_text(all, arm, constant)));
-        const Chromaticities& c = all.primaries;
+        header.insert(moments_text, Imf::StringAttribute(header_text(stats, arm, constant)));
+        const Chromaticities& c = stats.primaries;
         Imf::addChromaticities(header, {point(c.red), point(c.green), point(c.blue), point(c.white)});
-        put_readings(header, all, arm);
+        put_readings(header, stats, arm);
         std::vector<std::vector<half>> halves;
         Imf::FrameBuffer buffer;
         for (const Plane& plane : planes) header.channels().insert(plane.name, Imf::Channel(plane.type));
         halves.reserve(planes.size());
-        const auto width = static_cast<std::ptrdiff_t>(all.width), rows = static_cast<std::ptrdiff_t>(all.height);
+        const auto width = static_cast<std::ptrdiff_t>(stats.width), rows = static_cast<std::ptrdiff_t>(stats.height);
         for (Plane& plane : planes) {  // rows run bottom-up: from the last one, with a negative stride
             const std::ptrdiff_t bytes = plane.type == Imf::HALF ? 2 : 4;
             char* first = reinterpret_cast<char*>(plane.values.data());
@@ -182,7 +182,7 @@ void write_moments(const std::string& path, const RenderStats& all, std::size_t 
         }
         Imf::OutputFile file(path.c_str(), header, 1);
         file.setFrameBuffer(buffer);
-        file.writePixels(all.height);
+        file.writePixels(stats.height);
     } catch (const std::exception& e) { throw OutputError(fmt::format("cannot write {}: {}", path, e.what())); }
 }
 

@@ -33,10 +33,10 @@ public:
         if (!table.is_object() || found == table.end()) fail(fmt::format("expected a key '{}'", key));
         return *found;
     }
-    std::size_t whole(const char* key, std::size_t least, std::size_t most) const {
+    std::size_t whole(const char* key, std::size_t least, std::size_t greatest) const {
         const Json& value = member(root_, key);
-        if (!value.is_number_unsigned() || value.get<std::uint64_t>() < least || value.get<std::uint64_t>() > most)
-            fail(fmt::format("{}: expected a whole number from {} to {}", key, least, most));
+        if (!value.is_number_unsigned() || value.get<std::uint64_t>() < least || value.get<std::uint64_t>() > greatest)
+            fail(fmt::format("{}: expected a whole number from {} to {}", key, least, greatest));
         return value.get<std::size_t>();
     }
     MomentsRegion region(const Json& value, int width, int height) const {
@@ -154,9 +154,10 @@ public:
 private:
     const ExrPart& part() const { return exr_.parts()[0]; }
     const ExrAttribute& attribute(const std::string& name) const {
-        const auto& all = part().attributes;
-        const auto found = std::find_if(all.begin(), all.end(), [&](const ExrAttribute& a) { return a.name == name; });
-        if (found == all.end()) fail(fmt::format("expected an attribute '{}', found none", name));
+        const auto& attributes = part().attributes;
+        const auto found =
+            std::find_if(attributes.begin(), attributes.end(), [&](const ExrAttribute& a) { return a.name == name; });
+        if (found == attributes.end()) fail(fmt::format("expected an attribute '{}', found none", name));
         return *found;
     }
     std::vector<double> finite_numbers(const std::string& name) const {
@@ -165,10 +166,10 @@ private:
             fail(fmt::format("attribute '{}': expected finite numbers", name));
         return {found.begin(), found.end()};
     }
-    std::vector<double> not_negative(const std::string& name, std::vector<double> all) const {
-        if (std::any_of(all.begin(), all.end(), [](double x) { return x < 0; }))
+    std::vector<double> not_negative(const std::string& name, std::vector<double> values) const {
+        if (std::any_of(values.begin(), values.end(), [](double x) { return x < 0; }))
             fail(fmt::format("attribute '{}': expected no negative numbers", name));
-        return all;
+        return values;
     }
 
     OpenFile open_;
@@ -176,7 +177,7 @@ private:
     MomentsText text_;
 };
 
-bool is_whole(double x, double most) { return x >= 0 && x <= most && x == std::floor(x); }
+bool is_whole(double x, double limit) { return x >= 0 && x <= limit && x == std::floor(x); }
 
 }  // namespace
 
@@ -188,15 +189,15 @@ MomentsHeader read_moments_header(const std::string& path) {
 namespace {
 
 /// Reads the renders in which each pixel is not finite.
-void read_failures(const MomentsFile& file, RenderStats& all, ArmStats& to) {
+void read_failures(const MomentsFile& file, RenderStats& stats, ArmStats& to) {
     if (!file.has("failed.N")) return;
     const std::vector<float> failed = file.planes({"failed.N"})[0];
-    const auto most = static_cast<double>(file.text().renders);
-    file.expect("failed.N", failed, [&](std::size_t i) { return is_whole(static_cast<double>(failed[i]), most); });
+    const auto renders = static_cast<double>(file.text().renders);
+    file.expect("failed.N", failed, [&](std::size_t i) { return is_whole(static_cast<double>(failed[i]), renders); });
     to.not_finite.assign(failed.size(), 0);
     for (std::size_t i = 0; i < failed.size(); ++i) {
         to.not_finite[i] = static_cast<std::uint32_t>(failed[i]);
-        if (failed[i] > 0) all.bad[i] = true;
+        if (failed[i] > 0) stats.bad[i] = true;
     }
 }
 
@@ -217,15 +218,15 @@ std::vector<float> read_spreads(const MomentsFile& file, const std::string& chan
 
 }  // namespace
 
-void read_moments_film(const std::string& path, const Rgb& weights, RenderStats& all, ArmStats& to) {
+void read_moments_film(const std::string& path, const Rgb& weights, RenderStats& stats, ArmStats& to) {
     const MomentsFile file(path);
-    if (file.width() != all.width || file.height() != all.height)
-        file.fail(fmt::format(
-            "expected moments of {} x {} pixels, found {} x {}", all.width, all.height, file.width(), file.height()));
-    const std::size_t pixels = all.bad.size();
+    if (file.width() != stats.width || file.height() != stats.height)
+        file.fail(fmt::format("expected moments of {} x {} pixels, found {} x {}", stats.width, stats.height,
+            file.width(), file.height()));
+    const std::size_t pixels = stats.bad.size();
     const bool grey = file.text().quantities == 1;
     const double scale = file.sizes(moments_scale, 1)[0], below = static_cast<double>(file.text().renders - 1);
-    read_failures(file, all, to);
+    read_failures(file, stats, to);
     MeanFilm& film = to.film;
     film.count = file.text().renders;
     film.rounding = file.text().rounding;
@@ -253,10 +254,10 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
 
 namespace {
 
-/// Returns the index of a region of `all` among those of the file.
-std::size_t region_in(const std::string& path, const MomentsText& text, const RenderStats& all, const PixelSet& set,
+/// Returns the index of a region of `stats` among those of the file.
+std::size_t region_in(const std::string& path, const MomentsText& text, const RenderStats& stats, const PixelSet& set,
     const ComparePlan& plan) {
-    const Box box = set.box.value_or(all.frame());
+    const Box box = set.box.value_or(stats.frame());
     for (std::size_t r = 0; r < text.regions.size(); ++r) {
         const Box& stored = text.regions[r].box;
         if (text.regions[r].name == set.name && stored.x0 == box.x0 && stored.y0 == box.y0 && stored.x1 == box.x1 &&
@@ -273,19 +274,19 @@ std::size_t region_in(const std::string& path, const MomentsText& text, const Re
 
 /// Returns the k-th of `count` values with this mean and this standard deviation.
 double spread_out(double mean, double deviation, std::size_t k, std::size_t count) {
-    const double n = static_cast<double>(count), at = static_cast<double>(k) - (n - 1) / 2;
-    return count > 1 ? mean + deviation * at / std::sqrt(n * (n + 1) / 12) : mean;
+    const double n = static_cast<double>(count), rank = static_cast<double>(k) - (n - 1) / 2;
+    return count > 1 ? mean + deviation * rank / std::sqrt(n * (n + 1) / 12) : mean;
 }
 
-TileReading tile_mean(const RenderStats& all, const MeanPlane& plane, std::size_t tile, double renders) {
-    const Box box = all.tiles.box(tile, all.width, all.height);
+TileReading tile_mean(const RenderStats& stats, const MeanPlane& plane, std::size_t tile, double renders) {
+    const Box box = stats.tiles.box(tile, stats.width, stats.height);
     TileReading out;
     double pixels = 0;
     for (int y = box.y0; y <= box.y1; ++y)
         for (int x = box.x0; x <= box.x1; ++x) {
             const auto i =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
-            if (all.bad[i]) continue;
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(stats.width) + static_cast<std::size_t>(x);
+            if (stats.bad[i]) continue;
             out.mean += plane.mean[i];
             out.spread += plane.m2[i] / renders;
             pixels += 1;
@@ -332,8 +333,8 @@ void read_region(const MomentsFile& file, std::size_t stored, std::size_t r, std
     }
 }
 
-void read_tiles(const MomentsFile& file, const RenderStats& all, std::size_t q, std::size_t stored, ArmStats& to) {
-    const std::size_t tiles = all.tiles.count(), renders = to.files.size();
+void read_tiles(const MomentsFile& file, const RenderStats& stats, std::size_t q, std::size_t stored, ArmStats& to) {
+    const std::size_t tiles = stats.tiles.count(), renders = to.files.size();
     const std::vector<double> deviations = file.sizes(moments_attribute("tiles", 0, stored), tiles),
                               largest = file.sizes(moments_attribute("tiles", 1, stored), tiles),
                               events = file.sizes(moments_attribute("events", 0, stored), 2);
@@ -342,7 +343,7 @@ void read_tiles(const MomentsFile& file, const RenderStats& all, std::size_t q, 
     readings.fall = events[1];
     readings.tiles.assign(renders, std::vector<TileReading>(tiles));
     for (std::size_t t = 0; t < tiles; ++t) {
-        const TileReading mean = tile_mean(all, to.film.of(q), t, static_cast<double>(renders));
+        const TileReading mean = tile_mean(stats, to.film.of(q), t, static_cast<double>(renders));
         for (std::size_t k = 0; k < renders; ++k)
             readings.tiles[k][t] = {
                 spread_out(mean.mean, deviations[t], k, renders), mean.spread, k == 0 ? largest[t] : 0};
@@ -351,19 +352,19 @@ void read_tiles(const MomentsFile& file, const RenderStats& all, std::size_t q, 
 
 }  // namespace
 
-void read_moments_regions(const std::string& path, const ComparePlan& plan, const RenderStats& all, ArmStats& to) {
+void read_moments_regions(const std::string& path, const ComparePlan& plan, const RenderStats& stats, ArmStats& to) {
     const std::size_t renders = to.files.size(), stored = to.film.planes.size();
     const MomentsFile file(path);
-    if (file.text().renders != renders || file.width() != all.width || file.height() != all.height)
+    if (file.text().renders != renders || file.width() != stats.width || file.height() != stats.height)
         file.fail("the file was changed while it was read");
-    to.regions.assign(renders, std::vector<RegionStats>(all.regions.size()));
-    to.quantities.assign(all.quantities, {});
-    to.power.assign(all.regions.size(), {});
-    if (!to.not_finite.empty()) to.failed_groups.assign(renders, std::vector<std::uint32_t>(all.regions.size()));
-    for (QuantityReadings& q : to.quantities) q.regions.assign(renders, std::vector<double>(all.regions.size()));
-    for (std::size_t r = 0; r < all.regions.size(); ++r)
-        read_region(file, region_in(path, file.text(), all, all.regions[r], plan), r, stored, to);
-    for (std::size_t q = 0; q < all.quantities; ++q) read_tiles(file, all, q, q < stored ? q : 0, to);
+    to.regions.assign(renders, std::vector<RegionStats>(stats.regions.size()));
+    to.quantities.assign(stats.quantities, {});
+    to.power.assign(stats.regions.size(), {});
+    if (!to.not_finite.empty()) to.failed_groups.assign(renders, std::vector<std::uint32_t>(stats.regions.size()));
+    for (QuantityReadings& q : to.quantities) q.regions.assign(renders, std::vector<double>(stats.regions.size()));
+    for (std::size_t r = 0; r < stats.regions.size(); ++r)
+        read_region(file, region_in(path, file.text(), stats, stats.regions[r], plan), r, stored, to);
+    for (std::size_t q = 0; q < stats.quantities; ++q) read_tiles(file, stats, q, q < stored ? q : 0, to);
 }
 
 }  // namespace crescent

@@ -30,26 +30,26 @@ MeanInterval spread_of(const ArmStats& arm, std::size_t tile) {
 }
 
 /// Returns the tiles of a region: those with at least half of their pixels in it.
-std::vector<std::size_t> tiles_in(const RenderStats& all, const PixelSet& set) {
-    std::vector<std::size_t> inside(all.tiles.count());
+std::vector<std::size_t> tiles_in(const RenderStats& stats, const PixelSet& set) {
+    std::vector<std::size_t> inside(stats.tiles.count());
     for (const std::uint32_t i : set.pixels)
-        ++inside[all.tiles.of(static_cast<int>(i) % all.width, static_cast<int>(i) / all.width)];
+        ++inside[stats.tiles.of(static_cast<int>(i) % stats.width, static_cast<int>(i) / stats.width)];
     std::vector<std::size_t> out;
     for (std::size_t t = 0; t < inside.size(); ++t) {
-        const Box box = all.tiles.box(t, all.width, all.height);
+        const Box box = stats.tiles.box(t, stats.width, stats.height);
         if (2 * inside[t] >= static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()))
             out.push_back(t);
     }
     return out;
 }
 
-NoiseResult::Histogram histogram(const RenderStats& all, const PixelSet& set, const NoiseResult& noise) {
+NoiseResult::Histogram histogram(const RenderStats& stats, const PixelSet& set, const NoiseResult& noise) {
     NoiseResult::Histogram out{
         set.name, std::vector<std::uint64_t>(noise_bins), std::vector<std::uint64_t>(noise_bins)};
-    for (const std::size_t t : tiles_in(all, set)) {
+    for (const std::size_t t : tiles_in(stats, set)) {
         if (std::isnan(noise.log2_ratio[t])) continue;
-        const double at = (noise.log2_ratio[t] + noise_range) / (2 * noise_range) * noise_bins;
-        const auto bin = static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, noise_bins - 1.0));
+        const double position = (noise.log2_ratio[t] + noise_range) / (2 * noise_range) * noise_bins;
+        const auto bin = static_cast<std::size_t>(std::clamp(std::floor(position), 0.0, noise_bins - 1.0));
         ++(noise.distinguished[t] ? out.different : out.rest)[bin];
     }
     return out;
@@ -70,19 +70,20 @@ std::string sentence(const NoiseResult& n, std::size_t tested) {
 
 }  // namespace
 
-NoiseResult compare_noise(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b, double alpha) {
+NoiseResult compare_noise(
+    const ComparePlan& plan, const RenderStats& stats, std::size_t a, std::size_t b, double alpha) {
     NoiseResult out;
     out.a = plan.arms[a].name;
     out.b = plan.arms[b].name;
     std::vector<double> p;
-    for (std::size_t t = 0; t < all.tiles.count(); ++t) {
-        const MeanInterval va = spread_of(all.arms[a], t), vb = spread_of(all.arms[b], t);
+    for (std::size_t t = 0; t < stats.tiles.count(); ++t) {
+        const MeanInterval va = spread_of(stats.arms[a], t), vb = spread_of(stats.arms[b], t);
         const bool both = va.mean > 0 && vb.mean > 0;
         out.log2_ratio.push_back(both ? math::log(va.mean / vb.mean) / std::numbers::ln2 : std::nan(""));
         p.push_back(both && va.n > 2 && vb.n > 2 ? welch_test(va, vb).p : std::nan(""));
     }
     out.distinguished = discoveries(p, alpha, false);
-    for (const PixelSet& set : all.regions) out.regions.push_back(histogram(all, set, out));
+    for (const PixelSet& set : stats.regions) out.regions.push_back(histogram(stats, set, out));
     out.sentence = sentence(
         out, static_cast<std::size_t>(std::count_if(p.begin(), p.end(), [](double x) { return !std::isnan(x); })));
     return out;
@@ -96,22 +97,22 @@ namespace {
 /// Returns the numbers in a file's name that vary within its arm and so identify the render.
 std::vector<std::uint64_t> own_numbers(const ArmStats& arm, std::size_t file) {
     std::vector<std::uint64_t> out;
-    const auto& own = arm.files[file].numbers;
-    for (std::size_t i = 0; i < own.size(); ++i) {
+    const auto& numbers = arm.files[file].numbers;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
         const bool varies = std::any_of(arm.files.begin(), arm.files.end(),
-            [&](const RenderFile& f) { return f.numbers.size() != own.size() || f.numbers[i] != own[i]; });
-        if (varies) out.push_back(own[i]);
+            [&](const RenderFile& f) { return f.numbers.size() != numbers.size() || f.numbers[i] != numbers[i]; });
+        if (varies) out.push_back(numbers[i]);
     }
-    return out.empty() ? own : out;
+    return out.empty() ? numbers : out;
 }
 
 /// Returns a - b, channel by channel.
-Render difference(const RenderStats& all, Render a, const Render& b) {
+Render difference(const RenderStats& stats, Render a, const Render& b) {
     for (const Render* r : {&std::as_const(a), &b})
-        if (r->width != all.width || r->height != all.height)
+        if (r->width != stats.width || r->height != stats.height)
             throw InputError({r->file, 0, 0},
-                fmt::format("expected {} x {} pixels as before, found {} x {}: the file has changed", all.width,
-                    all.height, r->width, r->height));
+                fmt::format("expected {} x {} pixels as before, found {} x {}: the file has changed", stats.width,
+                    stats.height, r->width, r->height));
     for (std::size_t i = 0; i < a.size(); ++i) {
         a.r[i] -= b.r[i];
         a.g[i] -= b.g[i];
@@ -130,16 +131,17 @@ std::vector<RenderPair> pairs_of(const ArmStats& a, const ArmStats& b) {
     for (std::size_t j = 0; j < b.files.size(); ++j) theirs.push_back(own_numbers(b, j));
     std::vector<RenderPair> out;
     for (std::size_t i = 0; i < a.files.size(); ++i) {
-        const std::vector<std::uint64_t> own = own_numbers(a, i);
-        const auto found = std::count(theirs.begin(), theirs.end(), own);
-        if (found != 1 || own.empty())
+        const std::vector<std::uint64_t> numbers = own_numbers(a, i);
+        const auto found = std::count(theirs.begin(), theirs.end(), numbers);
+        if (found != 1 || numbers.empty())
             throw InputError({a.files[i].path, 0, 0},
-                own.empty()
+                numbers.empty()
                     ? "--pair: expected a number in its name"
                     : fmt::format(
                           "--pair: expected one render of the other arm with the number {} in its name, found {}",
-                          fmt::join(own, ", "), found));
-        out.emplace_back(i, static_cast<std::size_t>(std::find(theirs.begin(), theirs.end(), own) - theirs.begin()));
+                          fmt::join(numbers, ", "), found));
+        out.emplace_back(
+            i, static_cast<std::size_t>(std::find(theirs.begin(), theirs.end(), numbers) - theirs.begin()));
     }
     if (out.size() != b.files.size())
         throw InputError({b.files[0].path, 0, 0}, "--pair: expected as many renders of one arm as of the other");
@@ -154,24 +156,24 @@ bool sharper_in_pairs(const std::vector<SeedPair>& shared, const ArmStats& a, co
     if (shared.size() < 3) return false;
     const double k = static_cast<double>(shared.size()), na = static_cast<double>(a.files.size()),
                  nb = static_cast<double>(b.files.size());
-    double left = 0;  // share of the variance of a difference that remains
-    for (const SeedPair& p : shared) left += (1 - p.correlation) / k;
+    double remaining = 0;  // share of the variance of a difference that remains
+    for (const SeedPair& p : shared) remaining += (1 - p.correlation) / k;
     const double paired = student_quantile(1 - level / 2, k - 1), apart = student_quantile(1 - level / 2, na + nb - 2);
-    return 2 * left / k * paired * paired < (1 / na + 1 / nb) * apart * apart;
+    return 2 * remaining / k * paired * paired < (1 / na + 1 / nb) * apart * apart;
 }
 
-PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b,
+PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& stats, std::size_t a, std::size_t b,
     std::vector<RenderPair> pairs, ProgressMonitor& monitor) {
-    const bool referred = b >= all.arms.size();
-    const ArmStats &first = all.arms[a], &second = referred ? *all.reference : all.arms[b];
+    const bool referred = b >= stats.arms.size();
+    const ArmStats &first = stats.arms[a], &second = referred ? *stats.reference : stats.arms[b];
     const std::string &layer = plan.arms[a].layer, &other_layer = referred ? plan.reference_layer : plan.arms[b].layer;
     PairedRenders out{std::move(pairs), {}};
     RenderSource source;
     source.read = [&](const std::string& path, const std::string&) {
         std::size_t k = 0;
         std::from_chars(path.data(), path.data() + path.size(), k);
-        return difference(all, all.source.read(first.files[out.pairs[k].first].path, layer),
-            all.source.read(second.files[out.pairs[k].second].path, other_layer));
+        return difference(stats, stats.source.read(first.files[out.pairs[k].first].path, layer),
+            stats.source.read(second.files[out.pairs[k].second].path, other_layer));
     };
     std::vector<std::string> paths;
     for (std::size_t k = 0; k < out.pairs.size(); ++k) {
@@ -180,7 +182,7 @@ PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& all, st
     }
     monitor.begin("differences of pairs", 2 * static_cast<double>(out.pairs.size()));
     each_render(source, paths, {}, monitor, [&](const Render& render) { out.differences.film.add(render); });
-    second_pass(plan, all, source, out.differences, {}, nullptr, monitor);
+    second_pass(plan, stats, source, out.differences, {}, nullptr, monitor);
     return out;
 }
 
@@ -220,10 +222,10 @@ std::string order_text(const std::vector<Ranked>& order) {
     return fmt::format("{}", fmt::join(out, "; "));
 }
 
-std::optional<Ranking> ranking(const CompareResult& result, std::size_t region, const Measure& by) {
+std::optional<Ranking> ranking(const CompareResult& result, std::size_t region, const Measure& measure) {
     std::vector<Ranked> order;
     for (const ArmResult& arm : result.arms) {
-        const MetricValue& value = arm.regions[region].metric(by.metric);
+        const MetricValue& value = arm.regions[region].metric(measure.metric);
         if (!value.value) return {};
         order.push_back({arm.name, value});
     }
@@ -232,9 +234,9 @@ std::optional<Ranking> ranking(const CompareResult& result, std::size_t region, 
     });
     Ranking out;
     out.region = result.arms[0].regions[region].region;
-    out.measure = by.words;
+    out.measure = measure.words;
     for (const Ranked& r : order) out.order.push_back(r.arm);
-    out.sentence = fmt::format("Noise in {}, {}: {}.", out.region, by.words, order_text(order));
+    out.sentence = fmt::format("Noise in {}, {}: {}.", out.region, measure.words, order_text(order));
     return out;
 }
 
@@ -246,8 +248,8 @@ std::vector<Ranking> rank(const CompareResult& result) {
     for (std::size_t r = 0; r < result.arms[0].regions.size(); ++r) {
         for (const auto measures :
             {std::span<const Measure>(at_equal_time), std::span<const Measure>(at_equal_samples)}) {
-            for (const Measure& by : measures) {
-                std::optional<Ranking> found = ranking(result, r, by);
+            for (const Measure& measure : measures) {
+                std::optional<Ranking> found = ranking(result, r, measure);
                 if (!found) continue;
                 out.push_back(std::move(*found));
                 break;
@@ -280,8 +282,9 @@ MetricValue slope_of(const CompareResult& result, const SppLadder& ladder, std::
         const double root = rmse.value ? 1 : 0.5;
         x.push_back(math::log(*result.arms[a].spp));
         y.push_back(root * math::log(*metric.value));
-        const bool known = metric.interval && metric.interval->first > 0;
-        half.push_back(known ? root * math::log(metric.interval->second / metric.interval->first) / 2 : std::nan(""));
+        const bool is_known = metric.interval && metric.interval->first > 0;
+        half.push_back(
+            is_known ? root * math::log(metric.interval->second / metric.interval->first) / 2 : std::nan(""));
     }
     const double n = static_cast<double>(x.size());
     const double middle = std::accumulate(x.begin(), x.end(), 0.0) / n;
@@ -317,9 +320,9 @@ std::vector<SppLadder> ladders_of(const CompareResult& result) {
         const ArmResult& arm = result.arms[a];
         const std::string name = ladder_name(arm);
         if (name.empty()) continue;
-        auto at = std::find_if(out.begin(), out.end(), [&](const SppLadder& l) { return l.name == name; });
-        if (at == out.end()) at = out.insert(at, {name, {}, {}});
-        at->arms.push_back(a);
+        auto found = std::find_if(out.begin(), out.end(), [&](const SppLadder& l) { return l.name == name; });
+        if (found == out.end()) found = out.insert(found, {name, {}, {}});
+        found->arms.push_back(a);
     }
     std::erase_if(out, [](const SppLadder& l) { return l.arms.size() < 2; });
     for (SppLadder& l : out)
@@ -393,10 +396,10 @@ const Radial& radial() {
         Radial r;
         for (std::size_t v = 0; v < size; ++v) {
             for (std::size_t u = 0; u < size; ++u) {
-                const long at = std::lround(math::hypot(frequency(u), frequency(v))) - 1;
-                const bool inside = at >= 0 && at < spectrum_bins;
-                r.bin[v * size + u] = inside ? static_cast<double>(at) : -1;
-                if (inside) r.count[static_cast<std::size_t>(at)] += 1;
+                const long bin = std::lround(math::hypot(frequency(u), frequency(v))) - 1;
+                const bool inside = bin >= 0 && bin < spectrum_bins;
+                r.bin[v * size + u] = inside ? static_cast<double>(bin) : -1;
+                if (inside) r.count[static_cast<std::size_t>(bin)] += 1;
             }
         }
         return r;
@@ -416,9 +419,9 @@ void add_block(std::vector<double>& power, int x0, int y0, const std::function<d
         for (std::size_t j = 0; j < size; ++j) column[j] = rows[j][u];
         column = transformed(column);
         for (std::size_t v = 0; v < size; ++v) {
-            const double at = radial().bin[v * size + u];
-            if (at < 0) continue;
-            const auto bin = static_cast<std::size_t>(at);
+            const double value = radial().bin[v * size + u];
+            if (value < 0) continue;
+            const auto bin = static_cast<std::size_t>(value);
             power[bin] += std::norm(column[v]) / static_cast<double>(size * size) / radial().count[bin];
         }
     }

@@ -22,10 +22,10 @@ struct SeedSamples {
     std::vector<std::uint32_t> pixels;  // block after block
     std::vector<std::size_t> ends;      // of each block in `pixels`
 };
-SeedSamples seed_samples(const RenderStats& all);
+SeedSamples seed_samples(const RenderStats& stats);
 
 /// Residuals of one render at those pixels over their standard deviation; 0 where there is none.
-std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, const SeedSamples& at);
+std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, const SeedSamples& samples);
 
 /// A render of each side, by index, and the correlation of their noise.
 struct SeedPair {
@@ -40,7 +40,7 @@ inline constexpr double shared_seed_level = 1e-3;
 /// residuals at shared_seed_level over all pairs of renders; of these, the pairs without another partner and with at
 /// least half of the largest correlation. Empty if a side has one render, or if its single renders are unknown
 /// (moments).
-std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, const ArmStats& b);
+std::vector<SeedPair> shared_seeds(const RenderStats& stats, const ArmStats& a, const ArmStats& b);
 
 // ---- The spectrum of an error image: Celarek, Jakob, Wimmer & Lehtinen 2019, "Quantifying the Error of Light
 // Transport Algorithms", Computer Graphics Forum 38(4): power of the discrete Fourier transform of Y's error, averaged
@@ -75,7 +75,7 @@ bool sharper_in_pairs(const std::vector<SeedPair>& shared, const ArmStats& a, co
 
 /// Reads both renders of each pair twice and returns the statistics of their differences; b = arms.size() is the
 /// reference.
-PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& all, std::size_t a, std::size_t b,
+PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& stats, std::size_t a, std::size_t b,
     std::vector<RenderPair> pairs, ProgressMonitor& monitor);
 
 }  // namespace crescent

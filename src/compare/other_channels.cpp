@@ -56,11 +56,11 @@ std::string differing_channels(const std::string& a, const std::string& b, const
     const OpenFile first(a), second(b);
     if (is_exr(first) && is_exr(second)) return of_exr(first, second);
     if (tested.channels == TestedChannels::rgba && tested.channel.empty()) return "";
-    ReadingOptions all = tested;
-    all.channel = "A";
+    ReadingOptions options = tested;
+    options.channel = "A";
     const auto alpha = [&](const std::string& path) {
         try {
-            return read_render(path, "", all).r;
+            return read_render(path, "", options).r;
         } catch (const InputError&) { return std::vector<float>(); }  // it has no alpha
     };
     const std::vector<float> ours = alpha(a), theirs = alpha(b);

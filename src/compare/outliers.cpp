@@ -22,13 +22,13 @@ constexpr double most_with_outliers = 0.1;
 /// A deviation below 10 standard deviations of a pixel is noise also in a region of a few pixels.
 constexpr double least_deviations = 10;
 
-double renders_of_both(const RenderStats& all) {
-    return static_cast<double>(all.arms[0].film.count + all.arms[1].film.count);
+double renders_of_both(const RenderStats& stats) {
+    return static_cast<double>(stats.arms[0].film.count + stats.arms[1].film.count);
 }
 
 /// Returns the sum of the squared deviations of one pixel from its mean over the renders of both sides.
-double pooled_squares(const RenderStats& all, std::size_t q, std::uint32_t i) {
-    const MeanFilm &a = all.arms[0].film, &b = all.arms[1].film;
+double pooled_squares(const RenderStats& stats, std::size_t q, std::uint32_t i) {
+    const MeanFilm &a = stats.arms[0].film, &b = stats.arms[1].film;
     const double na = static_cast<double>(a.count), nb = static_cast<double>(b.count),
                  apart = a.of(q).mean[i] - b.of(q).mean[i];
     return a.of(q).m2[i] + b.of(q).m2[i] + apart * apart * na * nb / (na + nb);
@@ -41,29 +41,30 @@ struct Bulk {
     double rest = 0;
 
     /// Returns the squared deviation above which a value is an outlier: the variance of the sum of a render.
-    double limit(const RenderStats& all, double renders) const {
-        const double variance = rest / (renders - 1), pixels = static_cast<double>(all.regions[region].pixels.size());
+    double limit(const RenderStats& stats, double renders) const {
+        const double variance = rest / (renders - 1), pixels = static_cast<double>(stats.regions[region].pixels.size());
         return std::max(variance, least_deviations * least_deviations * variance / pixels);
     }
 };
 
 /// Starts with the pixels of the smallest sums of squares, so that many outliers do not hide each other, and adds those
 /// that are no larger than an outlier.
-Bulk bulk_of(const RenderStats& all, std::size_t region, std::size_t quantity) {
+Bulk bulk_of(const RenderStats& stats, std::size_t region, std::size_t quantity) {
     Bulk out;
     out.region = region;
     out.quantity = quantity;
     std::vector<std::pair<double, std::uint32_t>> squares;
-    for (const std::uint32_t i : all.regions[region].pixels) squares.emplace_back(pooled_squares(all, quantity, i), i);
-    const auto most = static_cast<std::ptrdiff_t>(most_with_outliers * static_cast<double>(squares.size()));
-    if (most == 0) return out;
-    std::nth_element(squares.begin(), squares.begin() + most, squares.end(), std::greater<>());
+    for (const std::uint32_t i : stats.regions[region].pixels)
+        squares.emplace_back(pooled_squares(stats, quantity, i), i);
+    const auto count = static_cast<std::ptrdiff_t>(most_with_outliers * static_cast<double>(squares.size()));
+    if (count == 0) return out;
+    std::nth_element(squares.begin(), squares.begin() + count, squares.end(), std::greater<>());
     out.rest = std::accumulate(
-        squares.begin() + most, squares.end(), 0.0, [](double sum, const auto& pixel) { return sum + pixel.first; });
-    squares.resize(static_cast<std::size_t>(most));
+        squares.begin() + count, squares.end(), 0.0, [](double sum, const auto& pixel) { return sum + pixel.first; });
+    squares.resize(static_cast<std::size_t>(count));
     std::sort(squares.begin(), squares.end(), std::greater<>());
-    const double renders = renders_of_both(all), of_one = renders / (renders - 1);
-    while (!squares.empty() && squares.back().first * of_one <= out.limit(all, renders)) {
+    const double renders = renders_of_both(stats), of_one = renders / (renders - 1);
+    while (!squares.empty() && squares.back().first * of_one <= out.limit(stats, renders)) {
         out.rest += squares.back().first;
         squares.pop_back();
     }
@@ -74,13 +75,13 @@ Bulk bulk_of(const RenderStats& all, std::size_t region, std::size_t quantity) {
 /// The values of some pixels in every render.
 class PixelValues {
 public:
-    PixelValues(const RenderStats& all, std::vector<std::uint32_t> pixels, const std::array<std::string, 2>& layers,
+    PixelValues(const RenderStats& stats, std::vector<std::uint32_t> pixels, const std::array<std::string, 2>& layers,
         ProgressMonitor& monitor)
         : pixels_(std::move(pixels)) {
         for (std::size_t side = 0; side < 2; ++side) {
-            for (std::size_t k = 0; k < all.arms[side].files.size(); ++k) {
+            for (std::size_t k = 0; k < stats.arms[side].files.size(); ++k) {
                 monitor.check();
-                const Render render = all.source.read(all.arms[side].files[k].path, layers[side]);
+                const Render render = stats.source.read(stats.arms[side].files[k].path, layers[side]);
                 std::array<std::vector<double>, most_quantities> values;
                 for (const std::uint32_t i : pixels_) {
                     values[0].push_back(static_cast<double>(render.y(i)));
@@ -96,19 +97,19 @@ public:
 
     /// Returns the value with the largest deviation if it is an outlier among those of its pixel.
     std::optional<OutlierPixel> outlier(std::uint32_t pixel, std::size_t quantity) const {
-        const auto at =
+        const auto index =
             static_cast<std::size_t>(std::lower_bound(pixels_.begin(), pixels_.end(), pixel) - pixels_.begin());
         const double n = static_cast<double>(renders_.size());
         double sum = 0;
-        for (const Values& r : renders_) sum += r.values[quantity][at] / n;
+        for (const Values& r : renders_) sum += r.values[quantity][index] / n;
         double squares = 0, largest = -1;
         OutlierPixel out;
         for (const Values& r : renders_) {
-            const double value = r.values[quantity][at], off = value - sum;
-            squares += off * off;
-            if (off * off <= largest) continue;
-            largest = off * off;
-            out = {r.side, r.render, pixel, quantity, value, sum - off / (n - 1)};
+            const double value = r.values[quantity][index], deviation = value - sum;
+            squares += deviation * deviation;
+            if (deviation * deviation <= largest) continue;
+            largest = deviation * deviation;
+            out = {r.side, r.render, pixel, quantity, value, sum - deviation / (n - 1)};
         }
         const double lone = lone_share(renders_.size());
         return lone > 0 && largest > lone * squares ? std::optional(out) : std::nullopt;
@@ -125,25 +126,25 @@ private:
 
 /// Adds the outliers of one region and quantity. Pixels whose large squares are no single outlier are ordinary noise,
 /// which increases the limit for the others.
-void add_outliers(const RenderStats& all, Bulk bulk, const PixelValues& values, std::vector<OutlierPixel>& out) {
+void add_outliers(const RenderStats& stats, Bulk bulk, const PixelValues& values, std::vector<OutlierPixel>& out) {
     std::vector<OutlierPixel> single;
     for (const std::uint32_t i : bulk.large) {
         const auto found = values.outlier(i, bulk.quantity);
         if (found) single.push_back(*found);
-        else bulk.rest += pooled_squares(all, bulk.quantity, i);
+        else bulk.rest += pooled_squares(stats, bulk.quantity, i);
     }
-    const double renders = renders_of_both(all), of_one = renders / (renders - 1);
+    const double renders = renders_of_both(stats), of_one = renders / (renders - 1);
     while (!single.empty()) {  // smallest last
-        const double square = pooled_squares(all, bulk.quantity, single.back().pixel);
-        if (square * of_one > bulk.limit(all, renders)) break;
+        const double square = pooled_squares(stats, bulk.quantity, single.back().pixel);
+        if (square * of_one > bulk.limit(stats, renders)) break;
         bulk.rest += square;
         single.pop_back();
     }
     out.insert(out.end(), single.begin(), single.end());
 }
 
-void count_outlier_groups(const RenderStats& all, OutlierPixels& out) {
-    for (std::size_t s = 0; s < 2; ++s) out.by_render[s].assign(all.arms[s].files.size(), 0);
+void count_outlier_groups(const RenderStats& stats, OutlierPixels& out) {
+    for (std::size_t s = 0; s < 2; ++s) out.by_render[s].assign(stats.arms[s].files.size(), 0);
     for (std::size_t begin = 0; begin < out.pixels.size();) {
         const OutlierPixel& first = out.pixels[begin];
         std::vector<std::uint32_t> pixels;
@@ -152,15 +153,15 @@ void count_outlier_groups(const RenderStats& all, OutlierPixels& out) {
             if (p.side != first.side || p.render != first.render) break;
             pixels.push_back(p.pixel);
         }
-        const std::uint64_t groups = touching_groups(pixels, all.width);
+        const std::uint64_t groups = touching_groups(pixels, stats.width);
         out.groups[first.side] += groups;
         out.by_render[first.side][first.render] = groups;
     }
 }
 
-void set_outliers_apart(RenderStats& all, const OutlierPixels& found) {
-    for (const OutlierPixel& p : found.pixels) all.bad[p.pixel] = true;
-    for (PixelSet& set : all.regions) std::erase_if(set.pixels, [&](std::uint32_t i) { return all.bad[i]; });
+void set_outliers_apart(RenderStats& stats, const OutlierPixels& found) {
+    for (const OutlierPixel& p : found.pixels) stats.bad[p.pixel] = true;
+    for (PixelSet& set : stats.regions) std::erase_if(set.pixels, [&](std::uint32_t i) { return stats.bad[i]; });
 }
 
 /// A few bright pixels are in fewer tiles than this.
@@ -205,19 +206,19 @@ std::vector<std::size_t> lit_tiles(const ArmStats& side) {
 
 }  // namespace
 
-OutlierPixels find_outliers(RenderStats& all, const std::array<std::string, 2>& layers, ProgressMonitor& monitor) {
+OutlierPixels find_outliers(RenderStats& stats, const std::array<std::string, 2>& layers, ProgressMonitor& monitor) {
     OutlierPixels out;
     std::vector<Bulk> bulks;
     std::set<std::uint32_t> large;
-    for (std::size_t r = 0; r < all.regions.size(); ++r) {
-        for (std::size_t q = 0; q < all.quantities; ++q) {
-            const Bulk& bulk = bulks.emplace_back(bulk_of(all, r, q));
+    for (std::size_t r = 0; r < stats.regions.size(); ++r) {
+        for (std::size_t q = 0; q < stats.quantities; ++q) {
+            const Bulk& bulk = bulks.emplace_back(bulk_of(stats, r, q));
             large.insert(bulk.large.begin(), bulk.large.end());
         }
     }
     if (large.empty()) return out;
-    const PixelValues values(all, {large.begin(), large.end()}, layers, monitor);
-    for (Bulk& bulk : bulks) add_outliers(all, std::move(bulk), values, out.pixels);
+    const PixelValues values(stats, {large.begin(), large.end()}, layers, monitor);
+    for (Bulk& bulk : bulks) add_outliers(stats, std::move(bulk), values, out.pixels);
     const auto place = [](const OutlierPixel& p) { return std::tuple(p.side, p.render, p.pixel); };
     std::sort(out.pixels.begin(), out.pixels.end(), [&](const OutlierPixel& a, const OutlierPixel& b) {
         return place(a) != place(b) ? place(a) < place(b) : a.quantity < b.quantity;
@@ -225,17 +226,17 @@ OutlierPixels find_outliers(RenderStats& all, const std::array<std::string, 2>& 
     const auto last = std::unique(out.pixels.begin(), out.pixels.end(),
         [&](const OutlierPixel& a, const OutlierPixel& b) { return place(a) == place(b); });
     out.pixels.erase(last, out.pixels.end());
-    count_outlier_groups(all, out);
-    out.set_apart = out.total() > 0 && 2 * static_cast<double>(out.total()) <= renders_of_both(all);
-    if (out.set_apart) set_outliers_apart(all, out);
+    count_outlier_groups(stats, out);
+    out.set_apart = out.total() > 0 && 2 * static_cast<double>(out.total()) <= renders_of_both(stats);
+    if (out.set_apart) set_outliers_apart(stats, out);
     return out;
 }
 
-std::optional<OutlierRender> outlier_render(const RenderStats& all) {
+std::optional<OutlierRender> outlier_render(const RenderStats& stats) {
     std::optional<OutlierRender> out;
     std::size_t renders = 0;
     for (std::size_t s = 0; s < 2; ++s) {
-        const ArmStats &side = all.arms[s], &other = all.arms[1 - s];
+        const ArmStats &side = stats.arms[s], &other = stats.arms[1 - s];
         const std::size_t n = side.files.size();
         if (n < 3) continue;
         renders += n;
@@ -244,37 +245,37 @@ std::optional<OutlierRender> outlier_render(const RenderStats& all) {
         const double other_noise = other.files.size() > 1 ? tile_noise(other, tiles, other.files.size()) : 0;
         const double degrees = static_cast<double>(n - 2 + other.files.size() - 1);
         for (std::size_t k = 0; k < n; ++k) {
-            std::vector<double> off;
-            double own = 0, others = 0;
+            std::vector<double> deviations;
+            double own_mean = 0, others = 0;
             for (const std::size_t t : tiles) {
                 double sum = 0;
                 for (const auto& render : side.quantities[0].tiles) sum += render[t].mean;
                 const double value = side.quantities[0].tiles[k][t].mean;
                 const double rest = (sum - value) / static_cast<double>(n - 1);
-                own += value;
+                own_mean += value;
                 others += rest;
-                off.push_back(std::fabs(value - rest));
+                deviations.push_back(std::fabs(value - rest));
             }
             const double noise = std::max(other_noise, tile_noise(side, tiles, k));
             const double deviation =
-                reached_by_quarter(std::move(off)) / (noise * std::sqrt(1 + 1 / static_cast<double>(n - 1)));
+                reached_by_quarter(std::move(deviations)) / (noise * std::sqrt(1 + 1 / static_cast<double>(n - 1)));
             if (std::isnan(deviation) || (out && deviation <= out->deviation)) continue;
-            out = OutlierRender{s, k, 0, own / others, deviation, student_p(deviation, degrees)};
+            out = OutlierRender{s, k, 0, own_mean / others, deviation, student_p(deviation, degrees)};
         }
     }
     if (!out) return out;
     const double places = 2 * static_cast<double>(renders);
     out->p = std::min(1.0, out->p * places);
-    const std::uint64_t total = all.outliers.total();
+    const std::uint64_t total = stats.outliers.total();
     for (std::size_t s = 0; s < 2 && total > 0; ++s) {
-        for (std::size_t k = 0; k < all.arms[s].files.size(); ++k) {
-            const std::uint64_t own = all.outliers.by_render[s][k];
-            const double share = 1 / renders_of_both(all);
-            if (static_cast<double>(own) <= static_cast<double>(total) * share) continue;
-            const double p = std::min(1.0, binomial_exact(own, total, share) * places);
+        for (std::size_t k = 0; k < stats.arms[s].files.size(); ++k) {
+            const std::uint64_t own_count = stats.outliers.by_render[s][k];
+            const double share = 1 / renders_of_both(stats);
+            if (static_cast<double>(own_count) <= static_cast<double>(total) * share) continue;
+            const double p = std::min(1.0, binomial_exact(own_count, total, share) * places);
             if (p < out->p)
-                out =
-                    OutlierRender{.side = s, .render = k, .pixels = own, .ratio = std::nan(""), .deviation = 0, .p = p};
+                out = OutlierRender{
+                    .side = s, .render = k, .pixels = own_count, .ratio = std::nan(""), .deviation = 0, .p = p};
         }
     }
     return out;

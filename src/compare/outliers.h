@@ -39,7 +39,7 @@ struct OutlierPixels {
 /// squared deviation is larger than the variance, over renders, of the sum of all pixels of a region that have none:
 /// such a value decides the mean of its render. If there are at most half as many groups as renders, they are set
 /// apart: `all.bad` contains their pixels, and the regions do not.
-OutlierPixels find_outliers(RenderStats& all, const std::array<std::string, 2>& layers, ProgressMonitor& monitor);
+OutlierPixels find_outliers(RenderStats& stats, const std::array<std::string, 2>& layers, ProgressMonitor& monitor);
 
 /// A render that does not belong to the other renders of its side.
 struct OutlierRender {
@@ -57,6 +57,6 @@ struct OutlierRender {
 /// the larger of the two: a few bright pixels do not increase it. p is that of Student's t if all tiles deviate
 /// together, as with noise that is common to all pixels, times the number of renders and 2 (Bonferroni); with
 /// independent tiles it is smaller.
-std::optional<OutlierRender> outlier_render(const RenderStats& all);
+std::optional<OutlierRender> outlier_render(const RenderStats& stats);
 
 }  // namespace crescent

@@ -50,12 +50,12 @@ Json arm_json(const ArmResult& arm, const ArmStats& readings, const std::vector<
         if (!f.sample_channel.empty()) file["sample_channel"] = f.sample_channel;
         for (std::size_t r = 0; r < sets.size(); ++r) {
             const RegionStats& read = readings.regions[k][r];
-            Json& at = file["regions"][sets[r].name] = {{"y_mean", number(read.y)}};
+            Json& entry = file["regions"][sets[r].name] = {{"y_mean", number(read.y)}};
             if (referred) {
-                at["rmse"] = number(std::sqrt(read.mse));
-                at["relmse"] = number(read.relmse);
-                at["mape"] = number(read.mape);
-                at["fireflies"] = read.fireflies;
+                entry["rmse"] = number(std::sqrt(read.mse));
+                entry["relmse"] = number(read.relmse);
+                entry["mape"] = number(read.mape);
+                entry["fireflies"] = read.fireflies;
             }
         }
         out["files"].push_back(std::move(file));
@@ -73,19 +73,19 @@ Json found_json(const std::vector<Found>& found) {
     return out;
 }
 
-void put_test(Json& at, const MeanTest& t) {
-    at["a"] = number(t.a);
-    at["b"] = number(t.b);
-    if (!t.caveat.empty()) at["doubt"] = t.caveat;
+void put_test(Json& entry, const MeanTest& t) {
+    entry["a"] = number(t.a);
+    entry["b"] = number(t.b);
+    if (!t.caveat.empty()) entry["doubt"] = t.caveat;
     if (!t.why.empty()) {
-        at["why"] = t.why;
+        entry["why"] = t.why;
         return;
     }
-    at["p"] = number(t.welch.p);
-    at["standard_error"] = number(t.welch.se);
-    at["df"] = number(t.welch.df);
-    at["smallest"] = number(t.smallest);
-    at["paired"] = t.paired;
+    entry["p"] = number(t.welch.p);
+    entry["standard_error"] = number(t.welch.se);
+    entry["df"] = number(t.welch.df);
+    entry["smallest"] = number(t.smallest);
+    entry["paired"] = t.paired;
 }
 
 Json region_test_json(const MeanTest& t) {
@@ -93,15 +93,15 @@ Json region_test_json(const MeanTest& t) {
     put_test(out, t);
     if (!std::isnan(t.joint_p)) out["joint_p"] = number(t.joint_p);
     for (const MeanTest& c : t.channels) {
-        Json& at = out["channels"][c.region] = {{"differs", c.differs}};
-        put_test(at, c);
+        Json& entry = out["channels"][c.region] = {{"differs", c.differs}};
+        put_test(entry, c);
     }
     return out;
 }
 
-Json by_json(const std::vector<std::uint64_t>& by) {
+Json by_json(const std::vector<std::uint64_t>& counts) {
     Json out = Json::object();
-    for (std::size_t q = 0; q < by.size(); ++q) out[quantity_names[q]] = by[q];
+    for (std::size_t q = 0; q < counts.size(); ++q) out[quantity_names[q]] = counts[q];
     return out;
 }
 
@@ -191,20 +191,20 @@ const char* word_of(CompareResult::State state) {
 }  // namespace
 
 Json compare_result_json(
-    const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const Provenance& p) {
-    Json out = {{"format", "crescent comparison 2"}, {"title", plan.title}, {"width", all.width},
-        {"height", all.height}, {"state", word_of(result.state)}, {"message", result.sentence},
+    const ComparePlan& plan, const RenderStats& stats, const CompareResult& result, const Provenance& p) {
+    Json out = {{"format", "crescent comparison 2"}, {"title", plan.title}, {"width", stats.width},
+        {"height", stats.height}, {"state", word_of(result.state)}, {"message", result.sentence},
         {"found", found_about_means(result)}, {"alpha", number(plan.alpha)}, {"trim", number(plan.trim)}};
     for (std::size_t a = 0; a < result.arms.size(); ++a)
-        out["arms"].push_back(arm_json(result.arms[a], all.arms[a], all.regions, all.reference.has_value()));
+        out["arms"].push_back(arm_json(result.arms[a], stats.arms[a], stats.regions, stats.reference.has_value()));
     out["reference"] = nullptr;
-    if (all.reference) {
+    if (stats.reference) {
         Json reference = {{"files", Json::array()}, {"standard_error", Json::object()}};
-        for (std::size_t k = 0; k < all.reference->files.size(); ++k) {
-            const RenderFile& f = all.reference->files[k];
+        for (std::size_t k = 0; k < stats.reference->files.size(); ++k) {
+            const RenderFile& f = stats.reference->files[k];
             reference["files"].push_back(
                 {{"file", f.path}, {"hash", f.hash}, {"layer", f.layer}, {"spp", or_null(f.spp)},
-                    {"seconds", or_null(f.seconds)}, {"y_mean", number(all.reference->regions[k].back().y)}});
+                    {"seconds", or_null(f.seconds)}, {"y_mean", number(stats.reference->regions[k].back().y)}});
         }
         for (const auto& [region, error] : result.reference_error)
             reference["standard_error"][region] = std::isnan(error) ? Json(nullptr) : number(error);
@@ -216,12 +216,12 @@ Json compare_result_json(
         out["rankings"].push_back(
             {{"region", r.region}, {"by", r.measure}, {"order", r.order}, {"message", r.sentence}});
     for (const SppLadder& l : result.ladders) out["ladders"].push_back(ladder_json(l, result));
-    for (const BiasResult& b : result.bias) out["bias"].push_back(bias_json(b, all.width));
+    for (const BiasResult& b : result.bias) out["bias"].push_back(bias_json(b, stats.width));
     for (const NoiseResult& n : result.noise) out["noise"].push_back(noise_json(n));
     for (const AssertionResult& a : result.assertions)
         out["assertions"].push_back({{"name", a.name}, {"pass", a.pass}, {"measured", number(a.measured)},
             {"bound", number(a.bound)}, {"op", a.op}, {"text", a.text}});
-    out["bad_pixels"] = all.bad_pixels;
+    out["bad_pixels"] = stats.bad_pixels;
     out["warnings"] = result.warnings;
     out["provenance"] = {
         {"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler}, {"command", p.command}};
@@ -274,14 +274,14 @@ std::string compare_sarif(
 }
 
 std::string compare_summary(
-    const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const std::string& out_dir) {
+    const ComparePlan& plan, const RenderStats& stats, const CompareResult& result, const std::string& out_dir) {
     std::string out = plan.title + "\n";
     for (const std::string& w : result.warnings) out += "warning: " + w + "\n";
     if (!result.sentence.empty()) out += result.sentence + "\n";
     else if (!result.assertions.empty())
         out += fmt::format(
             "{} assertion{}.\n", result.assertions.size(), result.assertions.size() == 1 ? " holds" : "s hold");
-    for (const PixelSet& set : all.regions) {
+    for (const PixelSet& set : stats.regions) {
         out += fmt::format("\n{} ({} pixels)\n  {} {} {} {} {}\n", set.name, set.pixels.size(), left("arm", 18),
             right("renders", 8), right("RMSE", 32), right("variance", 12), right("mean Y", 12));
         for (const ArmResult& arm : result.arms) {

@@ -108,7 +108,7 @@ private:
 /// Estimates the squared error per pixel of a reference that is one file and does not state it: the variation between
 /// neighbouring pixels of an arm's mean minus the reference, without the arm's own share. A bias is assumed to be
 /// smooth.
-double roughness(const RenderStats& all, const ArmStats& arm, const PixelSet& set);
+double roughness(const RenderStats& stats, const ArmStats& arm, const PixelSet& set);
 
 }  // namespace crescent
 
@@ -139,7 +139,7 @@ Rect framed(Canvas& c, const Block& block, const Rect& slot);
 
 using Ticks = std::vector<std::pair<double, std::string>>;  // share of the bar, label
 /// Draws a vertical bar of colour(t), t from 0 at the bottom to 1 at the top.
-void bar(Canvas& c, const Rect& at, const std::function<Srgb8(double)>& colour, const Ticks& ticks);
+void bar(Canvas& c, const Rect& rect, const std::function<Srgb8(double)>& colour, const Ticks& ticks);
 /// Returns diverging() as colours of a bar.
 std::function<Srgb8(double)> signed_colours(Theme theme);
 
@@ -150,25 +150,25 @@ namespace crescent {
 /// Returns the plates renders, errors, ladders, bias-A-B and noise-A-B that have data. Throws OutputError without the
 /// font.
 std::map<std::string, Picture> compare_plates(
-    const ComparePlan& plan, const RenderStats& all, const CompareResult& result);
+    const ComparePlan& plan, const RenderStats& stats, const CompareResult& result);
 
 struct BiasPair;
 /// The signed difference of two means; the tiles and pixels in which it is significant; the ratio of two variances.
 Picture difference_plate(const BiasPair& sides, const std::string& a, const std::string& b, Theme theme);
 Picture bias_plate(const BiasPair& sides, const BiasResult& found, Theme theme);
-Picture noise_plate(const RenderStats& all, const NoiseResult& noise, Theme theme);
+Picture noise_plate(const RenderStats& stats, const NoiseResult& noise, Theme theme);
 /// Requires a ladder.
 Picture ladders_plate(const CompareResult& result, Theme theme);
 std::string ladders_svg(const CompareResult& result, Theme theme);
 
 /// metrics.json, which docs/compare.schema.json describes; equal inputs give equal values.
 Json compare_result_json(
-    const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const Provenance& provenance);
+    const ComparePlan& plan, const RenderStats& stats, const CompareResult& result, const Provenance& provenance);
 /// One metric per row, RFC 4180.
 std::string compare_csv(const CompareResult& result);
 std::string compare_junit(const ComparePlan& plan, const CompareResult& result);
 std::string compare_summary(
-    const ComparePlan& plan, const RenderStats& all, const CompareResult& result, const std::string& out_dir);
+    const ComparePlan& plan, const RenderStats& stats, const CompareResult& result, const std::string& out_dir);
 /// The method of places whose noise is correlated, as in the JSON.
 inline constexpr const char* dependent_method = "Benjamini-Yekutieli";
 /// One page that works offline, of compare_result_json() or of the file that it was stored in; `plates` are PNG bytes

@@ -60,27 +60,28 @@ Json remarks_of(const std::string& region, const Json& arms) {
 }
 
 /// A table of the metrics that some arm has in the region; the others are added to `not_measured` with their reasons.
-Json region_of(const std::string& region, const Json& all, std::vector<Json>& not_measured) {
+Json region_of(const std::string& region, const Json& regions, std::vector<Json>& not_measured) {
     std::vector<std::string> names;
     Json titles = Json::array(), arms = Json::array();
-    const Json& first = all.at(0).at("regions").at(region);
+    const Json& first = regions.at(0).at("regions").at(region);
     const auto metric = [&](const Json& arm, const std::string& name) {
         return metric_of(arm.at("regions").at(region).at("metrics").at(name));
     };
     for (const auto& [name, m] : first.at("metrics").items()) {
-        const bool any = std::ranges::any_of(all, [&](const Json& arm) { return metric(arm, name).value.has_value(); });
+        const bool any =
+            std::ranges::any_of(regions, [&](const Json& arm) { return metric(arm, name).value.has_value(); });
         if (any) {
             names.push_back(name);
             titles.push_back(title_of(name));
         } else not_measured.push_back({{"metric", title_of(name)}, {"why", m.value("why", "")}});
     }
-    for (const Json& arm : all) {
+    for (const Json& arm : regions) {
         Json cells = Json::array();
         for (const std::string& name : names) cells.push_back(cell_of(metric(arm, name)));
         arms.push_back({{"arm", arm.at("arm")}, {"renders", arm.at("renders")}, {"cells", cells}});
     }
     return {{"is_frame", region == whole_frame}, {"name", region}, {"pixels", first.at("pixels")}, {"metrics", titles},
-        {"arms", arms}, {"remarks", remarks_of(region, all)}};
+        {"arms", arms}, {"remarks", remarks_of(region, regions)}};
 }
 
 std::vector<std::string> region_names(const Json& result) {
@@ -173,7 +174,7 @@ std::vector<double> percents(const std::vector<std::uint64_t>& counts, double to
 /// A step chart of counts over equal bins from low to high; the second series is stacked on the first.
 std::string histogram(
     const std::vector<double>& below, const std::vector<double>& above, Axis x, const char* what, const char* title) {
-    std::vector<double> edges, zero, low, high, all{0};
+    std::vector<double> edges, zero, low, high, shown{0};
     const double width = (x.high - x.low) / static_cast<double>(below.size());
     for (std::size_t k = 0; k < below.size(); ++k) {
         const double first = below[k], second = first + (above.empty() ? 0 : above[k]);
@@ -183,9 +184,9 @@ std::string histogram(
             low.push_back(first);
             high.push_back(second);
         }
-        all.push_back(second);
+        shown.push_back(second);
     }
-    Chart chart(460, 200, std::move(x), linear_axis(what, all), title);
+    Chart chart(460, 200, std::move(x), linear_axis(what, shown), title);
     chart.band(edges, zero, low, "c1");
     if (!above.empty()) chart.band(edges, low, high, "c0");
     return chart.str();

@@ -32,26 +32,26 @@ Box Tiles::box(std::size_t tile, int width, int height) const {
 
 namespace {
 
-std::vector<std::string> matching(const std::string& pattern, const SourceLocation& at) {
+std::vector<std::string> matching(const std::string& pattern, const SourceLocation& place) {
     std::error_code ignored;
     if (std::filesystem::exists(pattern, ignored)) return {pattern};  // "render[1].exr" may be a name
     std::vector<std::string> paths;
-    for (MatchedFile& file : FilePattern(pattern, at, false).find()) paths.push_back(std::move(file.path));
+    for (MatchedFile& file : FilePattern(pattern, place, false).find()) paths.push_back(std::move(file.path));
     return paths;
 }
 
 }  // namespace
 
-std::vector<std::string> expand(const std::vector<std::string>& patterns, const SourceLocation& at) {
+std::vector<std::string> expand(const std::vector<std::string>& patterns, const SourceLocation& place) {
     std::vector<std::string> out;
     for (const std::string& pattern : patterns) {
-        const std::vector<std::string> paths = matching(pattern, at);
-        if (paths.empty()) throw InputError(at, fmt::format("expected files that match '{}', found none", pattern));
+        const std::vector<std::string> paths = matching(pattern, place);
+        if (paths.empty()) throw InputError(place, fmt::format("expected files that match '{}', found none", pattern));
         out.insert(out.end(), paths.begin(), paths.end());
     }
     std::sort(out.begin(), out.end());
     for (std::size_t i = 1; i < out.size(); ++i)
-        if (out[i] == out[i - 1]) throw InputError(at, fmt::format("the file '{}' is named twice", out[i]));
+        if (out[i] == out[i - 1]) throw InputError(place, fmt::format("the file '{}' is named twice", out[i]));
     return out;
 }
 
@@ -236,8 +236,8 @@ struct Outliers {
 
 class SecondPass {
 public:
-    SecondPass(const ComparePlan& plan, const RenderStats& all, const MeanFilm* reference)
-        : plan_(plan), all_(all), reference_(reference), samples_(seed_samples(all)) {}
+    SecondPass(const ComparePlan& plan, const RenderStats& stats, const MeanFilm* reference)
+        : plan_(plan), all_(stats), reference_(reference), samples_(seed_samples(stats)) {}
 
     void render(const Render& render, ArmStats& arm, std::vector<Largest>& largest,
         std::vector<std::vector<Largest>>& deviations) {
@@ -361,9 +361,10 @@ private:
             for (std::size_t k = c * chunk; k < std::min(set.pixels.size(), (c + 1) * chunk); ++k) {
                 const std::size_t i = set.pixels[k];
                 for (std::size_t q = 0; q < count; ++q) {
-                    const double value = static_cast<double>(values[q][i]), off = value - mean[q][i];
+                    const double value = static_cast<double>(values[q][i]), deviation = value - mean[q][i];
                     sum[q] += value;
-                    if (const auto x = static_cast<float>(off * off); x > least[q]) parts[c][q].large.push_back(x);
+                    if (const auto x = static_cast<float>(deviation * deviation); x > least[q])
+                        parts[c][q].large.push_back(x);
                 }
             }
             for (std::size_t q = 0; q < count; ++q) parts[c][q].sum = sum[q];
@@ -389,14 +390,15 @@ private:
                 const auto i =
                     static_cast<std::size_t>(j) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
                 if (all_.bad[i]) continue;
-                const double value = static_cast<double>(values[i]), off = value - plane.mean[i], spread = off * off;
+                const double value = static_cast<double>(values[i]), deviation = value - plane.mean[i],
+                             spread = deviation * deviation;
                 out.mean += value;
                 out.spread += spread;
                 pixels += 1;
                 out.largest = std::max(out.largest, spread);
                 if (spread < lone * plane.m2[i]) continue;
-                rare.rise = std::max(rare.rise, off);
-                rare.fall = std::max(rare.fall, -off);
+                rare.rise = std::max(rare.rise, deviation);
+                rare.fall = std::max(rare.fall, -deviation);
             }
         }
         out.mean /= pixels;
@@ -441,20 +443,21 @@ private:
 
 }  // namespace
 
-void second_pass(const ComparePlan& plan, const RenderStats& all, const RenderSource& source, ArmStats& arm,
+void second_pass(const ComparePlan& plan, const RenderStats& stats, const RenderSource& source, ArmStats& arm,
     const std::string& layer, const MeanFilm* reference, ProgressMonitor& monitor) {
-    SecondPass pass(plan, all, reference);
+    SecondPass pass(plan, stats, reference);
     std::vector<Largest> largest;
-    for (const PixelSet& set : all.regions) largest.emplace_back(tail_length(set.pixels.size() * arm.files.size()) + 1);
-    std::vector<std::vector<Largest>> deviations(all.quantities, largest);
-    arm.power.assign(all.regions.size(), {});
-    arm.quantities.assign(all.quantities, {});
+    for (const PixelSet& set : stats.regions)
+        largest.emplace_back(tail_length(set.pixels.size() * arm.files.size()) + 1);
+    std::vector<std::vector<Largest>> deviations(stats.quantities, largest);
+    arm.power.assign(stats.regions.size(), {});
+    arm.quantities.assign(stats.quantities, {});
     std::vector<std::string> paths;
     for (const RenderFile& file : arm.files) paths.push_back(file.path);
     each_render(
         source, paths, layer, monitor, [&](const Render& render) { pass.render(render, arm, largest, deviations); });
     for (const Largest& values : largest) arm.largest.push_back(values.falling());
-    for (std::size_t q = 0; q < all.quantities; ++q)
+    for (std::size_t q = 0; q < stats.quantities; ++q)
         for (const Largest& values : deviations[q]) arm.quantities[q].largest.push_back(values.falling());
 }
 

@@ -55,7 +55,7 @@ private:
 
 class FirstPass {
 public:
-    FirstPass(RenderStats& all, ProgressMonitor& monitor) : all_(all), monitor_(monitor) {}
+    FirstPass(RenderStats& stats, ProgressMonitor& monitor) : all_(stats), monitor_(monitor) {}
     /// Reads every file of an arm into `to`; `spp`: samples per pixel, if the plan states them. Throws InputError at
     /// the first file that does not fit.
     void arm(ArmStats& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name,
@@ -85,7 +85,7 @@ void each_render(const RenderSource& source, const std::vector<std::string>& pat
 
 /// Adds the statistics of each render of an arm (or of the reference) in each region and tile; its means must be known.
 /// Errors are measured if a `reference` is given.
-void second_pass(const ComparePlan& plan, const RenderStats& all, const RenderSource& source, ArmStats& arm,
+void second_pass(const ComparePlan& plan, const RenderStats& stats, const RenderSource& source, ArmStats& arm,
     const std::string& layer, const MeanFilm* reference, ProgressMonitor& monitor);
 
 }  // namespace crescent

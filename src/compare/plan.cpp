@@ -16,51 +16,51 @@ namespace crescent {
 
 namespace {
 
-Node text_node(const std::string& text, const SourceLocation& at) {
+Node text_node(const std::string& text, const SourceLocation& place) {
     Node node;
     node.kind = Node::Kind::text;
     node.text = text;
-    node.at = at;
+    node.at = place;
     return node;
 }
 
-void move_to(Node& node, const SourceLocation& at) {
-    node.at = at;
+void move_to(Node& node, const SourceLocation& place) {
+    node.at = place;
     for (Member& member : node.members) {
-        member.at = at;
-        move_to(member.value, at);
+        member.at = place;
+        move_to(member.value, place);
     }
 }
 
 /// Returns the value of a flag: parsed as TOML if the flag has it and it is valid, else as text, for which the parser
 /// reports what was expected.
-Node value_of(const CompareFlag& flag, const SourceLocation& at) {
-    if (!flag.toml) return text_node(flag.value, at);
+Node value_of(const CompareFlag& flag, const SourceLocation& place) {
+    if (!flag.toml) return text_node(flag.value, place);
     try {
         Node tree = read_toml("value = " + flag.value, flag.typed);
         if (tree.members.size() == 1) {
-            move_to(tree.members[0].value, at);
+            move_to(tree.members[0].value, place);
             return std::move(tree.members[0].value);
         }
     } catch (const InputError&) {}
-    return text_node(flag.value, at);
+    return text_node(flag.value, place);
 }
 
-Node& child(Node& parent, const std::string& key, const SourceLocation& at) {
+Node& child(Node& parent, const std::string& key, const SourceLocation& place) {
     if (Member* found = parent.find(key)) return found->value;
-    parent.members.push_back({key, at, Node{}});
-    parent.members.back().value.at = at;
+    parent.members.push_back({key, place, Node{}});
+    parent.members.back().value.at = place;
     return parent.members.back().value;
 }
 
 /// Flags extend lists ("--arm a=x.exr --arm a=y.exr") and replace all other values.
 void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
-    const SourceLocation at{flag.typed, 0, 0};
+    const SourceLocation place{flag.typed, 0, 0};
     Node* node = &root;
-    for (std::size_t i = 0; i + 1 < flag.path.size(); ++i) node = &child(*node, flag.path[i], at);
-    Node value = value_of(flag, at);
+    for (std::size_t i = 0; i + 1 < flag.path.size(); ++i) node = &child(*node, flag.path[i], place);
+    Node value = value_of(flag, place);
     const bool grows = flag.path.back() == "files" || flag.path == std::vector<std::string>{"reference"};
-    Node& to = child(*node, flag.path.back(), at);
+    Node& to = child(*node, flag.path.back(), place);
     if (!grows) {
         to = std::move(value);
         return;
@@ -68,9 +68,9 @@ void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
     if (begun.insert(fmt::format("{}", fmt::join(flag.path, "."))).second) {
         to = Node{};
         to.kind = Node::Kind::array;
-        to.at = at;
+        to.at = place;
     }
-    to.members.push_back({"", at, std::move(value)});
+    to.members.push_back({"", place, std::move(value)});
 }
 
 /// Paths in a file are relative to its folder, whose name is no pattern; those of flags to the current folder.
@@ -89,15 +89,15 @@ void from_folder(Node* node, const std::filesystem::path& folder, bool pattern) 
 void from_folder(Node& root, const std::string& file) {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
     if (folder.empty()) return;
-    const auto at = [](Node& node, const char* key) {
+    const auto member_of = [](Node& node, const char* key) {
         Member* found = node.find(key);
         return found ? &found->value : nullptr;
     };
-    from_folder(at(root, "reference"), folder, true);
+    from_folder(member_of(root, "reference"), folder, true);
     for (const auto& [table, key] : {std::pair{"arms", "files"}, std::pair{"masks", "file"}})
-        if (Node* named = at(root, table))
+        if (Node* named = member_of(root, table))
             for (Member& member : named->members)
-                from_folder(at(member.value, key), folder, std::string_view(key) == "files");
+                from_folder(member_of(member.value, key), folder, std::string_view(key) == "files");
 }
 
 void check_names(ParseContext& context, ComparePlan& plan) {

@@ -85,13 +85,13 @@ Rect framed(Canvas& c, const Block& block, const Rect& slot) {
     return r;
 }
 
-void bar(Canvas& c, const Rect& at, const std::function<Srgb8(double)>& colour, const Ticks& ticks) {
-    Block block(static_cast<int>(at.w), static_cast<int>(at.h));
+void bar(Canvas& c, const Rect& rect, const std::function<Srgb8(double)>& colour, const Ticks& ticks) {
+    Block block(static_cast<int>(rect.w), static_cast<int>(rect.h));
     for (int y = 0; y < block.height; ++y)
         for (int x = 0; x < block.width; ++x) block.set(x, y, colour(1 - (y + 0.5) / block.height));
-    framed(c, block, at);
+    framed(c, block, rect);
     for (const auto& [share, text] : ticks)
-        c.text({at.right() + 10, at.y + at.h * (1 - share) - 12, 84, 24}, text,
+        c.text({rect.right() + 10, rect.y + rect.h * (1 - share) - 12, 84, 24}, text,
             with(with(with_px(small_text, 15), bright), Vertical::middle));
 }
 
@@ -109,10 +109,10 @@ using namespace plates;
 
 constexpr std::size_t most_columns = 5;
 
-Box crop_of(const RenderStats& all) {
-    for (const PixelSet& set : all.regions)
+Box crop_of(const RenderStats& stats) {
+    for (const PixelSet& set : stats.regions)
         if (set.box && set.name != whole_frame) return *set.box;
-    return all.frame();
+    return stats.frame();
 }
 
 /// A column of a sheet: the whole frame above, the first region below it, at the same scale in every column.
@@ -123,30 +123,31 @@ struct Column {
 struct Fits {
     Fit whole, close;
 };
-Fits fits(const RenderStats& all, const Rect& band, std::size_t columns) {
+Fits fits(const RenderStats& stats, const Rect& band, std::size_t columns) {
     const double w = std::floor(column(band, columns, 0).w);
-    const Box crop = crop_of(all);
-    return {fit(all.width, all.height, w, 260), fit(crop.width(), crop.height(), w, 240)};
+    const Box crop = crop_of(stats);
+    return {fit(stats.width, stats.height, w, 260), fit(crop.width(), crop.height(), w, 240)};
 }
 
-void draw_plate(Canvas& c, const RenderStats& all, const Rect& band, const std::vector<Column>& columns) {
-    const Box crop = crop_of(all);
+void draw_plate(Canvas& c, const RenderStats& stats, const Rect& band, const std::vector<Column>& columns) {
+    const Box crop = crop_of(stats);
     for (std::size_t i = 0; i < columns.size(); ++i) {
         Rect slot = column(band, columns.size(), i);
         c.text({slot.x, slot.y, slot.w, 30}, escaped(columns[i].name), with(with_px(title_text, 22), Align::centre));
         slot.y += 36;
         const Rect r = framed(c, columns[i].whole, slot);
-        const double sx = r.w / all.width, sy = r.h / all.height;
+        const double sx = r.w / stats.width, sy = r.h / stats.height;
         const Rect cut{
-            r.x + crop.x0 * sx, r.y + (all.height - 1 - crop.y1) * sy, crop.width() * sx, crop.height() * sy};
-        if (crop.width() < all.width || crop.height() < all.height) outline_over(c, cut.inset(-1), photograph_accent);
+            r.x + crop.x0 * sx, r.y + (stats.height - 1 - crop.y1) * sy, crop.width() * sx, crop.height() * sy};
+        if (crop.width() < stats.width || crop.height() < stats.height)
+            outline_over(c, cut.inset(-1), photograph_accent);
         slot.y += r.h + 16;
         framed(c, columns[i].close, slot);
     }
 }
 
-std::string crop_words(const RenderStats& all) {
-    const Box crop = crop_of(all);
+std::string crop_words(const RenderStats& stats) {
+    const Box crop = crop_of(stats);
     return fmt::format("crop x {}–{}, y {}–{}", crop.x0, crop.x1, crop.y0, crop.y1);
 }
 
@@ -165,61 +166,62 @@ double scale_of(const std::vector<Residual>& residuals) {
     return top > 0 ? top : 1;
 }
 
-Picture errors(const RenderStats& all, const std::vector<Residual>& residuals, const std::string& about, Theme theme) {
+Picture errors(
+    const RenderStats& stats, const std::vector<Residual>& residuals, const std::string& about, Theme theme) {
     Canvas c(sheet_width, sheet_height, ground, 1, theme);
     header(c, true, "|Y − " + about + "| of one render of each arm, linear, one scale");
     Rect band = content_band;
     band.w -= bar_room;
     const double top = scale_of(residuals);
-    const Fits f = fits(all, band, residuals.size());
+    const Fits f = fits(stats, band, residuals.size());
     std::vector<Column> columns;
     for (const Residual& r : residuals) {
         const auto value = [&](int x, int y) {
-            return static_cast<double>(r.plane[static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) +
+            return static_cast<double>(r.plane[static_cast<std::size_t>(y) * static_cast<std::size_t>(stats.width) +
                        static_cast<std::size_t>(x)]) /
                 top;
         };
         columns.push_back(
-            {r.name, turbo_block(all.frame(), f.whole, value), turbo_block(crop_of(all), f.close, value)});
+            {r.name, turbo_block(stats.frame(), f.whole, value), turbo_block(crop_of(stats), f.close, value)});
     }
-    draw_plate(c, all, band, columns);
+    draw_plate(c, stats, band, columns);
     bar(c, {band.right() + gap, band.y + 40, 24, 360}, [](double t) { return turbo(t); },
         {{0, "0"}, {0.5, figures(top / 2, 3)}, {1, "≥ " + figures(top, 3)}});
     return finished(c,
         "Where each arm errs, in the units of the renders: the whole frame and, below it, the first region.",
-        "the scale ends at the 98th percentile of all pixels; " + crop_words(all));
+        "the scale ends at the 98th percentile of all pixels; " + crop_words(stats));
 }
 
 /// Draws the sheets of renders and errors; reads the first render of each arm, one at a time.
-void shown_renders(const ComparePlan& plan, const RenderStats& all, std::map<std::string, Picture>& out) {
-    const std::size_t arms = std::min(most_columns - (all.reference ? 1 : 0), all.arms.size());
-    const Fits f = fits(all, content_band, arms + (all.reference ? 1 : 0));
+void shown_renders(const ComparePlan& plan, const RenderStats& stats, std::map<std::string, Picture>& out) {
+    const std::size_t arms = std::min(most_columns - (stats.reference ? 1 : 0), stats.arms.size());
+    const Fits f = fits(stats, content_band, arms + (stats.reference ? 1 : 0));
     std::vector<Column> columns;
     std::vector<Residual> residuals;
     const auto add = [&](const std::string& name, const Render& render) {
         const View view{render.width, render.height, render.r.data(), render.g.data(), render.b.data(), nullptr};
-        columns.push_back({name, photograph_block(view, all.frame(), f.whole, plan.exposure),
-            photograph_block(view, crop_of(all), f.close, plan.exposure)});
+        columns.push_back({name, photograph_block(view, stats.frame(), f.whole, plan.exposure),
+            photograph_block(view, crop_of(stats), f.close, plan.exposure)});
     };
     for (std::size_t a = 0; a < arms; ++a) {
-        const Render r = all.source.read(all.arms[a].files[0].path, plan.arms[a].layer);
-        add(plan.arms[a].name, in_rec709(all, r));
-        const MeanFilm& about = all.reference ? all.reference->film : all.arms[a].film;
-        if (!all.reference && about.count < 2) continue;
+        const Render r = stats.source.read(stats.arms[a].files[0].path, plan.arms[a].layer);
+        add(plan.arms[a].name, in_rec709(stats, r));
+        const MeanFilm& about = stats.reference ? stats.reference->film : stats.arms[a].film;
+        if (!stats.reference && about.count < 2) continue;
         Residual residual{plan.arms[a].name, std::vector<float>(r.size())};
         for (std::size_t i = 0; i < r.size(); ++i)
             residual.plane[i] = static_cast<float>(std::fabs(static_cast<double>(r.y(i)) - about.y()[i]));
         residuals.push_back(std::move(residual));
     }
-    if (all.reference) add("reference", in_rec709(all, all.reference->film));
+    if (stats.reference) add("reference", in_rec709(stats, stats.reference->film));
     Canvas c(sheet_width, sheet_height, ground, 1, plan.theme);
     header(c, false, "one render of each arm");
-    draw_plate(c, all, content_band, columns);
-    const char* rest = arms < all.arms.size() ? "; further arms are not shown" : "";
+    draw_plate(c, stats, content_band, columns);
+    const char* rest = arms < stats.arms.size() ? "; further arms are not shown" : "";
     out["renders"] = finished(c, "The whole frame and, below it, the first region, enlarged alike in every column.",
-        fmt::format("exposure {}; {}{}", figures(plan.exposure), crop_words(all), rest));
+        fmt::format("exposure {}; {}{}", figures(plan.exposure), crop_words(stats), rest));
     if (!residuals.empty())
-        out["errors"] = errors(all, residuals, all.reference ? "Y<sub>ref</sub>" : "mean over renders", plan.theme);
+        out["errors"] = errors(stats, residuals, stats.reference ? "Y<sub>ref</sub>" : "mean over renders", plan.theme);
 }
 
 /// Returns whether a pair is drawn: of many arms, only the pairs with the first one, because a page would have too many
@@ -233,20 +235,20 @@ bool shown_pair(const CompareResult& result, const std::string& a, const std::st
 }  // namespace
 
 std::map<std::string, Picture> compare_plates(
-    const ComparePlan& plan, const RenderStats& all, const CompareResult& result) {
+    const ComparePlan& plan, const RenderStats& stats, const CompareResult& result) {
     std::map<std::string, Picture> out;
-    shown_renders(plan, all, out);
+    shown_renders(plan, stats, out);
     if (!result.ladders.empty()) out["ladders"] = ladders_plate(result, plan.theme);
     for (std::size_t k = 0; k < result.bias.size(); ++k) {
         const BiasResult& found = result.bias[k];
         if (!shown_pair(result, found.a, found.b)) continue;
-        const BiasPair sides(plan, all, result, found.arm_a, found.arm_b, found.shown());
+        const BiasPair sides(plan, stats, result, found.arm_a, found.arm_b, found.shown());
         const std::string pair = fmt::format("{}-{}", found.a, sides.referred ? "reference" : found.b);
         out["difference-" + pair] = difference_plate(sides, found.a, found.b, plan.theme);
         if (!found.tiles.p.empty()) out["bias-" + pair] = bias_plate(sides, found, plan.theme);
     }
     for (const NoiseResult& n : result.noise)
-        if (shown_pair(result, n.a, n.b)) out[fmt::format("noise-{}-{}", n.a, n.b)] = noise_plate(all, n, plan.theme);
+        if (shown_pair(result, n.a, n.b)) out[fmt::format("noise-{}-{}", n.a, n.b)] = noise_plate(stats, n, plan.theme);
     return out;
 }
 
@@ -328,8 +330,8 @@ using namespace plates;
 
 namespace {
 
-std::size_t pixel(const RenderStats& all, int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(x);
+std::size_t pixel(const RenderStats& stats, int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(stats.width) + static_cast<std::size_t>(x);
 }
 
 Rect titled(Canvas& c, const Rect& slot, const std::string& title) {
@@ -343,10 +345,10 @@ Ticks ends(double top) { return {{0, "≤ −" + figures(top, 2)}, {0.5, "0"}, {
 double visible(double t) { return std::copysign(0.2 + 0.8 * std::min(1.0, std::fabs(t)), t); }
 
 /// Draws one value per tile: `different` tiles in their colour, the others grey.
-Block tile_block(const RenderStats& all, const Fit& f, const std::vector<double>& value,
+Block tile_block(const RenderStats& stats, const Fit& f, const std::vector<double>& value,
     const std::vector<bool>& different, double top, Theme theme) {
-    return nearest_block(all.frame(), f, [&](int x, int y) {
-        const std::size_t t = all.tiles.of(std::clamp(x, 0, all.width - 1), std::clamp(y, 0, all.height - 1));
+    return nearest_block(stats.frame(), f, [&](int x, int y) {
+        const std::size_t t = stats.tiles.of(std::clamp(x, 0, stats.width - 1), std::clamp(y, 0, stats.height - 1));
         return diverging(std::isnan(value[t]) ? value[t] : different[t] ? visible(value[t] / top) : 0.0, theme);
     });
 }
@@ -415,10 +417,10 @@ Picture bias_plate(const BiasPair& s, const BiasResult& found, Theme theme) {
         if (f.quantity == s.quantity) top = std::max(top, std::fabs(f.a - f.b));
     top = top > 0 ? top : 1;
     const bool by_pixel = !found.pixel_p.empty();
-    const Rect left = titled(
+    const Rect left_rect = titled(
         c, column(band, by_pixel ? 2 : 1, 0), fmt::format("{} of {} tiles", found.tiles.different, found.tiles.tested));
-    const Fit f = fit(s.all.width, s.all.height, std::floor(left.w), std::floor(left.h));
-    framed(c, tile_block(s.all, f, tiles, found.tiles.differs, top, theme), left);
+    const Fit f = fit(s.all.width, s.all.height, std::floor(left_rect.w), std::floor(left_rect.h));
+    framed(c, tile_block(s.all, f, tiles, found.tiles.differs, top, theme), left_rect);
     if (by_pixel) {
         const Rect right =
             titled(c, column(band, 2, 1), fmt::format("{} of {} pixels", found.pixels_different, found.pixels_tested));
@@ -444,7 +446,7 @@ Picture bias_plate(const BiasPair& s, const BiasResult& found, Theme theme) {
             found.tiles.left_out));
 }
 
-Picture noise_plate(const RenderStats& all, const NoiseResult& n, Theme theme) {
+Picture noise_plate(const RenderStats& stats, const NoiseResult& n, Theme theme) {
     Canvas c(sheet_width, sheet_height, ground, 1, theme);
     header(c, true, fmt::format("log<sub>2</sub> of the variance of {} over that of {}", escaped(n.a), escaped(n.b)));
     Rect band = content_band;
@@ -453,8 +455,8 @@ Picture noise_plate(const RenderStats& all, const NoiseResult& n, Theme theme) {
     for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
         if (n.distinguished[t]) sizes.push_back(std::fabs(n.log2_ratio[t]));
     const double top = std::ceil(quantile(std::move(sizes), 0.95));
-    const Fit f = fit(all.width, all.height, std::floor(band.w), std::floor(band.h));
-    framed(c, tile_block(all, f, n.log2_ratio, n.distinguished, top, theme), band);
+    const Fit f = fit(stats.width, stats.height, std::floor(band.w), std::floor(band.h));
+    framed(c, tile_block(stats, f, n.log2_ratio, n.distinguished, top, theme), band);
     const auto ratio = [](double log2) {
         return log2 < 0 ? fmt::format("1/{:.0f}", math::exp2(-log2)) : fmt::format("{:.0f}", math::exp2(log2));
     };
@@ -464,7 +466,8 @@ Picture noise_plate(const RenderStats& all, const NoiseResult& n, Theme theme) {
         fmt::format("Orange: {} is noisier. Blue: {} is noisier. Grey: no difference found. Ground: one of them has no "
                     "noise.",
             escaped(n.a), escaped(n.b)),
-        fmt::format("tiles of {} × {} pixels, variance of one render over renders", all.tiles.size, all.tiles.size));
+        fmt::format(
+            "tiles of {} × {} pixels, variance of one render over renders", stats.tiles.size, stats.tiles.size));
 }
 
 }  // namespace crescent

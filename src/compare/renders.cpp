@@ -103,12 +103,12 @@ RenderSource files_read_with(const ReadingOptions& options) {
 
 namespace {
 
-void add_set(RenderStats& all, PixelSet set, const SourceLocation& at) {
-    if (set.pixels.empty()) throw InputError(at, set.name + ": expected a pixel above 0, found none");
-    const auto bad = [&](std::uint32_t i) { return all.bad[i]; };
+void add_set(RenderStats& stats, PixelSet set, const SourceLocation& place) {
+    if (set.pixels.empty()) throw InputError(place, set.name + ": expected a pixel above 0, found none");
+    const auto bad = [&](std::uint32_t i) { return stats.bad[i]; };
     std::copy_if(set.pixels.begin(), set.pixels.end(), std::back_inserter(set.left_out), bad);
     std::erase_if(set.pixels, bad);
-    all.regions.push_back(std::move(set));
+    stats.regions.push_back(std::move(set));
 }
 
 PixelSet boxed(const std::string& name, const Box& box, int width) {
@@ -126,25 +126,25 @@ PixelSet masked(CommonView& view, const MaskPlan& plan) {
     return set;
 }
 
-void regions(const ComparePlan& plan, RenderStats& all, CommonView& view) {
+void regions(const ComparePlan& plan, RenderStats& stats, CommonView& view) {
     for (const Region& r : plan.regions) {
-        if (r.box.x1 >= all.width || r.box.y1 >= all.height)
+        if (r.box.x1 >= stats.width || r.box.y1 >= stats.height)
             throw InputError(r.at,
                 fmt::format("regions.{}.box: expected a box on the image, x from 0 to {} and y from 0 to {}, found "
                             "[{}, {}, {}, {}]",
-                    r.name, all.width - 1, all.height - 1, r.box.x0, r.box.y0, r.box.x1, r.box.y1));
-        add_set(all, boxed(r.name, r.box, all.width), r.at);
+                    r.name, stats.width - 1, stats.height - 1, r.box.x0, r.box.y0, r.box.x1, r.box.y1));
+        add_set(stats, boxed(r.name, r.box, stats.width), r.at);
     }
-    for (const MaskPlan& m : plan.masks) add_set(all, masked(view, m), m.at);
-    add_set(all, boxed(whole_frame, all.frame(), all.width), {plan.file, 0, 0});
+    for (const MaskPlan& m : plan.masks) add_set(stats, masked(view, m), m.at);
+    add_set(stats, boxed(whole_frame, stats.frame(), stats.width), {plan.file, 0, 0});
 }
 
 /// Y alone if every render is grey.
-std::size_t quantities_of(const RenderStats& all) {
+std::size_t quantities_of(const RenderStats& stats) {
     const auto in_colour = [](const ArmStats& arm) { return arm.film.planes.size() > 1; };
-    const bool any = std::any_of(all.arms.begin(), all.arms.end(), in_colour);
-    if (!all.arms.empty() && all.arms[0].film.planes.size() == most_quantities) return most_quantities;
-    return any || (all.reference && in_colour(*all.reference)) ? colour_quantities : 1;
+    const bool any = std::any_of(stats.arms.begin(), stats.arms.end(), in_colour);
+    if (!stats.arms.empty() && stats.arms[0].film.planes.size() == most_quantities) return most_quantities;
+    return any || (stats.reference && in_colour(*stats.reference)) ? colour_quantities : 1;
 }
 
 }  // namespace
@@ -164,22 +164,22 @@ void each_render(const RenderSource& source, const std::vector<std::string>& pat
     }
 }
 
-Render in_rec709(const RenderStats& all, Render render) {
-    if (!same_primaries(all.primaries, {})) convert(render, conversion(all.primaries, {}));
+Render in_rec709(const RenderStats& stats, Render render) {
+    if (!same_primaries(stats.primaries, {})) convert(render, conversion(stats.primaries, {}));
     render.primaries = {};
     render.weights = luminance_weights_of({});
     return render;
 }
 
-Render in_rec709(const RenderStats& all, const MeanFilm& film) {
-    Render out("", all.width, all.height, Render::empty);
+Render in_rec709(const RenderStats& stats, const MeanFilm& film) {
+    Render out("", stats.width, stats.height, Render::empty);
     out.r = film.radiance(0);
     out.g = film.radiance(1);
     out.b = film.radiance(2);
-    if (all.displayed)
+    if (stats.displayed)
         for (std::vector<float>* plane : {&out.r, &out.g, &out.b})
             for (float& value : *plane) value = static_cast<float>(srgb_decode(static_cast<double>(value)));
-    return in_rec709(all, std::move(out));
+    return in_rec709(stats, std::move(out));
 }
 
 namespace {
@@ -220,44 +220,45 @@ RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor) {
 }
 
 RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source) {
-    RenderStats all;
+    RenderStats stats;
     const Files files = files_of(plan, source);
     const auto view = std::make_shared<CommonView>(plan, source.read);
     if (plan.crop) share_windows(*view, plan, files, monitor);
-    all.source = source;
-    all.source.read = [view](const std::string& path, const std::string& layer) { return view->read(path, layer); };
+    stats.source = source;
+    stats.source.read = [view](const std::string& path, const std::string& layer) { return view->read(path, layer); };
     monitor.begin("first pass: means", static_cast<double>(files.total));
-    FirstPass first(all, monitor);
-    all.arms.resize(plan.arms.size());
+    FirstPass first(stats, monitor);
+    stats.arms.resize(plan.arms.size());
     for (std::size_t a = 0; a < plan.arms.size(); ++a)
-        if (plan.arms[a].moments) first.moments(all.arms[a], files.arms[a].front());
-        else first.arm(all.arms[a], files.arms[a], plan.arms[a].layer, plan.arms[a].name, plan.arms[a].spp);
+        if (plan.arms[a].moments) first.moments(stats.arms[a], files.arms[a].front());
+        else first.arm(stats.arms[a], files.arms[a], plan.arms[a].layer, plan.arms[a].name, plan.arms[a].spp);
     if (!files.reference.empty())
-        first.arm(all.reference.emplace(), files.reference, plan.reference_layer, "the reference", {});
+        first.arm(stats.reference.emplace(), files.reference, plan.reference_layer, "the reference", {});
     first.report_warnings();
-    all.primaries = view->primaries();
-    all.tiles = Tiles(all.width, all.height);
-    all.bad_pixels = static_cast<std::uint64_t>(std::count(all.bad.begin(), all.bad.end(), true));
-    all.quantities = quantities_of(all);
-    regions(plan, all, *view);
+    stats.primaries = view->primaries();
+    stats.tiles = Tiles(stats.width, stats.height);
+    stats.bad_pixels = static_cast<std::uint64_t>(std::count(stats.bad.begin(), stats.bad.end(), true));
+    stats.quantities = quantities_of(stats);
+    regions(plan, stats, *view);
     if (plan.find_outliers && !plan.arms[0].moments && !plan.arms[1].moments)
-        all.outliers = find_outliers(all, {plan.arms[0].layer, plan.arms[1].layer}, monitor);
+        stats.outliers = find_outliers(stats, {plan.arms[0].layer, plan.arms[1].layer}, monitor);
     monitor.begin("second pass: statistics of each render", static_cast<double>(files.total));
-    const MeanFilm* truth = all.reference ? &all.reference->film : nullptr;
+    const MeanFilm* truth = stats.reference ? &stats.reference->film : nullptr;
     for (std::size_t a = 0; a < plan.arms.size(); ++a)
-        if (plan.arms[a].moments) read_moments_regions(files.arms[a].front(), plan, all, all.arms[a]);
-        else second_pass(plan, all, all.source, all.arms[a], plan.arms[a].layer, truth, monitor);
-    if (all.reference) second_pass(plan, all, all.source, *all.reference, plan.reference_layer, nullptr, monitor);
-    return all;
+        if (plan.arms[a].moments) read_moments_regions(files.arms[a].front(), plan, stats, stats.arms[a]);
+        else second_pass(plan, stats, stats.source, stats.arms[a], plan.arms[a].layer, truth, monitor);
+    if (stats.reference)
+        second_pass(plan, stats, stats.source, *stats.reference, plan.reference_layer, nullptr, monitor);
+    return stats;
 }
 
 // ---- PFM (Debevec) and NPY: consecutive floats after a header, read a row at a time.
 
 namespace {
 
-float float_at(const char* at, bool swap) {
+float float_at(const char* bytes_in, bool swap) {
     char bytes[sizeof(float)];
-    std::memcpy(bytes, at, sizeof bytes);
+    std::memcpy(bytes, bytes_in, sizeof bytes);
     if (swap) std::reverse(bytes, bytes + sizeof bytes);
     float out;
     std::memcpy(&out, bytes, sizeof out);
@@ -303,10 +304,10 @@ Render read_pfm(const OpenFile& file) {
     for (std::size_t j = 0, i = 0; j < static_cast<std::size_t>(h.height); ++j) {
         file.read(h.end + j * row, bytes);
         for (std::size_t x = 0; x < static_cast<std::size_t>(h.width); ++x, ++i) {
-            const char* at = bytes.data() + x * h.channels * sizeof(float);
+            const char* source = bytes.data() + x * h.channels * sizeof(float);
             float* planes[3] = {&out.r[i], &out.g[i], &out.b[i]};
             for (std::size_t c = 0; c < 3; ++c)
-                *planes[c] = float_at(at + (h.channels == 3 ? sizeof(float) * c : 0), h.swap);
+                *planes[c] = float_at(source + (h.channels == 3 ? sizeof(float) * c : 0), h.swap);
         }
     }
     return out;
@@ -340,10 +341,10 @@ Render read_npy(const OpenFile& file) {
         const std::size_t n = std::min(block, total - begin);
         file.read(h.end + begin * h.bytes, std::span(bytes).first(n * h.bytes));
         for (std::size_t k = 0; k < n; ++k) {
-            const std::size_t at = begin + k;  // by rows: (row, column, channel); by columns: the reverse
-            const std::size_t row = h.by_column ? at % rows : at / channels / columns;
-            const std::size_t column = h.by_column ? at / rows % columns : at / channels % columns;
-            const std::size_t channel = h.by_column ? at / rows / columns : at % channels;
+            const std::size_t index = begin + k;  // by rows: (row, column, channel); by columns: the reverse
+            const std::size_t row = h.by_column ? index % rows : index / channels / columns;
+            const std::size_t column = h.by_column ? index / rows % columns : index / channels % columns;
+            const std::size_t channel = h.by_column ? index / rows / columns : index % channels;
             (*planes[channel])[(rows - 1 - row) * columns + column] =
                 static_cast<float>(npy_number(h, bytes.data() + k * h.bytes));
         }

@@ -182,7 +182,7 @@ struct Tiles {
 };
 
 /// Returns the files that match the patterns, sorted by name; InputError if one matches nothing.
-std::vector<std::string> expand(const std::vector<std::string>& patterns, const SourceLocation& at);
+std::vector<std::string> expand(const std::vector<std::string>& patterns, const SourceLocation& place);
 
 /// The source of renders: files, or a program's memory.
 struct RenderSource {
@@ -217,8 +217,8 @@ struct RenderStats {
 };
 
 /// Converts a render, or the mean of a film, to Rec.709, as plates and FLIP show it.
-Render in_rec709(const RenderStats& all, Render render);
-Render in_rec709(const RenderStats& all, const MeanFilm& film);
+Render in_rec709(const RenderStats& stats, Render render);
+Render in_rec709(const RenderStats& stats, const MeanFilm& film);
 
 /// Reads all renders twice. Throws InputError if they do not fit each other.
 RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor, const RenderSource& source);
@@ -232,10 +232,10 @@ RenderStats read_all(const ComparePlan& plan, ProgressMonitor& monitor);
 inline constexpr std::size_t colour_quantities = 4, most_quantities = 5;  // with alpha
 inline constexpr const char* quantity_names[most_quantities] = {"Y", "R", "G", "B", "alpha"};
 
-/// Returns a quantity's share of a level if `of` quantities are tested.
-inline double level_share(std::size_t quantity, std::size_t of) {
-    if (of == 1) return 1;
-    return quantity == 0 ? 0.5 : 0.5 / static_cast<double>(of - 1);
+/// Returns a quantity's share of a level if `quantities` quantities are tested.
+inline double level_share(std::size_t quantity, std::size_t quantities) {
+    if (quantities == 1) return 1;
+    return quantity == 0 ? 0.5 : 0.5 / static_cast<double>(quantities - 1);
 }
 
 /// The p of "no quantity differs" (Bonferroni with those shares), and its quantity; NaN: none was tested.
@@ -263,8 +263,8 @@ inline JointP joint_p(std::span<const double> each) {
 /// Returns whether the file contains moments.
 bool has_moments(const std::string& path);
 
-/// Writes one arm of `all`. `constant`: all renders had the same pixels. Throws OutputError.
-void write_moments(const std::string& path, const RenderStats& all, std::size_t arm, bool constant);
+/// Writes one arm of `stats`. `constant`: all renders had the same pixels. Throws OutputError.
+void write_moments(const std::string& path, const RenderStats& stats, std::size_t arm, bool constant);
 
 /// The contents of the header, read without the pixels.
 struct MomentsHeader {
@@ -275,8 +275,8 @@ struct MomentsHeader {
 MomentsHeader read_moments_header(const std::string& path);
 
 /// Reads the mean and the variance of each pixel, for the first pass; `weights` of R, G and B in Y. Throws InputError.
-void read_moments_film(const std::string& path, const Rgb& weights, RenderStats& all, ArmStats& to);
-/// Reads the results of the second pass; the regions of `all` must be among those of the file. Throws InputError.
-void read_moments_regions(const std::string& path, const ComparePlan& plan, const RenderStats& all, ArmStats& to);
+void read_moments_film(const std::string& path, const Rgb& weights, RenderStats& stats, ArmStats& to);
+/// Reads the results of the second pass; the regions of `stats` must be among those of the file. Throws InputError.
+void read_moments_regions(const std::string& path, const ComparePlan& plan, const RenderStats& stats, ArmStats& to);
 
 }  // namespace crescent

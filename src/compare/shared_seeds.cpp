@@ -24,14 +24,14 @@ constexpr std::size_t pixels_a_block = 512;
 constexpr std::size_t blocks_least = 8;  // fewer blocks cannot reach this level
 
 /// Adds up to pixels_a_block pixels of a block, evenly spaced.
-void take_block(const RenderStats& all, const Box& box, SeedSamples& to) {
+void take_block(const RenderStats& stats, const Box& box, SeedSamples& to) {
     const std::size_t count = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height());
     const std::size_t taken = std::min(count, pixels_a_block);
     for (std::size_t k = 0; k < taken; ++k) {
-        const std::size_t at = k * count / taken, across = static_cast<std::size_t>(box.width());
-        const auto i = (static_cast<std::size_t>(box.y0) + at / across) * static_cast<std::size_t>(all.width) +
-            static_cast<std::size_t>(box.x0) + at % across;
-        if (!all.bad[i]) to.pixels.push_back(static_cast<std::uint32_t>(i));
+        const std::size_t index = k * count / taken, across = static_cast<std::size_t>(box.width());
+        const auto i = (static_cast<std::size_t>(box.y0) + index / across) * static_cast<std::size_t>(stats.width) +
+            static_cast<std::size_t>(box.x0) + index % across;
+        if (!stats.bad[i]) to.pixels.push_back(static_cast<std::uint32_t>(i));
     }
     to.ends.push_back(to.pixels.size());
 }
@@ -58,12 +58,12 @@ private:
 
 /// Returns the correlation of two renders' residuals, and whether it is above 0 at the level of the limits.
 Correlation correlation(
-    const std::vector<float>& a, const std::vector<float>& b, const SeedSamples& at, MeanLimits& limits) {
+    const std::vector<float>& a, const std::vector<float>& b, const SeedSamples& samples, MeanLimits& limits) {
     std::vector<double> blocks;
     double product = 0, squares_a = 0, squares_b = 0;
-    for (std::size_t block = 0, k = 0; block < at.ends.size(); ++block) {
+    for (std::size_t block = 0, k = 0; block < samples.ends.size(); ++block) {
         double sum = 0;
-        for (; k < at.ends[block]; ++k) {
+        for (; k < samples.ends[block]; ++k) {
             const double x = static_cast<double>(a[k]), y = static_cast<double>(b[k]);
             sum += x * y;
             squares_a += x * x;
@@ -115,11 +115,11 @@ std::vector<RenderPair> named_pairs(const ArmStats& a, const ArmStats& b) {
 
 /// Returns the deviations of one render of each pair from the mean of those renders, in the units of the renders, one
 /// row per pair.
-std::vector<std::vector<double>> deviations(
-    const ArmStats& arm, const SeedSamples& at, const std::vector<SeedPair>& pairs, std::size_t SeedPair::* render) {
-    std::vector<std::vector<double>> out(pairs.size(), std::vector<double>(at.pixels.size()));
-    for (std::size_t i = 0; i < at.pixels.size(); ++i) {
-        const double sd = std::sqrt(arm.film.variance(at.pixels[i]));
+std::vector<std::vector<double>> deviations(const ArmStats& arm, const SeedSamples& samples,
+    const std::vector<SeedPair>& pairs, std::size_t SeedPair::* render) {
+    std::vector<std::vector<double>> out(pairs.size(), std::vector<double>(samples.pixels.size()));
+    for (std::size_t i = 0; i < samples.pixels.size(); ++i) {
+        const double sd = std::sqrt(arm.film.variance(samples.pixels[i]));
         double mean = 0;
         for (std::size_t k = 0; k < pairs.size(); ++k) {
             out[k][i] = sd * static_cast<double>(arm.sampled[pairs[k].*render][i]);
@@ -132,12 +132,13 @@ std::vector<std::vector<double>> deviations(
 
 /// Estimates the correlations of the noise of pairs from deviations from the mean of the paired renders only, each
 /// pixel weighted by its variance on both sides.
-void estimate_correlations(const ArmStats& a, const ArmStats& b, const SeedSamples& at, std::vector<SeedPair>& pairs) {
-    const auto of_a = deviations(a, at, pairs, &SeedPair::a), of_b = deviations(b, at, pairs, &SeedPair::b);
+void estimate_correlations(
+    const ArmStats& a, const ArmStats& b, const SeedSamples& samples, std::vector<SeedPair>& pairs) {
+    const auto of_a = deviations(a, samples, pairs, &SeedPair::a), of_b = deviations(b, samples, pairs, &SeedPair::b);
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         double product = 0, squares_a = 0, squares_b = 0;
-        for (std::size_t i = 0; i < at.pixels.size(); ++i) {
-            const double variance = a.film.variance(at.pixels[i]) + b.film.variance(at.pixels[i]);
+        for (std::size_t i = 0; i < samples.pixels.size(); ++i) {
+            const double variance = a.film.variance(samples.pixels[i]) + b.film.variance(samples.pixels[i]);
             if (!(variance > 0)) continue;
             product += of_a[k][i] * of_b[k][i] / variance;
             squares_a += of_a[k][i] * of_a[k][i] / variance;
@@ -149,19 +150,19 @@ void estimate_correlations(const ArmStats& a, const ArmStats& b, const SeedSampl
 
 }  // namespace
 
-SeedSamples seed_samples(const RenderStats& all) {
-    const double side = std::sqrt(static_cast<double>(all.width) * all.height / blocks_wanted);
+SeedSamples seed_samples(const RenderStats& stats) {
+    const double side = std::sqrt(static_cast<double>(stats.width) * stats.height / blocks_wanted);
     const int size = std::max(2, static_cast<int>(side));
     SeedSamples out;
-    for (int y = 0; y < all.height; y += size)
-        for (int x = 0; x < all.width; x += size)
-            take_block(all, {x, y, std::min(all.width, x + size) - 1, std::min(all.height, y + size) - 1}, out);
+    for (int y = 0; y < stats.height; y += size)
+        for (int x = 0; x < stats.width; x += size)
+            take_block(stats, {x, y, std::min(stats.width, x + size) - 1, std::min(stats.height, y + size) - 1}, out);
     return out;
 }
 
-std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, const SeedSamples& at) {
+std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, const SeedSamples& samples) {
     std::vector<float> out;
-    for (const std::uint32_t i : at.pixels) {
+    for (const std::uint32_t i : samples.pixels) {
         const double variance = film.count > 1 ? film.variance(i) : 0;
         out.push_back(
             variance > 0 ? static_cast<float>((static_cast<double>(y[i]) - film.y()[i]) / std::sqrt(variance)) : 0);
@@ -169,16 +170,16 @@ std::vector<float> residuals(const std::vector<float>& y, const MeanFilm& film, 
     return out;
 }
 
-std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, const ArmStats& b) {
+std::vector<SeedPair> shared_seeds(const RenderStats& stats, const ArmStats& a, const ArmStats& b) {
     if (a.files.size() < 2 || b.files.size() < 2 || a.sampled.empty() || b.sampled.empty()) return {};
-    const SeedSamples at = seed_samples(all);
+    const SeedSamples samples = seed_samples(stats);
     MeanLimits limits(shared_seed_level / static_cast<double>(a.files.size() * b.files.size()));
     std::vector<SeedPair> found;
     Correlations all_r(a.files.size(), std::vector<double>(b.files.size()));
     double largest = 0;
     for (std::size_t i = 0; i < a.files.size(); ++i)
         for (std::size_t j = 0; j < b.files.size(); ++j) {
-            const Correlation c = correlation(a.sampled[i], b.sampled[j], at, limits);
+            const Correlation c = correlation(a.sampled[i], b.sampled[j], samples, limits);
             all_r[i][j] = c.r;
             if (c.found) {
                 found.push_back({i, j, c.r});
@@ -197,7 +198,7 @@ std::vector<SeedPair> shared_seeds(const RenderStats& all, const ArmStats& a, co
             found.clear();
             for (const auto& [i, j] : named) found.push_back({i, j, all_r[i][j]});
         }
-    if (found.size() > 1) estimate_correlations(a, b, at, found);
+    if (found.size() > 1) estimate_correlations(a, b, samples, found);
     return found;
 }
 

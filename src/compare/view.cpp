@@ -69,29 +69,31 @@ void check_frame(const Render& render) {
 void CommonView::share(const std::string& path, const std::string& layer) {
     const Render render = read_(path, layer);
     const Guard guard(lock_);
-    const PixelWindow own = intersection(render.data, render.display);
-    shared_ = shared_of_.empty() ? own : intersection(shared_, own);
+    const PixelWindow window = intersection(render.data, render.display);
+    shared_ = shared_of_.empty() ? window : intersection(shared_, window);
     if (shared_.empty())
         throw InputError({path, 0, 0},
             fmt::format("--crop: expected pixels that all renders have, found none: its data window is {}, those of {} "
                         "and others are elsewhere",
-                shown(own), shared_of_.empty() ? path : shared_of_));
+                shown(window), shared_of_.empty() ? path : shared_of_));
     if (shared_of_.empty()) shared_of_ = path;
 }
 
 Render CommonView::read_mask(const std::string& path) {
     Render mask = read_(path, "");
     const Guard guard(lock_);
-    const PixelWindow &own = mask.display, &frame = first_.display;
-    const auto fits = [&](const PixelWindow& w) { return own.width() == w.width() && own.height() == w.height(); };
+    const PixelWindow &of_mask = mask.display, &frame = first_.display;
+    const auto fits = [&](const PixelWindow& w) {
+        return of_mask.width() == w.width() && of_mask.height() == w.height();
+    };
     const PixelWindow window = crop_ ? shared_ : frame;
     const bool whole = fits(frame);
     if (!whole && !fits(window))
         throw InputError({path, 0, 0},
             fmt::format("expected {} x {} pixels as the renders have, found {} x {}", window.width(), window.height(),
-                own.width(), own.height()));
+                of_mask.width(), of_mask.height()));
     const PixelWindow& corner = whole ? frame : window;  // the origin of the mask is ignored
-    const std::int64_t x = corner.x0 - own.x0, y = corner.y0 - own.y0;
+    const std::int64_t x = corner.x0 - of_mask.x0, y = corner.y0 - of_mask.y0;
     const PixelWindow data = mask.data;
     mask.data = {data.x0 + x, data.y0 + y, data.x1 + x, data.y1 + y};
     place(mask, window);
@@ -105,19 +107,19 @@ PixelWindow CommonView::window_for(const Render& render) const {
 }
 
 void CommonView::check_fits(const Render& render) const {
-    const PixelWindow &own = render.display, &other = first_.display;
+    const PixelWindow &window = render.display, &other = first_.display;
     if (crop_) {
-        if (intersection(shared_, intersection(render.data, own)) == shared_) return;
+        if (intersection(shared_, intersection(render.data, window)) == shared_) return;
         throw InputError({render.file, 0, 0},
             fmt::format("expected the pixels {} that the renders share, found {}", shown(shared_), shown(render.data)));
     }
-    if (own.width() != other.width() || own.height() != other.height())
+    if (window.width() != other.width() || window.height() != other.height())
         throw InputError({render.file, 0, 0},
             fmt::format("expected {} x {} pixels as in {}, found {} x {}", other.width(), other.height(), first_.file,
-                own.width(), own.height()));
-    if (align_ == Alignment::display || (own == other && render.data == first_.data)) return;
+                window.width(), window.height()));
+    if (align_ == Alignment::display || (window == other && render.data == first_.data)) return;
     const bool data = render.data != first_.data;
-    const PixelWindow &a = data ? render.data : own, &b = data ? first_.data : other;
+    const PixelWindow &a = data ? render.data : window, &b = data ? first_.data : other;
     throw InputError({render.file, 0, 0},
         fmt::format("{} windows differ by {}: expected {} as in {}, found {}; --align display places data windows in "
                     "the display window (pixels outside of one are 0), --crop compares what all data windows share",

@@ -28,8 +28,8 @@ public:
     explicit Visit(const BiasPair& sides) : Visit(sides.all, sides.a, sides.b, sides.quantity) {
         if (sides.differences) paired_ = &sides.differences->film;
     }
-    Visit(const RenderStats& all, const ArmStats& a, const ArmStats& b, std::size_t quantity)
-        : all_(all), a_(a.film), b_(b.film), quantity_(quantity) {}
+    Visit(const RenderStats& stats, const ArmStats& a, const ArmStats& b, std::size_t quantity)
+        : all_(stats), a_(a.film), b_(b.film), quantity_(quantity) {}
 
     void pixel(std::size_t i) {
         if (all_.bad[i]) return;
@@ -99,11 +99,11 @@ std::vector<double> tile_variances(const ArmStats& arm, std::size_t quantity) {
 }
 
 /// The rule of RegionResult::mean_heavy, for deviations from the mean of one quantity.
-bool heavy_deviations(const RenderStats& all, const ArmStats& arm, std::size_t quantity, std::size_t region) {
+bool heavy_deviations(const RenderStats& stats, const ArmStats& arm, std::size_t quantity, std::size_t region) {
     const std::vector<float>& largest = arm.quantities[quantity].largest[region];
     const auto tail = fit_pooled_tail(std::span<const float>(largest));
     double sum = 0;
-    for (const std::uint32_t i : all.regions[region].pixels) sum += arm.film.of(quantity).m2[i];
+    for (const std::uint32_t i : stats.regions[region].pixels) sum += arm.film.of(quantity).m2[i];
     const double share = sum > 0 && !largest.empty() ? static_cast<double>(largest.front()) / sum : 0;
     return (tail && tail->k >= 1) || share > heavy_share;
 }
@@ -133,12 +133,12 @@ MeanInterval mean_and_error(std::span<const double> values) {
 }
 
 BiasPair::BiasPair(const ComparePlan& plan, const RenderStats& readings, const CompareResult& measured,
-    std::size_t first, std::size_t second, std::size_t of, const PairedRenders* paired)
+    std::size_t first, std::size_t second, std::size_t quantity_count, const PairedRenders* paired)
     : all(readings),
       a(readings.arms[first]),
       b(second < readings.arms.size() ? readings.arms[second] : *readings.reference),
       arm(measured.arms[first]),
-      quantity(of) {
+      quantity(quantity_count) {
     const Rgb weights = luminance_weights_of(all.primaries);  // a channel may be 1 / weight times as bright as Y
     referred = second >= readings.arms.size();
     brightest = plan.brightest.value_or(0);
@@ -308,11 +308,11 @@ double BiasPair::undetectable_difference(
     constexpr double roundings = 4;
     constexpr double reordered = 0x1p-18;  // of a float sum of up to 64 similar terms, each rounded to 2^-24
     const double rounded = a.film.rounding * std::fabs(mean_a) + b.film.rounding * std::fabs(mean_b);
-    const double left = variance > 0 ? std::min(1.0, rounded / std::sqrt(variance)) : 1;
+    const double left_over = variance > 0 ? std::min(1.0, rounded / std::sqrt(variance)) : 1;
     const double steps = quantised_difference(mean_a, mean_b, pixels, variance);
     const double arithmetic = differences ? reordered * (std::fabs(mean_a) + std::fabs(mean_b)) : 0;
     return std::max({missable_difference(mean_a - mean_b, pixels, level),
-        roundings * rounded * std::max(left, 1 / std::sqrt(pixels)), steps, arithmetic});
+        roundings * rounded * std::max(left_over, 1 / std::sqrt(pixels)), steps, arithmetic});
 }
 
 double BiasPair::quantised_difference(double mean_a, double mean_b, double pixels, double variance) const {
@@ -327,12 +327,12 @@ double BiasPair::quantised_difference(double mean_a, double mean_b, double pixel
     // by at most q / pi times their characteristic function at 2 pi / q, which is 1 / sqrt(1 + (2 pi sigma / q)^2) for
     // exponential noise and smaller for smoother noise.
     const double of_step = steps > 0 ? 2 * std::numbers::pi * std::sqrt(variance) / steps : 0;
-    const double left = std::min(1.0, 1 / std::sqrt(1 + of_step * of_step));
-    return safety * steps * (variance > 0 ? std::max(left / std::numbers::pi, 1 / std::sqrt(pixels)) : 1);
+    const double share = std::min(1.0, 1 / std::sqrt(1 + of_step * of_step));
+    return safety * steps * (variance > 0 ? std::max(share / std::numbers::pi, 1 / std::sqrt(pixels)) : 1);
 }
 
-double roughness(const RenderStats& all, const ArmStats& arm, const PixelSet& set) {
-    Visit visit(all, arm, *all.reference, 0);
+double roughness(const RenderStats& stats, const ArmStats& arm, const PixelSet& set) {
+    Visit visit(stats, arm, *stats.reference, 0);
     for (const std::uint32_t i : set.pixels) visit.pixel(i);
     return visit.done(1).b;
 }
@@ -357,21 +357,22 @@ std::string of_channel(std::size_t quantity) {
     return quantity == 0 ? "" : fmt::format("{} ", quantity_names[quantity]);
 }
 
-std::string places(const std::vector<Found>& found, std::uint64_t all) {
+std::string places(const std::vector<Found>& found, std::uint64_t total) {
     std::vector<std::string> out;
     for (const Found& f : found)
         out.push_back(fmt::format("{} ({}{})", place(f), of_channel(f.quantity), relative(f.a, f.b)));
-    return fmt::format("{}{}", fmt::join(out, ", "), all > found.size() ? " and more" : "");
+    return fmt::format("{}{}", fmt::join(out, ", "), total > found.size() ? " and more" : "");
 }
 
 /// Returns " in R", or " (12 most in R, 4 in B)": the quantities in which places differ the most; "" if only Y.
-std::string by_quantity(const std::vector<std::uint64_t>& by) {
+std::string by_quantity(const std::vector<std::uint64_t>& counts) {
     std::vector<std::string> out;
-    for (std::size_t q = 0; q < by.size(); ++q)
-        if (by[q]) out.push_back(fmt::format("{} {}in {}", by[q], out.empty() ? "most " : "", quantity_names[q]));
-    if (out.empty() || (out.size() == 1 && by[0])) return "";
+    for (std::size_t q = 0; q < counts.size(); ++q)
+        if (counts[q])
+            out.push_back(fmt::format("{} {}in {}", counts[q], out.empty() ? "most " : "", quantity_names[q]));
+    if (out.empty() || (out.size() == 1 && counts[0])) return "";
     if (out.size() > 1) return fmt::format(" ({})", fmt::join(out, ", "));
-    const auto q = std::find_if(by.begin(), by.end(), [](std::uint64_t n) { return n > 0; }) - by.begin();
+    const auto q = std::find_if(counts.begin(), counts.end(), [](std::uint64_t n) { return n > 0; }) - counts.begin();
     return fmt::format(" in {}", quantity_names[q]);
 }
 
@@ -382,9 +383,9 @@ void mean_difference(const BiasResult& b, const std::string& region, const std::
             b.b, figures(t.b), relative(t.a, t.b), t.welch.p));
 }
 
-std::vector<std::string> differences(const RenderStats& all, const BiasResult& b) {
+std::vector<std::string> differences(const RenderStats& stats, const BiasResult& b) {
     std::vector<std::string> out;
-    if (b.non_finite.differs()) out.push_back(failing_pixels(all, b));
+    if (b.non_finite.differs()) out.push_back(failing_pixels(stats, b));
     for (const MeanTest& t : b.regions) {
         mean_difference(b, t.region, quantity_names[0], t, out);
         for (const MeanTest& channel : t.channels) mean_difference(b, t.region, channel.region, channel, out);
@@ -402,11 +403,11 @@ std::string counted(std::size_t count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-std::string renders_of(std::uint32_t least, std::uint32_t most, std::size_t of) {
-    if (most == 0) return "in none";
-    if (least == of) return of == 1 ? "in its render" : fmt::format("in all {} renders", of);
-    if (least == most) return fmt::format("in {} of {} renders", most, of);
-    return fmt::format("in {} to {} of {} renders", least, most, of);
+std::string renders_of(std::uint32_t least, std::uint32_t greatest, std::size_t renders) {
+    if (greatest == 0) return "in none";
+    if (least == renders) return renders == 1 ? "in its render" : fmt::format("in all {} renders", renders);
+    if (least == greatest) return fmt::format("in {} of {} renders", greatest, renders);
+    return fmt::format("in {} to {} of {} renders", least, greatest, renders);
 }
 
 std::string failing(const FailingPixels& pixels, const std::string& name, std::size_t renders, const std::string& other,
@@ -462,14 +463,14 @@ std::string missed_events_sentence(const BiasResult& b) {
 
 }  // namespace
 
-std::string failing_pixels(const RenderStats& all, const BiasResult& b) {
-    const std::size_t renders_a = all.arms[b.arm_a].files.size(),
-                      renders_b = (b.arm_b < all.arms.size() ? all.arms[b.arm_b] : *all.reference).files.size();
+std::string failing_pixels(const RenderStats& stats, const BiasResult& b) {
+    const std::size_t renders_a = stats.arms[b.arm_a].files.size(),
+                      renders_b = (b.arm_b < stats.arms.size() ? stats.arms[b.arm_b] : *stats.reference).files.size();
     std::vector<std::string> out;
     if (!b.non_finite.a.pixels.empty())
-        out.push_back(failing(b.non_finite.a, b.a, renders_a, b.b, renders_b, all.width));
+        out.push_back(failing(b.non_finite.a, b.a, renders_a, b.b, renders_b, stats.width));
     if (!b.non_finite.b.pixels.empty())
-        out.push_back(failing(b.non_finite.b, b.b, renders_b, b.a, renders_a, all.width));
+        out.push_back(failing(b.non_finite.b, b.b, renders_b, b.a, renders_a, stats.width));
     const bool everywhere = (b.non_finite.a.pixels.empty() || b.non_finite.a.least == renders_a) &&
         (b.non_finite.b.pixels.empty() || b.non_finite.b.least == renders_b);
     for (const FailedGroups& g : b.non_finite.groups)
@@ -501,14 +502,14 @@ std::string single(const BiasResult& b) {
 
 }  // namespace
 
-std::string sentence_of(const RenderStats& all, const BiasResult& b, double alpha) {
+std::string sentence_of(const RenderStats& stats, const BiasResult& b, double alpha) {
     if (b.identical)
         return fmt::format(
             "{} and {} have the same R, G and B in every pixel of every render; other channels are not compared.{}",
             b.a, b.b, excluded(b));
     const std::string notes = excluded(b) + seeds(b);
     if (b.differs())
-        return fmt::format("{} differs from {}: {}.{}{}", b.a, b.b, fmt::join(differences(all, b), "; "),
+        return fmt::format("{} differs from {}: {}.{}{}", b.a, b.b, fmt::join(differences(stats, b), "; "),
             missed_events_sentence(b), notes);
     if (b.single) return single(b) + "." + notes;
     std::vector<std::string> found, not_tested;

@@ -26,22 +26,22 @@ std::string to_string(const Comparison& c) {
     return fmt::format("{} {} {}", to_string(c.left), c.op, to_string(c.right));
 }
 
-bool holds(double left, std::string_view op, double right) {
-    if (std::isnan(left) || std::isnan(right)) return false;
-    if (op == "<") return left < right;
-    if (op == "<=") return left <= right;
-    if (op == ">") return left > right;
-    if (op == ">=") return left >= right;
-    return op == "==" && left == right;
+bool holds(double value, std::string_view op, double right) {
+    if (std::isnan(value) || std::isnan(right)) return false;
+    if (op == "<") return value < right;
+    if (op == "<=") return value <= right;
+    if (op == ">") return value > right;
+    if (op == ">=") return value >= right;
+    return op == "==" && value == right;
 }
 
 // ---- Parses text to a ParsedQuantity, by recursive descent over one line.
 
 namespace {
 
-std::vector<std::string> all_words(const std::vector<QuantityWord>& known) {
+std::vector<std::string> all_words(const std::vector<QuantityWord>& quantities) {
     std::vector<std::string> words;
-    for (const QuantityWord& w : known) words.emplace_back(w.word);
+    for (const QuantityWord& w : quantities) words.emplace_back(w.word);
     return words;
 }
 
@@ -117,31 +117,32 @@ private:
         const std::size_t dot = name.find('.');
         q.word = name.substr(0, dot);
         if (dot != std::string::npos) q.region = name.substr(dot + 1);
-        const auto known =
+        const auto quantity =
             std::find_if(words_.begin(), words_.end(), [&](const QuantityWord& w) { return w.word == q.word; });
-        if (known == words_.end()) {
+        if (quantity == words_.end()) {
             const std::vector<std::string> valid = all_words(words_);
             why_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(valid, ", "),
                 hint(q.word, valid));
             return false;
         }
-        if (known->of_region != !q.region.empty()) {
-            const bool whole_image = known->of_region && known->adapter == QuantityOf::compared;
-            why_ = fmt::format("expected {}{}, found '{}'", form_of(*known),
+        if (quantity->of_region != !q.region.empty()) {
+            const bool whole_image = quantity->of_region && quantity->adapter == QuantityOf::compared;
+            why_ = fmt::format("expected {}{}, found '{}'", form_of(*quantity),
                 whole_image ? ", where REGION is a region, a mask or 'frame', the whole image" : "",
                 name.substr(0, 64));
             return false;
         }
-        return known->adapter == QuantityOf::none || brackets(q, *known);
+        return quantity->adapter == QuantityOf::none || brackets(q, *quantity);
     }
 
-    bool brackets(ParsedQuantity& q, const QuantityWord& known) {
-        if (!take('(')) return fail(fmt::format("'(' as in {}", form_of(known)));
+    bool brackets(ParsedQuantity& q, const QuantityWord& quantity) {
+        if (!take('(')) return fail(fmt::format("'(' as in {}", form_of(quantity)));
         q.adapter = word();
-        if (q.adapter.empty()) return fail(fmt::format("a name as in {}", form_of(known)));
-        while (known.adapter == QuantityOf::run && take(','))
+        if (q.adapter.empty()) return fail(fmt::format("a name as in {}", form_of(quantity)));
+        while (quantity.adapter == QuantityOf::run && take(','))
             if (!argument(q)) return false;
-        return take(')') || fail(known.adapter == QuantityOf::compared ? "')', for films have neither n nor s" : "')'");
+        return take(')') ||
+            fail(quantity.adapter == QuantityOf::compared ? "')', for films have neither n nor s" : "')'");
     }
 
     bool argument(ParsedQuantity& q) {
@@ -167,9 +168,9 @@ private:
     const std::vector<QuantityWord>& words_;
 };
 
-template <class T> std::string missing(const std::vector<T>& all, const char* what, const std::string& name) {
+template <class T> std::string missing(const std::vector<T>& candidates, const char* what, const std::string& name) {
     std::vector<std::string> names;
-    for (const T& one : all) names.push_back(one.name);
+    for (const T& one : candidates) names.push_back(one.name);
     if (std::count(names.begin(), names.end(), name)) return "";
     return fmt::format("no {} '{}': expected one of {}{}", what, name.substr(0, 64),
         names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
@@ -178,8 +179,8 @@ template <class T> std::string missing(const std::vector<T>& all, const char* wh
 /// Returns null if there is no such word.
 const QuantityWord* word_of(const ParsedQuantity& q) {
     const auto& words = quantity_words();
-    const auto known = std::ranges::find(words, q.word, &QuantityWord::word);
-    return known == words.end() ? nullptr : &*known;
+    const auto found = std::ranges::find(words, q.word, &QuantityWord::word);
+    return found == words.end() ? nullptr : &*found;
 }
 
 std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
@@ -237,8 +238,8 @@ std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
     if (q.number) return "";
     if (!q.region.empty())
         if (std::string why = missing(e.regions, "region", q.region); !why.empty()) return why;
-    const QuantityWord* known = word_of(q);
-    switch (known ? known->adapter : QuantityOf::none) {
+    const QuantityWord* info = word_of(q);
+    switch (info ? info->adapter : QuantityOf::none) {
         case QuantityOf::none:
         case QuantityOf::compared: return "";
         case QuantityOf::run: return resolve_run(q, e);

@@ -29,7 +29,7 @@ std::string to_string(const ParsedQuantity& quantity);
 std::string to_string(const Comparison& comparison);
 
 /// Returns whether left op right. No comparison with NaN holds.
-bool holds(double left, std::string_view op, double right);
+bool holds(double value, std::string_view op, double right);
 
 // ---- The language of assertions: quantities of a run by name, compared with each other or with a number.
 //   check    = side op side            op = < <= > >= ==

@@ -27,9 +27,9 @@ bool leaves_folder(const std::filesystem::path& path) {
     return std::ranges::any_of(path, [](const std::filesystem::path& part) { return part == ".."; });
 }
 
-template <class T> std::vector<std::string> names_of(const std::vector<T>& all) {
+template <class T> std::vector<std::string> names_of(const std::vector<T>& items) {
     std::vector<std::string> names;
-    for (const T& one : all) names.push_back(one.name);
+    for (const T& one : items) names.push_back(one.name);
     return names;
 }
 
@@ -175,10 +175,10 @@ void check_content(ParseContext& context, const std::string& path, const std::op
 void check_light(ParseContext& context) {
     const auto& disks = context.e.disks;
     const auto& lights = context.e.lights;
-    if (const std::size_t all = disks.size() + lights.size(); all > most_lights)
+    if (const std::size_t light_count = disks.size() + lights.size(); light_count > most_lights)
         context.report(disks.size() > most_lights ? "disks." + disks[most_lights].name
                                                   : "lights." + lights[most_lights - disks.size()].name,
-            fmt::format("disks and lights: expected at most {}, found {}", most_lights, all));
+            fmt::format("disks and lights: expected at most {}, found {}", most_lights, light_count));
     if (const auto& sky = context.e.sky; sky && context.is_valid("sky.file") && sky->file.empty())
         context.report("sky.file", "sky.file: expected the name of a file, found an empty text");
     if (const auto& sky = context.e.sky) check_content(context, "sky.content", sky->content);
@@ -223,17 +223,17 @@ void check_meshes(ParseContext& context) {
         context.report("shapes", "missing tables [shapes.NAME] or [meshes.NAME]: expected what the camera sees");
     for (const MeshObject& mesh : e.meshes) {
         const std::string path = "meshes." + mesh.name;
-        const auto check = [&](const Placement& placement, const std::string& of) {
+        const auto check = [&](const Placement& placement, const std::string& owner) {
             for (const char* key : {".scale", ".rotate", ".translate", ".matrix"})
-                if (!context.is_valid(of + key)) return;
+                if (!context.is_valid(owner + key)) return;
             for (const char* key : {".scale", ".rotate", ".translate"})
-                if (placement.matrix && e.places.contains(of + key))
-                    context.report(of + key,
-                        fmt::format("{}{}: expected a matrix, or scale, rotate and translate; found both", of, key));
+                if (placement.matrix && e.places.contains(owner + key))
+                    context.report(owner + key,
+                        fmt::format("{}{}: expected a matrix, or scale, rotate and translate; found both", owner, key));
             if (const double volume = placement.transform().det(); !(std::fabs(volume) > 1e-18))
-                context.report(of + (placement.matrix ? ".matrix" : ".scale"),
+                context.report(owner + (placement.matrix ? ".matrix" : ".scale"),
                     fmt::format(
-                        "{}: expected a transform that keeps a volume, found a determinant of {:.3g}", of, volume));
+                        "{}: expected a transform that keeps a volume, found a determinant of {:.3g}", owner, volume));
         };
         check(mesh.placement, path);
         for (std::size_t i = 0; i < mesh.instances.size(); ++i)

@@ -33,17 +33,17 @@ public:
 
 private:
     std::shared_ptr<const Combination> of(const ArmPlan& arm) {
-        std::shared_ptr<const Combination>& known = combinations_[arm.name];
-        if (known) return known;
+        std::shared_ptr<const Combination>& combination = combinations_[arm.name];
+        if (combination) return combination;
         const std::string path = "arms." + arm.name;
         Techniques parts;
         for (const std::string& name : arm.combination.of) parts.push_back(part(arm, name, "of"));
         const std::optional<std::string>& target = arm.combination.target;
         const bool own_target = target && *target != target_product && *target != target_brdf;
-        known = std::make_shared<Combination>(arm.name, arm.combination, std::move(parts),
+        combination = std::make_shared<Combination>(arm.name, arm.combination, std::move(parts),
             own_target ? part(arm, *target, "target") : nullptr, experiment_.place_of(path + ".weights"),
             experiment_.place_of(path + ".probabilities"), weight_function(arm, path));
-        return known;
+        return combination;
     }
 
     std::shared_ptr<const ExternalSampler> weight_function(const ArmPlan& arm, const std::string& path) const {
@@ -207,15 +207,15 @@ private:
 
     bool contains(const ArmPlan& arm, const std::string& name) const {
         std::set<std::string> seen;
-        std::vector<const ArmPlan*> left = {&arm};
-        while (!left.empty()) {
-            const ArmPlan* next = left.back();
-            left.pop_back();
+        std::vector<const ArmPlan*> pending = {&arm};
+        while (!pending.empty()) {
+            const ArmPlan* next = pending.back();
+            pending.pop_back();
             if (!seen.insert(next->name).second) continue;
             for (const std::string& part : next->combination.of) {
                 if (part == name) return true;
                 if (const ArmPlan* other = context_.e.find_arm(part); other && other->is_combination())
-                    left.push_back(other);
+                    pending.push_back(other);
             }
         }
         return false;
@@ -249,8 +249,9 @@ private:
             report(path + ".of", fmt::format("expected {} to {} samplers, found {}", least, most_parts, c.of.size()));
         for (std::size_t i = 0; i < c.of.size(); ++i)
             if (const std::string why = why_no_part(arm, c.of[i]); !why.empty()) {
-                const std::string at = fmt::format("{}.of.{}", path, i);
-                context_.report(context_.e.places.contains(at) ? at : path + ".of", fmt::format("{}: {}", at, why));
+                const std::string place_of_part = fmt::format("{}.of.{}", path, i);
+                context_.report(context_.e.places.contains(place_of_part) ? place_of_part : path + ".of",
+                    fmt::format("{}: {}", place_of_part, why));
             }
         if (!c.target || *c.target == target_product || *c.target == target_brdf) return;
         if (std::string why = why_no_part(arm, *c.target); !why.empty()) {

@@ -42,8 +42,8 @@ public:
         const std::pair<std::uint64_t, std::uint64_t> key(hash.high64, hash.low64);
         {
             const Guard guard(lock_);
-            if (const auto known = packs_.find(key); known != packs_.end())
-                if (std::shared_ptr<const MeshPack> pack = known->second.lock()) return pack;
+            if (const auto found = packs_.find(key); found != packs_.end())
+                if (std::shared_ptr<const MeshPack> pack = found->second.lock()) return pack;
         }
         std::shared_ptr<const MeshPack> pack = read_mesh(bytes, file);
         const Guard guard(lock_);

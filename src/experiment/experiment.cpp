@@ -11,16 +11,16 @@ namespace crescent {
 
 namespace {
 
-template <class T> const T* find_named(const std::vector<T>& all, std::string_view name) {
-    const auto it = std::find_if(all.begin(), all.end(), [&](const T& one) { return one.name == name; });
-    return it == all.end() ? nullptr : &*it;
+template <class T> const T* find_named(const std::vector<T>& items, std::string_view name) {
+    const auto it = std::find_if(items.begin(), items.end(), [&](const T& one) { return one.name == name; });
+    return it == items.end() ? nullptr : &*it;
 }
 
 }  // namespace
 
 Experiment Experiment::with_s(double other) const {
     Experiment e = *this;
-    if (const auto own = surface_of_s()) e.material(*own).s = other;
+    if (const auto surface = surface_of_s()) e.material(*surface).s = other;
     for (std::size_t k = 0; k < e.surface_count(); ++k)
         if (e.material(k).inherits_s) e.material(k).s = other;
     return e;
@@ -39,9 +39,9 @@ const ArmPlan* Experiment::find_arm(std::string_view name) const { return find_n
 const Region* Experiment::find_region(std::string_view name) const { return find_named(regions, name); }
 
 SourceLocation Experiment::place_of(const std::string& path) const {
-    for (std::string at = path;; at.resize(at.rfind('.'))) {
-        if (const auto it = places.find(at); it != places.end()) return it->second;
-        if (at.find('.') == std::string::npos) return {file, 0, 0};
+    for (std::string prefix = path;; prefix.resize(prefix.rfind('.'))) {
+        if (const auto it = places.find(prefix); it != places.end()) return it->second;
+        if (prefix.find('.') == std::string::npos) return {file, 0, 0};
     }
 }
 
@@ -58,13 +58,13 @@ namespace {
 
 /// Returns the largest channel of rho_d, with that of its texture.
 double brightest_rho_d(const Experiment& experiment, std::size_t surface) {
-    const Rgb& own = experiment.material(surface).rho_d;
-    if (surface < experiment.shapes.size()) return std::ranges::max(own);
+    const Rgb& rho_d = experiment.material(surface).rho_d;
+    if (surface < experiment.shapes.size()) return std::ranges::max(rho_d);
     const auto& image = experiment.meshes[surface - experiment.shapes.size()].rho_d_texture.image;
-    if (!image) return std::ranges::max(own);
+    if (!image) return std::ranges::max(rho_d);
     double brightest = 0;
     for (std::size_t k = 0; k < image->rgb.size(); ++k)
-        brightest = std::max(brightest, own[k % 3] * static_cast<double>(image->rgb[k]));
+        brightest = std::max(brightest, rho_d[k % 3] * static_cast<double>(image->rgb[k]));
     return brightest;
 }
 
@@ -121,17 +121,19 @@ namespace {
 std::string source_of(const CombinationPlan& plan) {
     const std::string last = plan.of.empty() ? "" : plan.of.back();
     const std::vector<std::string> others(plan.of.begin(), plan.of.end() - (plan.of.empty() ? 0 : 1));
-    const std::string of = others.empty() ? last : fmt::format("{} and {}", fmt::join(others, ", "), last);
+    const std::string parts = others.empty() ? last : fmt::format("{} and {}", fmt::join(others, ", "), last);
     switch (*plan.kind) {
-        case CombinationKind::mixture: return "the mixture of " + of;
+        case CombinationKind::mixture: return "the mixture of " + parts;
         case CombinationKind::ris:
             return fmt::format("one of {} candidates of {}, resampled in proportion to {}", plan.candidates.value_or(1),
-                of, plan.target.value_or(target_product));
+                parts, plan.target.value_or(target_product));
         case CombinationKind::mis: break;
     }
     const bool power = plan.heuristic == MisHeuristic::power;
-    const char* by = !plan.weights.empty() ? "a weighted sum" : power ? "the power heuristic" : "the balance heuristic";
-    return fmt::format("{} of {}{}", by, of, plan.draw == MisDraw::one ? ", one of them a sample" : "");
+    const char* heuristic = !plan.weights.empty() ? "a weighted sum"
+        : power                                   ? "the power heuristic"
+                                                  : "the balance heuristic";
+    return fmt::format("{} of {}{}", heuristic, parts, plan.draw == MisDraw::one ? ", one of them a sample" : "");
 }
 
 }  // namespace

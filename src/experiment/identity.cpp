@@ -29,9 +29,9 @@ std::string toml_text(std::string_view text) {
 /// Returns the shortest text that is read as the same double. TOML's integer -0 is 0.
 std::string number(double x) { return x == 0 && std::signbit(x) ? "-0.0" : fmt::format("{}", x); }
 
-std::string list(const std::vector<double>& all) {
+std::string list(const std::vector<double>& values) {
     std::string out;
-    for (const double x : all) out += (out.empty() ? "" : ", ") + number(x);
+    for (const double x : values) out += (out.empty() ? "" : ", ") + number(x);
     return "[" + out + "]";
 }
 
@@ -120,25 +120,27 @@ private:
     }
 
     void family(const Section& section, const void* parent, const std::string& path) {
-        const std::string own = path.empty() ? std::string(section.name) : fmt::format("{}.{}", path, section.name);
-        if (!section.family.add) return table(section, parent, own);
+        const std::string full_path =
+            path.empty() ? std::string(section.name) : fmt::format("{}.{}", path, section.name);
+        if (!section.family.add) return table(section, parent, full_path);
         for (std::size_t i = 0; i < section.family.size(parent); ++i) {
             const void* object = section.family.at(parent, i);
             table(section, object,
-                section.many == Multiplicity::one ? own
-                                                  : fmt::format("{}.{}", own, toml_text(section.family.name(object))));
+                section.many == Multiplicity::one
+                    ? full_path
+                    : fmt::format("{}.{}", full_path, toml_text(section.family.name(object))));
         }
     }
 
     void tables_in_a_list(const Section& section, const void* parent) {
-        std::string all;
+        std::string entries;
         for (std::size_t i = 0; i < section.family.size(parent); ++i) {
             std::string one;
             for (const auto& [key, value] : keys(section, section.family.at(parent, i)))
                 one += fmt::format("{}{} = {}", one.empty() ? "" : ", ", key, value);
-            all += fmt::format("{}{{{}}}", all.empty() ? "" : ", ", one);
+            entries += fmt::format("{}{{{}}}", entries.empty() ? "" : ", ", one);
         }
-        text_ += fmt::format("{} = [{}]\n", section.name, all);
+        text_ += fmt::format("{} = [{}]\n", section.name, entries);
     }
 
     const Experiment& experiment_;

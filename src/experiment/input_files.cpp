@@ -47,11 +47,11 @@ std::string path_inside(const std::string& beside, const std::string& file) {
 
 }  // namespace
 
-void load_texture(Texture& texture, TextureOf of, const std::string& beside) {
+void load_texture(Texture& texture, TextureOf property, const std::string& beside) {
     if (!texture.file || texture.image) return;
     const std::string file = path_inside(beside, *texture.file);
     std::shared_ptr<const RgbImage> image = texture_in_file(file);
-    if (const std::string why = why_no_texture(*image, of); !why.empty()) throw InputError({file, 0, 0}, why);
+    if (const std::string why = why_no_texture(*image, property); !why.empty()) throw InputError({file, 0, 0}, why);
     texture.image = std::move(image);
 }
 
@@ -82,14 +82,14 @@ std::string sampler_file(const ArmPlan& arm) {
 }
 
 std::string sampler_file_hashes(const Experiment& experiment) {
-    std::string all;
+    std::string marks;
     for (const ArmPlan& arm : experiment.arms) {
         const std::string file = sampler_file(arm);
         if (file.empty()) continue;
         const std::string bytes = contents_of(file);
-        all += fmt::format(" {}={:016x}", arm.name, bytes.empty() ? 0 : XXH3_64bits(bytes.data(), bytes.size()));
+        marks += fmt::format(" {}={:016x}", arm.name, bytes.empty() ? 0 : XXH3_64bits(bytes.data(), bytes.size()));
     }
-    return all;
+    return marks;
 }
 
 void refuse_code(const Experiment& experiment) {
@@ -122,7 +122,7 @@ Vec3d corner_of(const Bounds& box, unsigned corner) {
 
 void check_extent(const Experiment& e, const MeshObject& mesh) {
     const Bounds box = mesh.pack->mesh.bounds();
-    const Affine own = mesh.placement.transform();
+    const Affine transform = mesh.placement.transform();
     const auto check = [&](const Affine& to, const std::string& path) {
         for (unsigned corner = 0; corner < 8; ++corner) {
             const Vec3d p = to.point(corner_of(box, corner));
@@ -135,9 +135,9 @@ void check_extent(const Experiment& e, const MeshObject& mesh) {
         }
     };
     const std::string path = "meshes." + mesh.name;
-    if (mesh.instances.empty()) check(own, path);
+    if (mesh.instances.empty()) check(transform, path);
     for (std::size_t i = 0; i < mesh.instances.size(); ++i)
-        check(mesh.instances[i].transform().after(own), fmt::format("{}.instances.{}", path, i));
+        check(mesh.instances[i].transform().after(transform), fmt::format("{}.instances.{}", path, i));
 }
 
 /// Whether triangles face both ends of this axis of the mesh.
@@ -181,10 +181,10 @@ void check_thickness(const Experiment& e, const MeshObject& mesh) {
         }
     };
     const std::string path = "meshes." + mesh.name;
-    const Affine own = mesh.placement.transform();
-    if (mesh.instances.empty()) check(own, path);
+    const Affine transform = mesh.placement.transform();
+    if (mesh.instances.empty()) check(transform, path);
     for (std::size_t i = 0; i < mesh.instances.size(); ++i)
-        check(mesh.instances[i].transform().after(own), fmt::format("{}.instances.{}", path, i));
+        check(mesh.instances[i].transform().after(transform), fmt::format("{}.instances.{}", path, i));
 }
 
 /// The product of alpha and the smallest texel is a roughness too.

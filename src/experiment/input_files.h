@@ -26,7 +26,7 @@ void load_sky(SkyLight& sky);
 
 /// Reads a texture that has no image yet, next to the experiment's file `beside`. Throws InputError with the file and
 /// the texel.
-void load_texture(Texture& texture, TextureOf of, const std::string& beside);
+void load_texture(Texture& texture, TextureOf property, const std::string& beside);
 
 /// Reads the file of every mesh that has none yet; throws InputError with the place of its key.
 void read_meshes(Experiment& experiment);

@@ -66,11 +66,11 @@ Member* step(Node& node, const std::string& segment) {
     return named == node.members.end() ? nullptr : &*named;
 }
 
-void move_to(Node& node, const SourceLocation& at) {
-    node.at = at;
+void move_to(Node& node, const SourceLocation& place) {
+    node.at = place;
     for (Member& member : node.members) {
-        member.at = at;
-        move_to(member.value, at);
+        member.at = place;
+        move_to(member.value, place);
     }
 }
 
@@ -117,7 +117,7 @@ private:
     /// Completes a path that starts at a name with the family of that name.
     bool resolve(Segments& path) {
         if (in_table(schema(), path, 0)) return true;
-        std::vector<Segments> valid, all;
+        std::vector<Segments> valid, paths;
         std::vector<std::string> words = words_of(schema());
         const bool top = std::count(words.begin(), words.end(), path[0]);
         for (const Section& section : schema().sections) {
@@ -126,22 +126,22 @@ private:
             for (const Member& member : family->value.members) {
                 words.push_back(name_of(member));
                 if (words.back() != path[0]) continue;
-                all.push_back(path);
-                all.back().insert(all.back().begin(), std::string(section.name));
-                if (in_table(schema(), all.back(), 0)) valid.push_back(all.back());
+                paths.push_back(path);
+                paths.back().insert(paths.back().begin(), std::string(section.name));
+                if (in_table(schema(), paths.back(), 0)) valid.push_back(paths.back());
             }
         }
         if (valid.size() > 1)
             return fail(fmt::format("'{}' is ambiguous: expected {}.{} or {}.{}", written_, valid[0][0], written_,
                        valid[1][0], written_)),
                    false;
-        if (valid.empty() && !top && all.empty())
+        if (valid.empty() && !top && paths.empty())
             return fail(fmt::format(
                        "no key or name '{}': expected a key of the schema or the name of a shape, disk, arm, ...{}",
                        path[0], hint(path[0], words))),
                    false;
         if (!valid.empty()) path = valid[0];
-        else if (!top) path = all[0];  // the parser reports what is wrong with its key
+        else if (!top) path = paths[0];  // the parser reports what is wrong with its key
         return true;
     }
 

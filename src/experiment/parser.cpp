@@ -14,8 +14,8 @@
 
 namespace crescent {
 
-void ParseContext::report(const std::string& path, const SourceLocation& at, const std::string& message) {
-    diagnostics.push_back({at, message});
+void ParseContext::report(const std::string& path, const SourceLocation& place, const std::string& message) {
+    diagnostics.push_back({place, message});
     invalid_paths.insert(path);
 }
 
@@ -51,17 +51,17 @@ public:
     explicit TreeReader(ParseContext& context) : draft_(context) {}
 
     void table(
-        const Section& section, const Node& node, const std::string& path, const SourceLocation& at, void* object) {
+        const Section& section, const Node& node, const std::string& path, const SourceLocation& place, void* object) {
         const std::string kind = kind_of(section, node);
         unknown_keys(section, node, path, kind);
         for (const Key& key : section.keys) {
             if (!has_kind(key, kind)) continue;
             const Member* member = node.find(key.name);
             if (member) value(key, member->value, join(path, key.name), object);
-            else if (key.need == Requirement::required) missing_key(key, path, at, kind);
+            else if (key.need == Requirement::required) missing_key(key, path, place, kind);
             else if (key.need == Requirement::defaulted) default_value(key, join(path, key.name), object);
         }
-        for (const Section& sub : section.sections) family(sub, node, join(path, sub.name), at, object);
+        for (const Section& sub : section.sections) family(sub, node, join(path, sub.name), place, object);
     }
 
     std::vector<std::string> siblings;  // names in the same list as the table that is being read
@@ -88,11 +88,11 @@ private:
         }
     }
 
-    void missing_key(const Key& key, const std::string& path, const SourceLocation& at, const std::string& kind) {
+    void missing_key(const Key& key, const std::string& path, const SourceLocation& place, const std::string& kind) {
         if (kind.empty() && !key.kinds.empty()) return;  // not known yet whether it is required
         const std::string name = path.substr(path.rfind('.') + 1);
-        const bool made_by_override = at.line == 0 && !siblings.empty();
-        draft_.report(join(path, key.name), at,
+        const bool made_by_override = place.line == 0 && !siblings.empty();
+        draft_.report(join(path, key.name), place,
             fmt::format("missing key '{}' in {}: expected {}{}", key.name, where(path), expectation(key),
                 made_by_override ? hint(name, siblings) : ""));
     }
@@ -193,38 +193,40 @@ private:
                 fmt::format("{}: expected {}, found {}", label,
                     node.is_array() ? "a table" : fmt::format("a table [{}]", label), describe(member.value)));
         std::string name = member.key;
-        SourceLocation at = member.at;
-        if (section.many == Multiplicity::titled && node.is_array() && !title(member, path, index, name, at)) return;
-        const std::string own =
+        SourceLocation place = member.at;
+        if (section.many == Multiplicity::titled && node.is_array() && !title(member, path, index, name, place)) return;
+        const std::string own_path =
             section.many == Multiplicity::list ? fmt::format("{}.{}", path, index) : join(path, name);
         if (section.many == Multiplicity::named && !file_safe(name))
-            draft_.report(own, at,
+            draft_.report(own_path, place,
                 fmt::format("the name '{}' in {}: expected letters, digits, '_', '.' and '-', at most 64, a "
                             "letter, digit or '_' first: names become file names",
                     name.substr(0, 64), where(path)));
         if (section.many == Multiplicity::titled && !one_line(name))
-            draft_.report(own, at, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
-        draft_.e.places[own] = at;
+            draft_.report(
+                own_path, place, fmt::format("a name in {}: expected one line of at most 200 bytes", where(path)));
+        draft_.e.places[own_path] = place;
         in_list_ = node.is_array();
-        table(section, member.value, own, at, section.family.add(object, name, at));
+        table(section, member.value, own_path, place, section.family.add(object, name, place));
     }
 
     /// Reads the name of a table in a list; returns false if it has no new name.
     bool title(
-        const Member& member, const std::string& path, std::size_t index, std::string& name, SourceLocation& at) {
-        const Member* own = member.value.find("name");
-        at = member.value.at;
-        if (!own || own->value.kind != Node::Kind::text) {
-            draft_.report(fmt::format("{}.{}", path, index), own ? own->value.at : at,
-                fmt::format("{} in [[{}]]: expected a line of text{}", own ? "the key 'name'" : "missing key 'name'",
-                    path, own ? ", found " + describe(own->value) : ""));
+        const Member& member, const std::string& path, std::size_t index, std::string& name, SourceLocation& place) {
+        const Member* name_member = member.value.find("name");
+        place = member.value.at;
+        if (!name_member || name_member->value.kind != Node::Kind::text) {
+            draft_.report(fmt::format("{}.{}", path, index), name_member ? name_member->value.at : place,
+                fmt::format("{} in [[{}]]: expected a line of text{}",
+                    name_member ? "the key 'name'" : "missing key 'name'", path,
+                    name_member ? ", found " + describe(name_member->value) : ""));
             return false;
         }
-        name = own->value.text;
-        at = own->value.at;
-        const auto [first, fresh] = titles_.emplace(name, at);
+        name = name_member->value.text;
+        place = name_member->value.at;
+        const auto [first, fresh] = titles_.emplace(name, place);
         if (!fresh)
-            draft_.report(fmt::format("{}.{}", path, index), at,
+            draft_.report(fmt::format("{}.{}", path, index), place,
                 fmt::format("duplicate name '{}' in [[{}]]: expected a new one, the first is at {}", name, path,
                     to_string(first->second)));
         return fresh;
@@ -322,22 +324,23 @@ void resolve_plate(ParseContext& context, PlatePlan& plate) {
     std::vector<PlateRun> runs;
     for (std::size_t i = 0; i < plate.runs.size(); ++i) {
         PlateRun run = plate.runs[i];
-        const std::string own = fmt::format("{}.runs.{}", path, i);
+        const std::string run_path = fmt::format("{}.runs.{}", path, i);
         const ArmPlan* arm = context.e.find_arm(run.arm);
-        const bool open = run.n == 0 && context.is_valid(own + ".n") && arm && !arm->n.empty();
+        const bool open = run.n == 0 && context.is_valid(run_path + ".n") && arm && !arm->n.empty();
         if (open && plate.kind == PlateKind::ladder) {
             for (const std::uint64_t n : arm->n) runs.push_back({run.arm, n, run.s});
             continue;
         }
         const auto& control = context.e.exponent;
-        if (plate.kind == PlateKind::exponent && run.n == 0 && run.s == 0 && context.is_valid(own + ".s") && control &&
-            control->arm == run.arm) {
+        if (plate.kind == PlateKind::exponent && run.n == 0 && run.s == 0 && context.is_valid(run_path + ".s") &&
+            control && control->arm == run.arm) {
             for (const double s : control->s) runs.push_back({run.arm, control->n, s});
             continue;
         }
-        run.n =
-            open && plate.kind == PlateKind::hero ? arm->n.back() : sample_count(context, own + ".n", run.arm, run.n);
-        if (context.is_valid(own + ".n") && context.is_valid(own + ".s")) check_s(context, own + ".s", run);
+        run.n = open && plate.kind == PlateKind::hero ? arm->n.back()
+                                                      : sample_count(context, run_path + ".n", run.arm, run.n);
+        if (context.is_valid(run_path + ".n") && context.is_valid(run_path + ".s"))
+            check_s(context, run_path + ".s", run);
         runs.push_back(run);
     }
     plate.runs = std::move(runs);
@@ -422,13 +425,13 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
 }  // namespace
 
 /// In file order; overrides follow the file, as given.
-void throw_if_any(std::vector<Diagnostic> all) {
-    if (all.empty()) return;
+void throw_if_any(std::vector<Diagnostic> diagnostics) {
+    if (diagnostics.empty()) return;
     std::multimap<std::tuple<bool, unsigned, unsigned>, Diagnostic> sorted;  // equals keep their order
-    for (Diagnostic& c : all) sorted.emplace(std::tuple(c.at.line == 0, c.at.line, c.at.column), std::move(c));
-    all.clear();
-    for (auto& [key, diagnostic] : sorted) all.push_back(std::move(diagnostic));
-    throw InputError(std::move(all));
+    for (Diagnostic& c : diagnostics) sorted.emplace(std::tuple(c.at.line == 0, c.at.line, c.at.column), std::move(c));
+    diagnostics.clear();
+    for (auto& [key, diagnostic] : sorted) diagnostics.push_back(std::move(diagnostic));
+    throw InputError(std::move(diagnostics));
 }
 
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides) {

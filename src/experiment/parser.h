@@ -60,7 +60,7 @@ struct ParseContext {
     std::vector<Reference> references;
 
     void report(const std::string& path, const std::string& message);
-    void report(const std::string& path, const SourceLocation& at, const std::string& message);
+    void report(const std::string& path, const SourceLocation& place, const std::string& message);
     bool is_valid(const std::string& path) const { return !invalid_paths.contains(path); }
 };
 
@@ -76,7 +76,7 @@ void read_tree(ParseContext& context, const Node& root);
 void read_tree(ParseContext& context, const Section& table, const Node& root, void* object);
 
 /// Throws one InputError with all diagnostics in file order; returns if there is none.
-void throw_if_any(std::vector<Diagnostic> all);
+void throw_if_any(std::vector<Diagnostic> diagnostics);
 
 /// Puts "path=value" overrides into the tree.
 void apply_overrides(ParseContext& context, Node& root, const std::vector<std::string>& overrides);

@@ -27,20 +27,20 @@ public:
     explicit Reader(const std::string& file) : file_(file) {}
 
     Published read(const json& root) {
-        Published all;
+        Published published;
         if (!root.is_object()) fail("", "an object with 'runs' and 'furnaces'", root);
         for (const auto& [key, value] : root.items()) {
             if (key == "source")
-                all.source = value.is_string() ? value.get<std::string>() : (fail("/source", "text", value), "");
+                published.source = value.is_string() ? value.get<std::string>() : (fail("/source", "text", value), "");
             else if (key == "seed")
-                all.seed = value.is_number_unsigned() && value.get<std::uint64_t>() <= 0xffffffffu
+                published.seed = value.is_number_unsigned() && value.get<std::uint64_t>() <= 0xffffffffu
                     ? value.get<std::uint32_t>()
                     : (fail("/seed", "a seed, 0 to 4294967295", value), 0u);
-            else if (key == "runs") runs(value, all);
-            else if (key == "furnaces") furnaces(value, all);
+            else if (key == "runs") runs(value, published);
+            else if (key == "furnaces") furnaces(value, published);
             else fail("/" + key, "one of the keys source, seed, runs, furnaces", key);
         }
-        return all;
+        return published;
     }
 
 private:
@@ -49,42 +49,43 @@ private:
             key == "y_mean" || key == "rmse_frame";
     }
 
-    [[noreturn]] void fail(const std::string& at, const std::string& expected, const json& found) const {
+    [[noreturn]] void fail(const std::string& pointer, const std::string& expected, const json& found) const {
         std::string text = found.dump(-1, ' ', false, json::error_handler_t::replace);
         if (text.size() > 40) text = text.substr(0, 37) + "...";
         throw InputError(
-            {file_, 0, 0}, fmt::format("{}: expected {}, found {}", at.empty() ? "/" : at, expected, text));
+            {file_, 0, 0}, fmt::format("{}: expected {}, found {}", pointer.empty() ? "/" : pointer, expected, text));
     }
 
-    void runs(const json& list, Published& all) const {
+    void runs(const json& list, Published& published) const {
         if (!list.is_array()) fail("/runs", "a list of objects", list);
-        for (std::size_t i = 0; i < list.size(); ++i) run(list[i], fmt::format("/runs/{}", i), all);
+        for (std::size_t i = 0; i < list.size(); ++i) run(list[i], fmt::format("/runs/{}", i), published);
     }
 
-    void run(const json& run, const std::string& at, Published& all) const {
+    void run(const json& run, const std::string& pointer, Published& published) const {
         const auto arm = run.find("arm"), n = run.find("n"), s = run.find("s");
         if (!run.is_object() || arm == run.end() || !arm->is_string() || n == run.end() || !n->is_number_unsigned() ||
             s == run.end() || !s->is_number())
-            fail(at, "an object with arm (text), n (integer) and s (number)", run);
+            fail(pointer, "an object with arm (text), n (integer) and s (number)", run);
         for (const auto& [key, value] : run.items()) {
             if (key == "arm" || key == "n" || key == "s") continue;
             if (!is_metric(key))
-                fail(at + "/" + key, "rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean or rmse_frame", key);
-            if (!value.is_number()) fail(at + "/" + key, "a number", value);
+                fail(
+                    pointer + "/" + key, "rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean or rmse_frame", key);
+            if (!value.is_number()) fail(pointer + "/" + key, "a number", value);
             const bool fresh =
-                all.runs
+                published.runs
                     .emplace(std::tuple(arm->get<std::string>(), n->get<std::uint64_t>(), s->get<double>(), key),
                         value.get<double>())
                     .second;
-            if (!fresh) fail(at + "/" + key, "a figure that was not given before", value);
+            if (!fresh) fail(pointer + "/" + key, "a figure that was not given before", value);
         }
     }
 
-    void furnaces(const json& object, Published& all) const {
+    void furnaces(const json& object, Published& published) const {
         if (!object.is_object()) fail("/furnaces", "an object", object);
         for (const auto& [key, value] : object.items()) {
             if (!value.is_number()) fail("/furnaces/" + key, "a number", value);
-            all.furnaces[key] = value.get<double>();
+            published.furnaces[key] = value.get<double>();
         }
     }
 

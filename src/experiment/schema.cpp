@@ -114,9 +114,9 @@ std::string path_of(const Section& section, const std::string& parent) {
 /// Wraps words to lines of at most 80 columns, every line indented, the second and later ones by `hang` more.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t hang = 0) {
     std::string out, line(indent, ' ');
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find(' ', at), text.size());
-        const std::string_view word = text.substr(at, end - at);
+    for (std::size_t start = 0; start < text.size();) {
+        const std::size_t end = std::min(text.find(' ', start), text.size());
+        const std::string_view word = text.substr(start, end - start);
         if (line.size() > indent && line.size() + 1 + word.size() > columns) {
             out += line + "\n";
             indent += std::exchange(hang, 0);
@@ -124,7 +124,7 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t hang 
         }
         if (line.size() > indent) line += ' ';
         line += word;
-        at = end + 1;
+        start = end + 1;
     }
     return out + line + "\n";
 }
@@ -156,11 +156,11 @@ void print(const Section& section, const std::string& parent, std::string& out) 
 
 std::string alternatives(std::string_view kinds) {
     std::string out;
-    for (std::size_t at = 0; at < kinds.size();) {
-        const std::size_t end = std::min(kinds.find(' ', at), kinds.size());
-        if (at > 0) out += end == kinds.size() ? " or " : ", ";
-        out += kinds.substr(at, end - at);
-        at = end + 1;
+    for (std::size_t start = 0; start < kinds.size();) {
+        const std::size_t end = std::min(kinds.find(' ', start), kinds.size());
+        if (start > 0) out += end == kinds.size() ? " or " : ", ";
+        out += kinds.substr(start, end - start);
+        start = end + 1;
     }
     return out;
 }

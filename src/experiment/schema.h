@@ -92,7 +92,7 @@ enum class Multiplicity {
 
 /// The objects of a section inside their parent. Without functions: the parent itself.
 struct Family {
-    void* (*add)(void* parent, const std::string& name, const SourceLocation& at) = nullptr;
+    void* (*add)(void* parent, const std::string& name, const SourceLocation& place) = nullptr;
     std::size_t (*size)(const void* parent) = nullptr;
     const void* (*at)(const void* parent, std::size_t index) = nullptr;
     std::string (*name)(const void* object) = nullptr;  // "" if it has none
@@ -131,9 +131,9 @@ std::string expectation(const Key& key);
 std::string alternatives(std::string_view kinds);
 
 /// Returns "a, b, c".
-template <class T> std::string listed(const std::vector<T>& all, std::string_view between = ", ") {
+template <class T> std::string listed(const std::vector<T>& items, std::string_view between = ", ") {
     std::string text;
-    for (const T& one : all) (text += text.empty() ? std::string_view() : between) += fmt::to_string(one);
+    for (const T& one : items) (text += text.empty() ? std::string_view() : between) += fmt::to_string(one);
     return text;
 }
 
@@ -165,8 +165,8 @@ inline void assign(std::vector<std::uint64_t>& to, const Value& v) {
 }
 /// Pixels x0, y0, x1, y1.
 inline void assign(Box& to, const Value& v) {
-    const auto at = [&](int i) { return whole<int>(v.numbers[static_cast<std::size_t>(i)]); };
-    to = {at(0), at(1), at(2), at(3)};
+    const auto number = [&](int i) { return whole<int>(v.numbers[static_cast<std::size_t>(i)]); };
+    to = {number(0), number(1), number(2), number(3)};
 }
 template <class T>
     requires(std::is_integral_v<T> && !std::is_same_v<T, bool>)
@@ -249,10 +249,10 @@ template <class T> std::span<const T> all_of(const std::vector<T>& member) { ret
 
 /// Returns the objects that a section's keys are stored into: the member itself, or its elements.
 template <auto M, class Owner = typename OwnerOf<decltype(M)>::type>
-constexpr Family in = {.add = [](void* parent, const std::string& name, const SourceLocation& at) -> void* {
+constexpr Family in = {.add = [](void* parent, const std::string& name, const SourceLocation& place) -> void* {
                            auto* object = emplaced(static_cast<Owner*>(parent)->*M);
                            if constexpr (requires { object->name; }) object->name = name;
-                           if constexpr (requires { object->at; }) object->at = at;
+                           if constexpr (requires { object->at; }) object->at = place;
                            return object;
                        },
     .size = [](const void* parent) { return all_of(static_cast<const Owner*>(parent)->*M).size(); },
@@ -302,14 +302,14 @@ template <class Any> AnyParameter parameter_named(Any& any, std::string_view nam
 }
 inline void assign(const AnyParameter& to, const Value& value) {
     std::visit(
-        [&]<class T>(T at) {
-            if constexpr (std::is_pointer_v<T>) assign(*at, value);
+        [&]<class T>(T target) {
+            if constexpr (std::is_pointer_v<T>) assign(*target, value);
         },
         to);
 }
 inline bool fetch(const AnyParameter& from, Value& value) {
-    const auto read = [&]<class T>(T at) {
-        if constexpr (std::is_pointer_v<T>) return fetch(*at, value);
+    const auto read = [&]<class T>(T target) {
+        if constexpr (std::is_pointer_v<T>) return fetch(*target, value);
         else return false;
     };
     return std::visit(read, from);
@@ -353,12 +353,12 @@ template <class List, auto Form> std::vector<Key> parameter_keys() {
     std::vector<Slot> slots;
     [&]<std::size_t... index>(std::index_sequence<index...>) { slots = {parameter_slot<List, Form, index>...}; }(
         std::make_index_sequence<parameter_count(List{})>{});
-    std::size_t at = 0;
+    std::size_t next_slot = 0;
     List::each_parameter([&](std::string_view kind, const auto& p) {
-        const Slot& slot = slots[at++];
+        const Slot& slot = slots[next_slot++];
         const auto same = [&](const Key& key) { return key.name == p.name; };
-        if (const auto known = std::find_if(keys.begin(), keys.end(), same); known != keys.end()) {
-            known->kinds += " " + std::string(kind);
+        if (const auto listed_key = std::find_if(keys.begin(), keys.end(), same); listed_key != keys.end()) {
+            listed_key->kinds += " " + std::string(kind);
             return;
         }
         const Type type = std::visit(

@@ -43,10 +43,10 @@ void TextHeader::check_size(long long width, long long height) const {
 
 std::vector<std::string_view> split_words(std::string_view line) {
     std::vector<std::string_view> words;
-    for (std::size_t at = 0; at < line.size();) {
-        const std::size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
-        if (end > at) words.push_back(line.substr(at, end - at));
-        at = end + 1;
+    for (std::size_t start = 0; start < line.size();) {
+        const std::size_t end = std::min(line.find_first_of(" \t\r", start), line.size());
+        if (end > start) words.push_back(line.substr(start, end - start));
+        start = end + 1;
     }
     return words;
 }
@@ -115,11 +115,11 @@ void OpenFile::read(std::uint64_t from, std::span<char> to) const {
         fail(fmt::format("expected {} bytes from byte {} on, found {}: the file is cut off", to.size(), from, n));
 }
 
-void OpenFile::expect_bytes(std::uint64_t from, std::uint64_t bytes, const std::string& of) const {
-    const std::uint64_t there = from < size() ? size() - from : 0;
-    if (there < bytes)
+void OpenFile::expect_bytes(std::uint64_t from, std::uint64_t bytes, const std::string& what) const {
+    const std::uint64_t available = from < size() ? size() - from : 0;
+    if (available < bytes)
         fail(fmt::format(
-            "the file is cut off: {}, expected {} bytes from byte {} on, found {}", of, bytes, from, there));
+            "the file is cut off: {}, expected {} bytes from byte {} on, found {}", what, bytes, from, available));
 }
 
 void OpenFile::expect_unchanged() const {

@@ -57,8 +57,8 @@ public:
     void read(std::uint64_t from, std::span<char> to) const;
     /// Reads as many of these bytes as the file has.
     std::size_t read_some(std::uint64_t from, std::span<char> to) const;
-    /// Throws InputError if it has fewer bytes from there on; `of`: "the header promises 4 x 4 pixels".
-    void expect_bytes(std::uint64_t from, std::uint64_t bytes, const std::string& of) const;
+    /// Throws InputError if it has fewer bytes from there on; `what`: "the header promises 4 x 4 pixels".
+    void expect_bytes(std::uint64_t from, std::uint64_t bytes, const std::string& what) const;
     /// Throws InputError if it changed since it was opened.
     void expect_unchanged() const;
 

@@ -124,9 +124,9 @@ HdrHeader hdr_header(const OpenFile& file, const ArePrimaries& are_primaries) {
     for (std::string_view line = in.line(); !split_words(line).empty(); line = in.line())
         read_variable(in, line, are_primaries, out);
     const std::vector<std::string_view> size = split_words(in.line());
-    const bool known = size.size() == 4 && size[0] == "-Y" && size[2] == "+X" && parse_number(size[1], out.height) &&
-        parse_number(size[3], out.width);
-    if (!known) in.fail("expected a resolution with rows from the top, such as '-Y 540 +X 960'");
+    const bool understood = size.size() == 4 && size[0] == "-Y" && size[2] == "+X" &&
+        parse_number(size[1], out.height) && parse_number(size[3], out.width);
+    if (!understood) in.fail("expected a resolution with rows from the top, such as '-Y 540 +X 960'");
     in.check_size(out.width, out.height);
     for (const double unit : out.unit)
         if (!(unit > 0 && std::isfinite(unit))) in.fail("expected an EXPOSURE and a COLORCORR that a float can hold");

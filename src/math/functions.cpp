@@ -187,10 +187,10 @@ double scale_of(double v) {
 
 SinCos sincos(double x) {
     if (!(std::fabs(x) < 0x1p50)) return {none, none};
-    const Reduced at = reduce(x);
-    const double s = sin_series(at.r), c = cos_series(at.r);
+    const Reduced reduced = reduce(x);
+    const double s = sin_series(reduced.r), c = cos_series(reduced.r);
     // (s, c), (c, -s), (-s, -c), (-c, s) for n = 0 to 3, without a branch: n is random in most uses.
-    const auto n = static_cast<std::uint64_t>(at.n), exchanged = -(n & 1);
+    const auto n = static_cast<std::uint64_t>(reduced.n), exchanged = -(n & 1);
     const auto bits_s = std::bit_cast<std::uint64_t>(s), bits_c = std::bit_cast<std::uint64_t>(c);
     const std::uint64_t both = (bits_s ^ bits_c) & exchanged;
     return {std::bit_cast<double>(bits_s ^ both ^ (n >> 1) << 63),
@@ -199,21 +199,21 @@ SinCos sincos(double x) {
 
 double sin(double x) {
     if (!(std::fabs(x) < 0x1p50)) return none;
-    const Reduced at = reduce(x);
-    const double v = at.n & 1 ? cos_series(at.r) : sin_series(at.r);
-    return at.n & 2 ? -v : v;
+    const Reduced reduced = reduce(x);
+    const double v = reduced.n & 1 ? cos_series(reduced.r) : sin_series(reduced.r);
+    return reduced.n & 2 ? -v : v;
 }
 
 double cos(double x) {
     if (!(std::fabs(x) < 0x1p50)) return none;
-    const Reduced at = reduce(x);
-    const double v = at.n & 1 ? sin_series(at.r) : cos_series(at.r);
-    return (at.n + 1) & 2 ? -v : v;
+    const Reduced reduced = reduce(x);
+    const double v = reduced.n & 1 ? sin_series(reduced.r) : cos_series(reduced.r);
+    return (reduced.n + 1) & 2 ? -v : v;
 }
 
 double tan(double x) {
-    const SinCos at = sincos(x);
-    return at.sin / at.cos;
+    const SinCos both = sincos(x);
+    return both.sin / both.cos;
 }
 
 double asin(double x) {
@@ -387,15 +387,15 @@ double tail_of(double s) {
 
 /// ln(x + rest) for x > 0 and |rest| <= ulp(x)/2, to some 2^-66 of itself.
 template <bool with_rest> Two logarithm(double x, double rest = 0) {
-    const Parts at = parts_of(x);
+    const Parts parts = parts_of(x);
     if constexpr (with_rest) {
-        const std::int64_t half = -at.exponent / 2;
-        rest = rest * power_of_2(half) * power_of_2(-at.exponent - half);
+        const std::int64_t half = -parts.exponent / 2;
+        rest = rest * power_of_2(half) * power_of_2(-parts.exponent - half);
     }
-    const Two log_c = logs[at.row], s = quotient<with_rest>(at.m, at.c, rest);
-    const Two whole = ordered_sum(at.e * ln2_upper, log_c.hi), all = ordered_sum(whole.hi, 2 * s.hi);
-    const double small = (at.e * ln2_lower + log_c.lo) + (2 * s.lo + tail_of(s.hi + s.lo));
-    return ordered_sum(all.hi, all.lo + (whole.lo + small));
+    const Two log_c = logs[parts.row], s = quotient<with_rest>(parts.m, parts.c, rest);
+    const Two whole = ordered_sum(parts.e * ln2_upper, log_c.hi), total = ordered_sum(whole.hi, 2 * s.hi);
+    const double small = (parts.e * ln2_lower + log_c.lo) + (2 * s.lo + tail_of(s.hi + s.lo));
+    return ordered_sum(total.hi, total.lo + (whole.lo + small));
 }
 
 /// Returns the special values of a logarithm: at 0, infinity and NaN.
@@ -436,14 +436,14 @@ namespace {
 
 /// ln(x + rest), rest at most ulp(x)/2.
 double rounded_logarithm(double x, double rest) {
-    const Parts at = parts_of(x);
-    if (std::fabs(at.m - 1) < 0.05) {  // small against its own terms
+    const Parts parts = parts_of(x);
+    if (std::fabs(parts.m - 1) < 0.05) {  // small against its own terms
         return (rest != 0 ? logarithm<true>(x, rest) : logarithm<false>(x)).hi;
     }
-    const Two log_c = logs[at.row];
-    const double s = (at.m - at.c) / (at.m + at.c);
-    const Two whole = ordered_sum(at.e * ln2_upper, log_c.hi);
-    const double more = at.e * ln2_lower + log_c.lo + tail_of(s);
+    const Two log_c = logs[parts.row];
+    const double s = (parts.m - parts.c) / (parts.m + parts.c);
+    const Two whole = ordered_sum(parts.e * ln2_upper, log_c.hi);
+    const double more = parts.e * ln2_lower + log_c.lo + tail_of(s);
     return whole.hi + (2 * s + (whole.lo + (rest != 0 ? more + rest / x : more)));
 }
 

@@ -32,25 +32,25 @@ double quantile(std::vector<double> values, double q) {
     ensure(!values.empty(), "a quantile of something");
     if (std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return std::nan("");
     std::sort(values.begin(), values.end());
-    const double at = q * static_cast<double>(values.size() - 1);
-    const std::size_t below = static_cast<std::size_t>(at);
+    const double rank = q * static_cast<double>(values.size() - 1);
+    const std::size_t below = static_cast<std::size_t>(rank);
     const std::size_t above = std::min(below + 1, values.size() - 1);
-    const double t = at - static_cast<double>(below);
+    const double t = rank - static_cast<double>(below);
     return t == 0 ? values[below] : values[below] + t * (values[above] - values[below]);
 }
 
 // ---- Rates with exact binomial intervals.
 
-std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t of) {
-    if (of == 0) return {0, 1};
-    const ShareInterval p = binomial_interval(static_cast<double>(of), static_cast<double>(hits), 0.025);
+std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t trials) {
+    if (trials == 0) return {0, 1};
+    const ShareInterval p = binomial_interval(static_cast<double>(trials), static_cast<double>(hits), 0.025);
     return {p.low, p.high};
 }
 
-std::string rate_text(std::uint64_t hits, std::uint64_t of) {
-    const auto [low, high] = rate_interval(hits, of);
-    return fmt::format("{} of {} = {:.3g} (95 %: {:.3g} to {:.3g})", hits, of,
-        of ? static_cast<double>(hits) / static_cast<double>(of) : 0.0, low, high);
+std::string rate_text(std::uint64_t hits, std::uint64_t trials) {
+    const auto [low, high] = rate_interval(hits, trials);
+    return fmt::format("{} of {} = {:.3g} (95 %: {:.3g} to {:.3g})", hits, trials,
+        trials ? static_cast<double>(hits) / static_cast<double>(trials) : 0.0, low, high);
 }
 
 // ---- Series and continued fractions of the incomplete gamma and beta functions (Abramowitz & Stegun 6.5.29, 6.5.31,
@@ -74,9 +74,9 @@ double stirling_error(double n) {
 
 /// x ln(x/m) + m - x, without cancellation near x = m.
 double deviance(double x, double m) {
-    const double off = x - m, v = off / (x + m);
-    if (!(std::fabs(v) < 0.1)) return x * math::log(x / m) - off;
-    double sum = off * v, term = 2 * x * v;
+    const double deviation = x - m, v = deviation / (x + m);
+    if (!(std::fabs(v) < 0.1)) return x * math::log(x / m) - deviation;
+    double sum = deviation * v, term = 2 * x * v;
     for (int k = 3;; k += 2) {
         const double next = sum + (term *= v * v) / k;
         if (next == sum) return sum;
@@ -132,8 +132,8 @@ double gamma_fraction(double a, double x) {
 double beta_fraction(double a, double b, double x, double y) {
     const double f = fraction(1, [&](int k, double& over, double& under) {
         const int m = k / 2;
-        const double at = a + 2 * m;
-        over = k & 1 ? -(a + m) * (a + b + m) * x / (at * (at + 1)) : m * (b - m) * x / ((at - 1) * at);
+        const double order = a + 2 * m;
+        over = k & 1 ? -(a + m) * (a + b + m) * x / (order * (order + 1)) : m * (b - m) * x / ((order - 1) * order);
         under = 1;
     });
     return binomial_density(a, b, x, y) * b / (a + b) * f;
@@ -204,12 +204,12 @@ double fisher_exact(std::uint64_t ka, std::uint64_t na, std::uint64_t kb, std::u
     }
     constexpr double slack = 1 + 1e-9;  // outcomes with equal probability differ by rounding
     const double seen = weight[ka - low] * slack;
-    double all = 0, extreme = 0;
+    double total = 0, extreme = 0;
     for (const double w : weight) {
-        all += w;
+        total += w;
         extreme += w <= seen ? w : 0;
     }
-    return std::min(1.0, extreme / all);
+    return std::min(1.0, extreme / total);
 }
 
 double binomial_exact(std::uint64_t k, std::uint64_t n, double p) {
@@ -348,22 +348,22 @@ MeanInterval mean_interval(std::span<const double> values, double confidence) {
     return out;
 }
 
-MeanInterval count_interval(std::span<const double> counts, double of, double confidence) {
+MeanInterval count_interval(std::span<const double> counts, double trials, double confidence) {
     MeanInterval out = mean_interval(counts, confidence);
     if (out.n < 2) return out;
-    const double check_cases = static_cast<double>(out.n) * of, p = out.mean / of;
+    const double check_cases = static_cast<double>(out.n) * trials, p = out.mean / trials;
     const ShareInterval independent = binomial_interval(check_cases, std::round(p * check_cases), (1 - confidence) / 2);
     // |p' - p| = t se' at both ends, where the standard error of p' is that of p scaled as a binomial's, p' (1 - p').
     double low = p, high = p;
     if (p > 0 && p < 1) {
-        const double t_se = student_quantile(0.5 + confidence / 2, static_cast<double>(out.n - 1)) * out.se / of;
+        const double t_se = student_quantile(0.5 + confidence / 2, static_cast<double>(out.n - 1)) * out.se / trials;
         const double c = t_se * t_se / (p * (1 - p));
         const double middle = (p + c / 2) / (1 + c), half = std::sqrt(t_se * t_se + c * c / 4) / (1 + c);
         low = middle - half;
         high = middle + half;
     }
-    out.low = std::max(0.0, of * std::min(low, independent.low));
-    out.high = std::min(of, of * std::max(high, independent.high));
+    out.low = std::max(0.0, trials * std::min(low, independent.low));
+    out.high = std::min(trials, trials * std::max(high, independent.high));
     return out;
 }
 
@@ -392,26 +392,26 @@ double lone_share(std::size_t count) {
 namespace {
 
 /// 1 + 1/2 + ... + 1/of under any dependence, else 1.
-double dependence_factor(double of, bool dependent) {
+double dependence_factor(double tests, bool dependent) {
     double harmonic = 1;
-    for (double i = 2; dependent && i <= of; ++i) harmonic += 1 / i;
+    for (double i = 2; dependent && i <= tests; ++i) harmonic += 1 / i;
     return harmonic;
 }
 
 }  // namespace
 
-double simes_p(std::span<const double> p, double of, bool dependent) {
-    const double factor = of * dependence_factor(of, dependent);
+double simes_p(std::span<const double> p, double tests, bool dependent) {
+    const double factor = tests * dependence_factor(tests, dependent);
     double out = 1;
     for (std::size_t i = 0; i < p.size(); ++i) out = std::min(out, p[i] * factor / static_cast<double>(i + 1));
     return out;
 }
 
-std::size_t discovered(std::span<const double> p, double of, double alpha, bool dependent) {
-    const double harmonic = dependence_factor(of, dependent);
+std::size_t discovered(std::span<const double> p, double tests, double alpha, bool dependent) {
+    const double harmonic = dependence_factor(tests, dependent);
     std::size_t last = 0;
     for (std::size_t i = 0; i < p.size(); ++i)
-        if (p[i] <= alpha * static_cast<double>(i + 1) / (of * harmonic)) last = i + 1;
+        if (p[i] <= alpha * static_cast<double>(i + 1) / (tests * harmonic)) last = i + 1;
     return last;
 }
 

@@ -27,9 +27,9 @@ Spread spread(std::span<const double> x);
 
 /// Returns the k-th smallest of these numbers, k from 0; there are more than k.
 inline double order_statistic(std::vector<double> v, std::size_t k) {
-    const auto at = v.begin() + static_cast<std::ptrdiff_t>(k);
-    std::nth_element(v.begin(), at, v.end());
-    return *at;
+    const auto kth = v.begin() + static_cast<std::ptrdiff_t>(k);
+    std::nth_element(v.begin(), kth, v.end());
+    return *kth;
 }
 
 /// Returns the middle one, the upper of the two for an even count; 0 for none.
@@ -44,9 +44,9 @@ double quantile(std::vector<double> values, double q);
 // ---- A rate with its interval.
 
 /// Clopper & Pearson 1934: the 95 % interval of a rate.
-std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t of);
+std::pair<double, double> rate_interval(std::uint64_t hits, std::uint64_t trials);
 /// "3 of 1000 = 0.003 (95 %: 0.000619 to 0.00874)".
-std::string rate_text(std::uint64_t hits, std::uint64_t of);
+std::string rate_text(std::uint64_t hits, std::uint64_t trials);
 
 // ---- Tails and quantiles of the distributions used by checks and intervals, from functions.h alone, so the bits are
 // the same on every machine; relative error below 1e-12 for counts and degrees up to 1e6 (statistics_test.cpp, against
@@ -132,11 +132,11 @@ struct MeanInterval {
 /// t interval of the mean; `confidence` in (0, 1), e.g. 0.95.
 MeanInterval mean_interval(std::span<const double> values, double confidence);
 
-/// Interval of a mean of counts, each of `of` possible events; it lies in [0, of]. Clopper & Pearson 1934 of their sum,
-/// as for independent events, which is also valid if these are not equally probable (Hoeffding 1956); if the counts
-/// spread more than such events would, like those of correlated pixels, the wider score interval (Wilson 1927) with
-/// their own spread and Student's t.
-MeanInterval count_interval(std::span<const double> counts, double of, double confidence);
+/// Interval of a mean of counts, each of `trials` possible events; it lies in [0, trials]. Clopper & Pearson 1934 of
+/// their sum, as for independent events, which is also valid if these are not equally probable (Hoeffding 1956); if the
+/// counts spread more than such events would, like those of correlated pixels, the wider score interval (Wilson 1927)
+/// with their own spread and Student's t.
+MeanInterval count_interval(std::span<const double> counts, double trials, double confidence);
 
 /// Welch 1947: two means with unequal variances. `p` is two-sided; equal constants have p = 1, unequal ones p = 0.
 struct Welch {
@@ -157,11 +157,11 @@ double lone_share(std::size_t k);
 /// Hochberg 1995), under any dependence if `dependent` (Benjamini & Yekutieli 2001). NaN: not tested. Under the global
 /// null the probability of any rejection is at most alpha.
 std::vector<bool> discoveries(std::span<const double> p, double alpha, bool dependent);
-/// Returns how many of the smallest p, ascending, are rejected; `of` were tested. Those above alpha may be omitted.
-std::size_t discovered(std::span<const double> rising, double of, double alpha, bool dependent);
+/// Returns how many of the smallest p, ascending, are rejected; `tests` were tested. Those above alpha may be omitted.
+std::size_t discovered(std::span<const double> rising, double tests, double alpha, bool dependent);
 /// Returns the smallest alpha at which discovered() is above 0, at most 1: the p-value of "no hypothesis is false"
 /// (Simes 1986).
-double simes_p(std::span<const double> rising, double of, bool dependent);
+double simes_p(std::span<const double> rising, double tests, bool dependent);
 /// The same with the probability of any false one at most alpha (Holm 1979).
 std::vector<bool> holm(std::span<const double> p, double alpha);
 
@@ -181,9 +181,9 @@ inline std::optional<std::vector<double>> solved(
         std::swap(a[k], a[pivot]);
         std::swap(b[k], b[pivot]);
         for (std::size_t i = k + 1; i < n; ++i) {
-            const double by = a[i][k] / a[k][k];
-            for (std::size_t j = k; j < n; ++j) a[i][j] -= by * a[k][j];
-            b[i] -= by * b[k];
+            const double multiple = a[i][k] / a[k][k];
+            for (std::size_t j = k; j < n; ++j) a[i][j] -= multiple * a[k][j];
+            b[i] -= multiple * b[k];
         }
     }
     for (std::size_t k = n; k-- > 0;) {

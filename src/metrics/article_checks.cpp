@@ -163,9 +163,9 @@ FalseRejection false_rejection(
     for_each_pack(lambert, runs, [&](const ShadingPoints& points, std::size_t first) {
         const Moments m = estimate_points(points, "phong", n, adapter.seed, isa, &monitor.stop);
         for (std::size_t i = 0; i < points.count; ++i) {
-            const double mean = m.g[i] / pi / static_cast<double>(n), off = mean - 1;
+            const double mean = m.g[i] / pi / static_cast<double>(n), deviation = mean - 1;
             const double se = std::sqrt(m.spread[i] / static_cast<double>(n) / static_cast<double>(n - 1));
-            rejected[first + i] = std::fabs(off) > bound * se;
+            rejected[first + i] = std::fabs(deviation) > bound * se;
         }
     });
     for (int r : rejected) out.rejected += r;

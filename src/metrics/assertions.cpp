@@ -33,8 +33,8 @@ double of_furnace(const ParsedQuantity& q, const Metrics& metrics) {
 }
 
 QuantityOf make_adapter(const std::string& word) {
-    for (const QuantityWord& known : quantity_words())
-        if (known.word == word) return known.adapter;
+    for (const QuantityWord& quantity : quantity_words())
+        if (quantity.word == word) return quantity.adapter;
     throw Bug(std::source_location::current(), "a quantity is parsed before it is looked up");
 }
 
@@ -104,34 +104,37 @@ struct Measurements {
 bool is_of_a_run(const ParsedQuantity& q) { return !q.number && make_adapter(q.word) == QuantityOf::run; }
 
 /// Returns which seeds of the series an assertion needs and this run does not have; "" if none is missing.
-std::string seeds_missing(const AssertionPlan& plan, const Measurements& of) {
-    const auto& series = of.metrics.series;
+std::string seeds_missing(const AssertionPlan& plan, const Measurements& measurements) {
+    const auto& series = measurements.metrics.series;
     if (!is_of_a_run(plan.check.left) && !is_of_a_run(plan.check.right)) return "";
     const auto ran = [&](std::uint32_t seed) {
-        return std::ranges::find(of.runs.seeds(), seed) != of.runs.seeds().end();
+        return std::ranges::find(measurements.runs.seeds(), seed) != measurements.runs.seeds().end();
     };
-    if (series.empty() || of.runs.seeds().empty() || std::ranges::all_of(of.seeds(plan.median), ran)) return "";
+    if (series.empty() || measurements.runs.seeds().empty() ||
+        std::ranges::all_of(measurements.seeds(plan.median), ran))
+        return "";
     return plan.median && series.size() > 1 ? "needs seeds 1 to " + std::to_string(series.size()) : "needs seed 1";
 }
 
 /// Evaluates one side of an assertion: its value and remarks.
-double side(ParsedQuantity q, bool over_seeds, const Measurements& of, AssertionResult& out) {
-    (void)resolve_quantity(q, of.experiment);  // an experiment built in code may omit n
+double side(ParsedQuantity q, bool over_seeds, const Measurements& measurements, AssertionResult& out) {
+    (void)resolve_quantity(q, measurements.experiment);  // an experiment built in code may omit n
     std::vector<double> values;
-    for (const std::uint32_t seed : of.seeds(over_seeds))
-        values.push_back(value_of(
-            q, of.metrics, of.experiment, seed, of.plate_bytes, [&](const RunKey& key) { return of.runs.find(key); }));
+    for (const std::uint32_t seed : measurements.seeds(over_seeds))
+        values.push_back(value_of(q, measurements.metrics, measurements.experiment, seed, measurements.plate_bytes,
+            [&](const RunKey& key) { return measurements.runs.find(key); }));
     const double value = quantile(values, 0.5);
     if (!out.skipped.empty()) return value;
-    out.reference_good = out.reference_good && stands_out(q, value, of.metrics, of.experiment);
-    if (!of.drawn && !q.number && make_adapter(q.word) == QuantityOf::plate) out.skipped = "no plates were drawn";
+    out.reference_good = out.reference_good && stands_out(q, value, measurements.metrics, measurements.experiment);
+    if (!measurements.drawn && !q.number && make_adapter(q.word) == QuantityOf::plate)
+        out.skipped = "no plates were drawn";
     return value;
 }
 
 /// "plate_bytes(hero) > 0": always true for a run that completes.
-bool cannot_fail(const ParsedQuantity& left, const std::string& op, const ParsedQuantity& right) {
-    const bool always_there = left.word == "plate_bytes" || left.word == "region_pixels";
-    return !left.number && always_there && right.number && *right.number <= 0 && (op == ">" || op == ">=");
+bool cannot_fail(const ParsedQuantity& value, const std::string& op, const ParsedQuantity& right) {
+    const bool always_there = value.word == "plate_bytes" || value.word == "region_pixels";
+    return !value.number && always_there && right.number && *right.number <= 0 && (op == ">" || op == ">=");
 }
 
 }  // namespace

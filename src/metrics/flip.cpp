@@ -22,9 +22,9 @@ namespace {
 
 using Weights = std::vector<double>;  // 2 reach + 1
 
-template <class Of> Weights weights(int reach, Of of) {
+template <class Of> Weights weights(int reach, Of formula) {
     Weights out;
-    for (int k = -reach; k <= reach; ++k) out.push_back(of(static_cast<double>(k)));
+    for (int k = -reach; k <= reach; ++k) out.push_back(formula(static_cast<double>(k)));
     return out;
 }
 
@@ -97,9 +97,9 @@ private:
         const double sum = sum_of(blur(part));
         return part.a * std::sqrt(pi / part.b) * sum * sum;
     }
-    template <class Of> Weights feature(Of of) const { return within(feature_radius(ppd_), of); }
-    template <class Of> Weights within(int radius, Of of) const {
-        return weights(reach_, [&](double k) { return std::fabs(k) <= radius ? of(k) : 0.0; });
+    template <class Of> Weights feature(Of formula) const { return within(feature_radius(ppd_), formula); }
+    template <class Of> Weights within(int radius, Of formula) const {
+        return weights(reach_, [&](double k) { return std::fabs(k) <= radius ? formula(k) : 0.0; });
     }
     /// Positive values sum to one, negative ones to minus one.
     static std::vector<float> balanced(Weights weights) {
@@ -176,11 +176,11 @@ void compute_tile(const Wanted& wanted, const Box& box, const FilterSet& filters
 
 /// No exposures: LDR.
 void compute_flips(
-    const std::vector<Wanted>& all, double ppd, std::span<const float> exposures, const std::string& isa) {
+    const std::vector<Wanted>& jobs, double ppd, std::span<const float> exposures, const std::string& isa) {
     const FilterSet filters(ppd);
     const FlipKernel kernel = flip_kernel_for(isa);
     std::vector<std::pair<const Wanted*, Box>> tiles;
-    for (const Wanted& wanted : all)
+    for (const Wanted& wanted : jobs)
         for (int y = wanted.box.y0; y <= wanted.box.y1; y += tile_height)
             for (int x = wanted.box.x0; x <= wanted.box.x1; x += tile_width)
                 tiles.push_back({&wanted,

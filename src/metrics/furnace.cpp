@@ -31,10 +31,10 @@ FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan,
     const auto arm = std::find_if(
         experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
     ensure(arm != experiment.arms.end(), "a furnace's arm is known");
-    const auto of = experiment.find_surface(plan.shape);
-    ensure(of.has_value(), "a furnace's shape is known");
+    const auto surface_index = experiment.find_surface(plan.shape);
+    ensure(surface_index.has_value(), "a furnace's shape is known");
     const bool lobe_only = plan.part == FurnacePart::lobe;
-    const Surface surface = furnace_surface(experiment, experiment.material(*of), lobe_only);
+    const Surface surface = furnace_surface(experiment, experiment.material(*surface_index), lobe_only);
     const ShadingPoints shading_points = furnace_points(surface, 1);
     FurnaceDraws out;
     out.samples.resize(plan.n);
@@ -110,9 +110,9 @@ ShadingPoints furnace_points(const Surface& surface, std::size_t count, double c
 // ---- Draws four million samples over the region's pixels, at most 256 per pixel, and keeps the largest of all.
 
 TailPlan tail_plan(const Box& box) {
-    constexpr std::uint64_t most = 4'000'000, most_a_pixel = 256;
+    constexpr std::uint64_t sample_limit = 4'000'000, most_a_pixel = 256;
     const std::uint64_t pixels = static_cast<std::uint64_t>(box.width()) * static_cast<std::uint64_t>(box.height());
-    const std::uint64_t n = std::min(std::max<std::uint64_t>(most / pixels, 1), most_a_pixel);
+    const std::uint64_t n = std::min(std::max<std::uint64_t>(sample_limit / pixels, 1), most_a_pixel);
     const std::size_t length = tail_length(pixels * n);
     return {n, length == 0 ? 0 : length + 1};
 }

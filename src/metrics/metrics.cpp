@@ -14,15 +14,15 @@
 namespace crescent {
 
 const RegionMetrics* RunMetrics::region(const std::string& name) const {
-    const auto at =
+    const auto found =
         std::find_if(regions.begin(), regions.end(), [&](const RegionMetrics& r) { return r.region == name; });
-    return at == regions.end() ? nullptr : &*at;
+    return found == regions.end() ? nullptr : &*found;
 }
 
 const RunMetrics* Metrics::find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const {
     const RunKey key{.arm = arm, .n = n, .s = s, .seed = seed};
-    const auto at = std::find_if(runs.begin(), runs.end(), [&](const RunMetrics& r) { return r.key == key; });
-    return at == runs.end() ? nullptr : &*at;
+    const auto found = std::find_if(runs.begin(), runs.end(), [&](const RunMetrics& r) { return r.key == key; });
+    return found == runs.end() ? nullptr : &*found;
 }
 
 bool Metrics::all_hold() const { return std::ranges::none_of(assertions, &AssertionResult::failed); }
@@ -47,8 +47,8 @@ RunIndex::RunIndex(const std::vector<RunMetrics>& runs) {
 }
 
 const RunMetrics* RunIndex::find(const RunKey& key) const {
-    const auto at = runs_.find(key);
-    return at == runs_.end() ? nullptr : at->second;
+    const auto found = runs_.find(key);
+    return found == runs_.end() ? nullptr : found->second;
 }
 
 // ---- A metric reads pixels one by one and then returns a value; the two lists of metrics are expanded to readers
@@ -84,14 +84,14 @@ struct FrameReaders {
 #undef CRESCENT_READER
 
 FilmPixel pixel_at(
-    const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, bool paired, std::size_t at) {
-    return {.y = static_cast<double>(film.y[at]),
-        .reference = static_cast<double>(reference.y[at]),
-        .var = static_cast<double>(film.var[at]),
-        .largest = static_cast<double>(film.largest[at]),
-        .horizon = static_cast<double>(film.horizon[at]),
-        .geometry = shapes.shape[at] >= 0,
-        .pair_error = paired ? static_cast<double>(reference.error[at]) : 0};
+    const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, bool paired, std::size_t index) {
+    return {.y = static_cast<double>(film.y[index]),
+        .reference = static_cast<double>(reference.y[index]),
+        .var = static_cast<double>(film.var[index]),
+        .largest = static_cast<double>(film.largest[index]),
+        .horizon = static_cast<double>(film.horizon[index]),
+        .geometry = shapes.shape[index] >= 0,
+        .pair_error = paired ? static_cast<double>(reference.error[index]) : 0};
 }
 
 /// The squared error of a region against a paired reference. With d = Y - R and e = (R1 - R2)/2, whose square estimates
@@ -148,8 +148,8 @@ RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& 
     }
     facts.pixels = static_cast<double>(film.size());
     FrameReaders readers;
-    for (std::size_t at = 0; at < film.size(); ++at) {
-        const FilmPixel p = pixel_at(film, reference, shapes, paired, at);
+    for (std::size_t index = 0; index < film.size(); ++index) {
+        const FilmPixel p = pixel_at(film, reference, shapes, paired, index);
         CRESCENT_FRAME_METRICS(CRESCENT_ADD)
 #undef CRESCENT_ADD
     }
@@ -160,12 +160,12 @@ RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& 
 }
 
 double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box) {
-    return std::sqrt(box_mean(
-        width, box, [&](std::size_t at) { return square(static_cast<double>(a[at]) - static_cast<double>(b[at])); }));
+    return std::sqrt(box_mean(width, box,
+        [&](std::size_t index) { return square(static_cast<double>(a[index]) - static_cast<double>(b[index])); }));
 }
 
 double rms(const std::vector<float>& a, int width, const Box& box) {
-    return std::sqrt(box_mean(width, box, [&](std::size_t at) { return square(static_cast<double>(a[at])); }));
+    return std::sqrt(box_mean(width, box, [&](std::size_t index) { return square(static_cast<double>(a[index])); }));
 }
 
 ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, const Region& region,
@@ -203,8 +203,8 @@ std::vector<ReferenceQuality> paired_quality(
             m.region = region.name;
             m.paired_error = rms(film.error, film.width, region.box);
             for (const RunMetrics& run : runs)
-                if (const RegionMetrics* at = run.region(region.name); at && run.key.s == film.s)
-                    m.error_share = std::max(m.error_share, share_of_reference(*at));
+                if (const RegionMetrics* measured = run.region(region.name); measured && run.key.s == film.s)
+                    m.error_share = std::max(m.error_share, share_of_reference(*measured));
         }
     return out;
 }
@@ -290,8 +290,8 @@ std::vector<SeedSpread> bands(
             const bool of_pair = paired && metric.starts_with("rmse");
             for (double& v : values)
                 if (of_pair && std::isnan(v)) v = -1;
-            const auto quantile = [&](const std::vector<double>& of, double q) {
-                const double value = crescent::quantile(of, q);
+            const auto quantile = [&](const std::vector<double>& of_seeds, double q) {
+                const double value = crescent::quantile(of_seeds, q);
                 return of_pair && value < 0 ? not_paired : value;
             };
             SeedSpread b;
@@ -383,13 +383,13 @@ Line fit_power(const std::vector<std::uint64_t>& n, const std::vector<double>& y
 Line fit_known(const std::vector<std::uint64_t>& n, const std::vector<double>& rmse, bool paired) {
     if (!paired) return fit_power(n, rmse);
     std::vector<std::uint64_t> known_n;
-    std::vector<double> known;
+    std::vector<double> known_rmse;
     for (std::size_t i = 0; i < n.size(); ++i)
         if (!std::isnan(rmse[i])) {
             known_n.push_back(n[i]);
-            known.push_back(rmse[i]);
+            known_rmse.push_back(rmse[i]);
         }
-    return known.size() < 2 ? Line{std::nan(""), std::nan("")} : fit_power(known_n, known);
+    return known_rmse.size() < 2 ? Line{std::nan(""), std::nan("")} : fit_power(known_n, known_rmse);
 }
 
 /// Empty if the first seed lacks a sample count, as in a part of a run.
@@ -414,16 +414,16 @@ std::optional<Ladder> ladder(
         paired = run.region(region)->is_paired();
         if (run.key.seed == seed) out.heavy = out.heavy || heavy(run, "rmse." + region);
     }
-    std::erase_if(by_seed, [&](const auto& of) { return of.second.size() < arm.n.size(); });
+    std::erase_if(by_seed, [&](const auto& entry) { return entry.second.size() < arm.n.size(); });
     if (!by_seed.contains(seed)) return {};
     out.rmse = by_seed.at(seed);
-    const Line own = fit_known(out.n, out.rmse, paired);
+    const Line line = fit_known(out.n, out.rmse, paired);
     std::vector<double> slopes;
     for (const auto& [_, values] : by_seed) slopes.push_back(fit_known(out.n, values, paired).slope);
     const bool many = slopes.size() > 1;
-    out.slope = own.slope;
-    out.low = many ? quantile(slopes, 0.05) : own.slope - own.half_width;
-    out.high = many ? quantile(slopes, 0.95) : own.slope + own.half_width;
+    out.slope = line.slope;
+    out.low = many ? quantile(slopes, 0.05) : line.slope - line.half_width;
+    out.high = many ? quantile(slopes, 0.95) : line.slope + line.half_width;
     return out;
 }
 
@@ -434,8 +434,8 @@ std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunM
     for (const ArmPlan& arm : experiment.arms) {
         if (arm.n.size() < 2) continue;
         for (const Region& region : experiment.regions)
-            if (auto of = ladder(runs, arm, region.name, experiment.s(), experiment.seed))
-                out.push_back(std::move(*of));
+            if (auto fitted = ladder(runs, arm, region.name, experiment.s(), experiment.seed))
+                out.push_back(std::move(*fitted));
     }
     return out;
 }

@@ -50,11 +50,11 @@ struct RunMetrics {
 #undef CRESCENT_FIELD
 
 /// Calls f(name, info, value) for each metric of a region, or of the frame, in the order of the list.
-template <class F> void for_each_metric(const RegionMetrics& of, F&& f) {
-#define CRESCENT_CALL(name, Type) f(std::string_view(#name), Type::info, of.name);
+template <class F> void for_each_metric(const RegionMetrics& metrics, F&& f) {
+#define CRESCENT_CALL(name, Type) f(std::string_view(#name), Type::info, metrics.name);
     CRESCENT_REGION_METRICS(CRESCENT_CALL)
 }
-template <class F> void for_each_metric(const RunMetrics& of, F&& f) {
+template <class F> void for_each_metric(const RunMetrics& metrics, F&& f) {
     CRESCENT_FRAME_METRICS(CRESCENT_CALL)
 #undef CRESCENT_CALL
 }

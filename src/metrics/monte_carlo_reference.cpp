@@ -18,10 +18,10 @@ namespace {
 
 /// Returns the same shading points with lights that turn X into the requested part: light k alone, or the fill on the
 /// lobe alone. The other lights still hide what is behind them, but have radiance 0 and are never aimed at.
-ShadingPoints only_light(const Scene& scene, const ShadingPoints& all, std::size_t k) {
-    ShadingPoints shading_points = all;
+ShadingPoints only_light(const Scene& scene, const ShadingPoints& points, std::size_t k) {
+    ShadingPoints shading_points = points;
     const auto tinted = [&](const Rgb& light, std::size_t i) {
-        const Rgb& tint = all.tint[i];
+        const Rgb& tint = points.tint[i];
         return luminance(Rgb{light[0] * tint[0], light[1] * tint[1], light[2] * tint[2]});
     };
     const auto alone = [&](auto& light, const auto& as_it_was, bool this_one) {
@@ -35,15 +35,16 @@ ShadingPoints only_light(const Scene& scene, const ShadingPoints& all, std::size
                                   : -shading_points.fill_s[i];
         }
     };
-    for (std::size_t j = 0; j < shading_points.disks.size(); ++j) alone(shading_points.disks[j], all.disks[j], j == k);
+    for (std::size_t j = 0; j < shading_points.disks.size(); ++j)
+        alone(shading_points.disks[j], points.disks[j], j == k);
     for (std::size_t j = 0; j < shading_points.others.size(); ++j)
-        alone(shading_points.others[j], all.others[j], shading_points.disks.size() + j == k);
+        alone(shading_points.others[j], points.others[j], shading_points.disks.size() + j == k);
     for (auto* array : {&shading_points.fill_d, &shading_points.fill_s}) std::fill(array->begin(), array->end(), 0.0f);
     return shading_points;
 }
 
-ShadingPoints only_lobe(const ShadingPoints& all) {
-    ShadingPoints shading_points = all;
+ShadingPoints only_lobe(const ShadingPoints& points) {
+    ShadingPoints shading_points = points;
     shading_points.disks.clear();
     shading_points.others.clear();
     std::fill(shading_points.fill_d.begin(), shading_points.fill_d.end(), 0.0f);
@@ -76,8 +77,8 @@ bool may_be_missed(const ShadingPoints& shading_points, std::size_t i, std::size
     const double s =
         lobe.exponent(static_cast<double>(shading_points.s[i]), static_cast<double>(shading_points.alpha[i]));
     const double across = lobe.about_mirror ? 1 : wo.z, far = std::sqrt(dot(c, c));
-    const double off = math::acos(std::clamp(dot(c, mirror(wo)) / far, -1.0, 1.0));
-    const bool peak_is_near = off < math::atan2(radius, far) + 8 / std::sqrt(s);
+    const double distance = math::acos(std::clamp(dot(c, mirror(wo)) / far, -1.0, 1.0));
+    const bool peak_is_near = distance < math::atan2(radius, far) + 8 / std::sqrt(s);
     return peak_is_near &&
         n * 2 * across / (s + 1) < 10 * sqr(radius / far);  // solid angles 2 pi / (s + 1) and pi (r / d)^2
 }

@@ -89,14 +89,14 @@ std::vector<double> moved_apart(const std::vector<double>& places, double pitch,
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return places[a] < places[b]; });
     std::vector<double> moved = places;
-    double least = first, most = last;
+    double least = first, greatest = last;
     for (const std::size_t i : order) {
         moved[i] = std::max(moved[i], least);
         least = moved[i] + pitch;
     }
     for (auto i = order.rbegin(); i != order.rend(); ++i) {
-        moved[*i] = std::min(moved[*i], most);
-        most = moved[*i] - pitch;
+        moved[*i] = std::min(moved[*i], greatest);
+        greatest = moved[*i] - pitch;
     }
     return moved;
 }
@@ -147,20 +147,20 @@ void Chart::diamonds(const std::vector<Point>& points, std::string_view css) {
 
 void Chart::band(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high,
     std::string_view css) {
-    std::string there, back;
+    std::string outward, back;
     for (std::size_t i = 0; i < x.size(); ++i) {
         if (!drawable(x[i], low[i]) || !drawable(x[i], high[i])) continue;
-        there += fmt::format("{}{:.1f} {:.1f}", there.empty() ? "M" : " L", px(x[i]), py(high[i]));
+        outward += fmt::format("{}{:.1f} {:.1f}", outward.empty() ? "M" : " L", px(x[i]), py(high[i]));
         back = fmt::format(" L{:.1f} {:.1f}", px(x[i]), py(low[i])) + back;
     }
-    if (!there.empty()) inside_ += fmt::format("<path class=\"area {}\" d=\"{}{} Z\" />\n", css, there, back);
+    if (!outward.empty()) inside_ += fmt::format("<path class=\"area {}\" d=\"{}{} Z\" />\n", css, outward, back);
 }
 
 void Chart::bar(double x, double low, double high, std::string_view css) {
     if (!drawable(x, low) || !drawable(x, high)) return;
-    const double at = px(x), from = py(low), to = py(high);
+    const double column = px(x), from = py(low), to = py(high);
     body_ += fmt::format(
-        "<path class=\"line {}\" d=\"M{:.1f} {:.1f} h8 m-4 0 V{:.1f} m-4 0 h8\" />\n", css, at - 4, from, to);
+        "<path class=\"line {}\" d=\"M{:.1f} {:.1f} h8 m-4 0 V{:.1f} m-4 0 h8\" />\n", css, column - 4, from, to);
 }
 
 void Chart::rule(double y, std::string_view css, std::string_view name) {
@@ -172,9 +172,9 @@ void Chart::rule(double y, std::string_view css, std::string_view name) {
             width_ - right_margin - 3, py(y) - 5, escape(name));
 }
 
-void Chart::name(Point at, std::string_view text, std::string_view css) {
-    if (!drawable(at.x, at.y)) return;
-    names_.push_back({px(at.x) + 8, py(at.y) + 4, escape(text), std::string(css)});
+void Chart::name(Point point, std::string_view text, std::string_view css) {
+    if (!drawable(point.x, point.y)) return;
+    names_.push_back({px(point.x) + 8, py(point.y) + 4, escape(text), std::string(css)});
 }
 
 std::string Chart::names() const {
@@ -228,21 +228,25 @@ std::string Chart::str() const {
 
 std::string strip_svg(const Strip& s) {
     constexpr double w = 132, h = 18, margin = 8, middle = h / 2;
-    std::vector<double> all{s.median, s.measured};
-    if (s.bar) all.insert(all.end(), {s.q05, s.q95});
-    if (s.has_published) all.push_back(s.published);
-    for (const double v : all)
+    std::vector<double> values{s.median, s.measured};
+    if (s.bar) values.insert(values.end(), {s.q05, s.q95});
+    if (s.has_published) values.push_back(s.published);
+    for (const double v : values)
         if (!std::isfinite(v)) return {};
-    const double low = *std::min_element(all.begin(), all.end()), high = *std::max_element(all.begin(), all.end());
-    const auto at = [&](double v) { return high > low ? margin + (v - low) / (high - low) * (w - 2 * margin) : w / 2; };
+    const double low = *std::min_element(values.begin(), values.end()),
+                 high = *std::max_element(values.begin(), values.end());
+    const auto position = [&](double v) {
+        return high > low ? margin + (v - low) / (high - low) * (w - 2 * margin) : w / 2;
+    };
     std::string marks = fmt::format("<path class=\"grid\" d=\"M0 {} H{}\" />", middle, w);
     if (s.bar)
-        marks += fmt::format("<rect class=\"reach\" x=\"{:.1f}\" y=\"4.5\" width=\"{:.1f}\" height=\"9\" />", at(s.q05),
-            std::max(1.0, at(s.q95) - at(s.q05)));
-    marks += fmt::format("<path class=\"median\" d=\"M{:.1f} 2 V16\" />", at(s.median));
+        marks += fmt::format("<rect class=\"reach\" x=\"{:.1f}\" y=\"4.5\" width=\"{:.1f}\" height=\"9\" />",
+            position(s.q05), std::max(1.0, position(s.q95) - position(s.q05)));
+    marks += fmt::format("<path class=\"median\" d=\"M{:.1f} 2 V16\" />", position(s.median));
     if (s.has_published)
-        marks += fmt::format("<path class=\"diamond pub\" d=\"M{:.1f} 4 l5 5 l-5 5 l-5 -5 z\" />", at(s.published));
-    marks += fmt::format("<circle class=\"dot meas\" cx=\"{:.1f}\" cy=\"9\" r=\"3\" />", at(s.measured));
+        marks +=
+            fmt::format("<path class=\"diamond pub\" d=\"M{:.1f} 4 l5 5 l-5 5 l-5 -5 z\" />", position(s.published));
+    marks += fmt::format("<circle class=\"dot meas\" cx=\"{:.1f}\" cy=\"9\" r=\"3\" />", position(s.measured));
     std::string words = fmt::format("median {}, measured {}", figures(s.median), figures(s.measured));
     if (s.bar) words += fmt::format(", 5 to 95 % from {} to {}", figures(s.q05), figures(s.q95));
     if (s.has_published) words += fmt::format(", published {}", figures(s.published));

@@ -70,7 +70,7 @@ public:
     void rule(double y, std::string_view css, std::string_view name);
     /// Draws words at a data point, shifted right by a few pixels; for the end of a line. Names that would overlap are
     /// moved apart.
-    void name(Point at, std::string_view text, std::string_view css);
+    void name(Point point, std::string_view text, std::string_view css);
     std::string str() const;
 
 private:

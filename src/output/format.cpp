@@ -72,8 +72,8 @@ std::string with_error(double value, double half) {
 
 std::string percent_with_error(double share, double half) {
     const std::string both = with_error(100 * share, 100 * half);
-    const std::size_t at = both.find(" +-");
-    return at == std::string::npos ? both + " %" : both.substr(0, at) + " %" + both.substr(at) + " %";
+    const std::size_t sign = both.find(" +-");
+    return sign == std::string::npos ? both + " %" : both.substr(0, sign) + " %" + both.substr(sign) + " %";
 }
 
 std::string direction_text(Vec3<double> w) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", w.x, w.y, w.z); }
@@ -114,8 +114,8 @@ std::string cell_text(std::string_view text) { return text.empty() ? "–" : wit
 
 namespace {
 
-/// What follows item `i` of `of` in "a, b and c".
-const char* separator(std::size_t i, std::size_t of) { return i + 2 < of ? ", " : i + 2 == of ? " and " : ""; }
+/// What follows item `i` of `count` in "a, b and c".
+const char* separator(std::size_t i, std::size_t count) { return i + 2 < count ? ", " : i + 2 == count ? " and " : ""; }
 
 }  // namespace
 
@@ -133,9 +133,9 @@ std::string plural(std::uint64_t count, std::string_view noun) {
 
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(shortest(x)); }
 
-Json numbers(const std::vector<double>& all) {
+Json numbers(const std::vector<double>& values) {
     Json out = Json::array();
-    for (const double x : all) out.push_back(number(x));
+    for (const double x : values) out.push_back(number(x));
     return out;
 }
 
@@ -180,9 +180,10 @@ std::string base64(const std::vector<unsigned char>& bytes) {
     std::string out((bytes.size() + 2) / 3 * 4, '=');
     char* to = out.data();
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-        const unsigned word = bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
-        for (std::size_t k = 0; k <= left; ++k) to[k] = digits[word >> (18 - 6 * k) & 63];
+        const std::size_t remaining = std::min<std::size_t>(3, bytes.size() - i);
+        const unsigned word =
+            bytes[i] << 16 | (remaining > 1 ? bytes[i + 1] << 8 : 0) | (remaining > 2 ? bytes[i + 2] : 0);
+        for (std::size_t k = 0; k <= remaining; ++k) to[k] = digits[word >> (18 - 6 * k) & 63];
         to += 4;
     }
     return out;

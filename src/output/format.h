@@ -71,7 +71,7 @@ inline constexpr const char* heavy_tail = "heavy tail";
 
 /// Used for every double in a JSON file.
 Json number(double x);
-Json numbers(const std::vector<double>& all);
+Json numbers(const std::vector<double>& values);
 /// Reads what number() made. Throws Json::exception.
 double read_number(const Json& json);
 /// The same, or none for null.

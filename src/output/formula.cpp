@@ -262,9 +262,9 @@ void put_in(Node& n, const Value& value) {
 std::string mathml(std::string_view tex) { return as_mathml(Reader(tex).row()); }
 
 std::string pango(std::string_view tex, const Value& value) {
-    Node all = Reader(tex).row();
-    if (value.letter != 0) put_in(all, value);
-    return as_pango(all);
+    Node whole = Reader(tex).row();
+    if (value.letter != 0) put_in(whole, value);
+    return as_pango(whole);
 }
 
 std::string html(std::string_view words_and_tex) {

@@ -55,9 +55,9 @@ public:
         return &partial_;
     }
     std::string text_of(std::string_view name) const {
-        for (const Templates& all : {templates_, output_templates()})
-            if (const auto at = std::ranges::find(all, name, &Template::name); at != all.end())
-                return std::string(at->text);
+        for (const Templates& templates : {templates_, output_templates()})
+            if (const auto found = std::ranges::find(templates, name, &Template::name); found != templates.end())
+                return std::string(found->text);
         throw Bug(std::source_location::current(), fmt::format("{}: there is no template '{}'", page_, name));
     }
 

@@ -110,17 +110,17 @@ constexpr std::string_view entries =
     "a91601a71401a41301a112019e10019b0f01980e01950d01920b018e0a018b09028808028507028106027e05027a0403";
 constexpr int digit(char c) { return c <= '9' ? c - '0' : c - 'a' + 10; }
 constexpr int byte_of(int entry, int channel) {
-    const auto at = static_cast<std::size_t>(6 * entry + 2 * channel);
-    return 16 * digit(entries[at]) + digit(entries[at + 1]);
+    const auto digits = static_cast<std::size_t>(6 * entry + 2 * channel);
+    return 16 * digit(entries[digits]) + digit(entries[digits + 1]);
 }
 
 }  // namespace
 
 Srgb8 turbo(double t) {
     if (std::isnan(t)) return not_a_number_colour;
-    double at = std::clamp(t, 0.0, 1.0) * 255;
-    int low = std::min(static_cast<int>(at), 254);
-    double f = at - low;
+    double position = std::clamp(t, 0.0, 1.0) * 255;
+    int low = std::min(static_cast<int>(position), 254);
+    double f = position - low;
     Srgb8 out;
     for (int c = 0; c < 3; ++c) {
         out[c] = static_cast<unsigned char>(byte_of(low, c) * (1 - f) + byte_of(low + 1, c) * f + 0.5);

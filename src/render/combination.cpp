@@ -19,11 +19,11 @@ constexpr std::uint32_t selection = 0x800000;  // the block that chooses among c
 
 /// The numbers of sampler k for every row.
 std::vector<double> numbers_of(
-    const PointRows& at, const NumberBlocks& u, std::size_t k, std::size_t repeat, std::size_t count) {
+    const PointRows& rows, const NumberBlocks& u, std::size_t k, std::size_t repeat, std::size_t count) {
     std::vector<double> out;
-    out.reserve(at.count() * count);
-    for (std::size_t r = 0; r < at.runs.size(); ++r)
-        for (std::size_t i = 0; i < at.runs[r].rows; ++i)
+    out.reserve(rows.count() * count);
+    for (std::size_t r = 0; r < rows.runs.size(); ++r)
+        for (std::size_t i = 0; i < rows.runs[r].rows; ++i)
             for (std::size_t pair = 0; pair < count; pair += 2) {
                 const Vec2<float> two = u(r, i, block_of(k, pair / 2, repeat));
                 out.push_back(static_cast<double>(two.x));
@@ -32,8 +32,8 @@ std::vector<double> numbers_of(
     return out;
 }
 
-PointRun run_of(const ShadingPoints& points, std::size_t at, std::size_t rows) {
-    return {at, {points.wox[at], points.woy[at], points.woz[at]}, rows};
+PointRun run_of(const ShadingPoints& points, std::size_t index, std::size_t rows) {
+    return {index, {points.wox[index], points.woy[index], points.woz[index]}, rows};
 }
 
 WeightedDirection direction_of(const PointDraw& drawn, double pdf, double weight) {
@@ -57,32 +57,33 @@ public:
     double operator()(const PointRun& run, const PointDraw& drawn) {
         const float cos = drawn.wi.z;
         if (!(cos > 0)) return 0;
-        const std::size_t at = run.point;
+        const std::size_t index = run.point;
         const float lobe = points_.lobe < 0
             ? 0.0f
-            : lobe_value(static_cast<LobeKind>(points_.lobe), points_.s[at], points_.alpha[at], run.wo, drawn.wi);
+            : lobe_value(static_cast<LobeKind>(points_.lobe), points_.s[index], points_.alpha[index], run.wo, drawn.wi);
         if (!with_light_)
-            return double(cos) * (double(points_.diffuse[at]) / pi + points_.rho_s_exact[at] * double(lobe));
+            return double(cos) * (double(points_.diffuse[index]) / pi + points_.rho_s_exact[index] * double(lobe));
         const int k = light_met(run, drawn);
         if (k < 0 && points_.around)
             if (const double x = around_met(run, drawn, lobe); x > 0) return double(cos) * x;
         const std::size_t light = static_cast<std::size_t>(k), disks = points_.disks.size();
-        const float d = k < 0 ? points_.fill_d[at]
-            : light < disks   ? points_.disks[light].d[at]
-                              : points_.others[light - disks].d[at];
-        const float s = k < 0 ? points_.fill_s[at]
-            : light < disks   ? points_.disks[light].s[at]
-                              : points_.others[light - disks].s[at];
+        const float d = k < 0 ? points_.fill_d[index]
+            : light < disks   ? points_.disks[light].d[index]
+                              : points_.others[light - disks].d[index];
+        const float s = k < 0 ? points_.fill_s[index]
+            : light < disks   ? points_.disks[light].s[index]
+                              : points_.others[light - disks].s[index];
         return double(cos) * (double(d) + double(lobe) * double(s));
     }
 
 private:
     /// X without the cosine of the emitting triangle or of the sky that the direction meets; 0: it meets neither.
     double around_met(const PointRun& run, const PointDraw& drawn, float lobe) const {
-        const std::size_t at = run.point;
-        const Vec3f o{points_.px[at], points_.py[at], points_.pz[at]};
-        const Frame<float> frame{{points_.tx[at], points_.ty[at], points_.tz[at]},
-            {points_.bx[at], points_.by[at], points_.bz[at]}, {points_.nx[at], points_.ny[at], points_.nz[at]}};
+        const std::size_t index = run.point;
+        const Vec3f o{points_.px[index], points_.py[index], points_.pz[index]};
+        const Frame<float> frame{{points_.tx[index], points_.ty[index], points_.tz[index]},
+            {points_.bx[index], points_.by[index], points_.bz[index]},
+            {points_.nx[index], points_.ny[index], points_.nz[index]}};
         const Vec3f d = frame.to_world(drawn.wi);
         const Surroundings& around = *points_.around;
         std::uint32_t triangle = drawn.triangle;
@@ -92,7 +93,7 @@ private:
         else sky_radiance(around, drawn.texel, d, rgb);
         double sum = 0;
         for (std::size_t c = 0; c < 3; ++c)
-            sum += double(rgb[c]) * double(points_.around_d[c][at] + lobe * points_.around_s[c][at]);
+            sum += double(rgb[c]) * double(points_.around_d[c][index] + lobe * points_.around_s[c][index]);
         return sum;
     }
 
@@ -131,12 +132,12 @@ private:
 
 }  // namespace
 
-Combination::Combination(std::string name, CombinationPlan plan, Techniques of, std::shared_ptr<const Technique> target,
-    const SourceLocation& weights_at, const SourceLocation& probabilities_at,
+Combination::Combination(std::string name, CombinationPlan plan, Techniques parts,
+    std::shared_ptr<const Technique> target, const SourceLocation& weights_at, const SourceLocation& probabilities_at,
     std::shared_ptr<const ExternalSampler> weigh)
     : name_(std::move(name)),
       plan_(std::move(plan)),
-      of_(std::move(of)),
+      of_(std::move(parts)),
       target_(std::move(target)),
       weights_(plan_.weights, of_.size(), plan_.kind == CombinationKind::mis, weights_at),
       probabilities_(plan_.probabilities, of_.size(), false, probabilities_at),
@@ -246,7 +247,7 @@ double Combination::mis_weight(std::size_t k, FormulaInputs in, std::span<const 
     return share[k] > 0 ? 1 / sum : 0;
 }
 
-std::vector<double> Combination::mis_weights(const PointRows& at, std::span<const std::size_t> k,
+std::vector<double> Combination::mis_weights(const PointRows& rows, std::span<const std::size_t> k,
     std::span<const Vec3<float>> wi, const std::vector<std::vector<double>>& p) const {
     const std::size_t samplers = of_.size();
     std::vector<double> out(wi.size()), here(samplers), densities;
@@ -254,8 +255,8 @@ std::vector<double> Combination::mis_weights(const PointRows& at, std::span<cons
     std::vector<std::size_t> mine;
     std::vector<PointRun> runs;
     std::size_t row = 0;
-    for (const PointRun& run : at.runs) {
-        FormulaInputs in = formula_inputs(at.points, run);
+    for (const PointRun& run : rows.runs) {
+        FormulaInputs in = formula_inputs(rows.points, run);
         runs.push_back({run.point, run.wo, 0});
         for (std::size_t i = 0; i < run.rows; ++i, ++row) {
             for (std::size_t j = 0; j < samplers; ++j) here[j] = p[j][row];
@@ -274,7 +275,7 @@ std::vector<double> Combination::mis_weights(const PointRows& at, std::span<cons
     }
     if (mine.empty()) return out;
     std::vector<double> w(densities.size());
-    external_weights(*weigh_, {at.points, runs}, directions, densities, w);
+    external_weights(*weigh_, {rows.points, runs}, directions, densities, w);
     for (std::size_t i = 0; i < mine.size(); ++i) out[mine[i]] = w[i * samplers + k[mine[i]]];
     return out;
 }

@@ -34,10 +34,10 @@ struct SampleCost {
 
 class Combination : public ExternalSampler {
 public:
-    /// `target`: the density of ris with a sampler as target; else null. `at`: of the arm's weights and probabilities
+    /// `target`: the density of ris with a sampler as target; else null. `weights_at`, `probabilities_at`: their places
     /// in the experiment. `weigh`: gives the weights of mis in their place, or null. Throws InputError if they cannot
     /// be read.
-    Combination(std::string name, CombinationPlan plan, Techniques of, std::shared_ptr<const Technique> target,
+    Combination(std::string name, CombinationPlan plan, Techniques parts, std::shared_ptr<const Technique> target,
         const SourceLocation& weights_at, const SourceLocation& probabilities_at,
         std::shared_ptr<const ExternalSampler> weigh = nullptr);
 
@@ -53,7 +53,7 @@ public:
     std::size_t directions() const { return cost().directions; }
 
     /// Writes directions() entries for each row.
-    void sample(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample(const PointRows& rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
 
     /// Returns its density if a sample is one direction that is weighted by its density; else null.
     std::shared_ptr<const Technique> technique() const;
@@ -64,7 +64,7 @@ public:
     /// Whether they come from a function, which mis_weight() does not call.
     bool has_weight_function() const { return weigh_ != nullptr; }
     /// The same for each row, whose direction is of sampler k[row]; the densities are p[sampler][row].
-    std::vector<double> mis_weights(const PointRows& at, std::span<const std::size_t> k,
+    std::vector<double> mis_weights(const PointRows& rows, std::span<const std::size_t> k,
         std::span<const Vec3<float>> wi, const std::vector<std::vector<double>>& p) const;
 
     /// Whether kernels can estimate it: all samplers are built in, and it needs neither candidates nor a function.
@@ -75,10 +75,10 @@ public:
     void shares_at(const ShadingPoints& points, std::size_t point, std::span<double> out) const;
 
 private:
-    void sample_every(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
-    void sample_mixture(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
-    void sample_one(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
-    void sample_resampled(const PointRows& at, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_every(const PointRows& rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_mixture(const PointRows& rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_one(const PointRows& rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_resampled(const PointRows& rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
     std::uint64_t samples_of(std::size_t k) const;
     /// n_k of draw = "every", c_k of draw = "one".
     std::vector<double> shares(const FormulaInputs& in) const;

@@ -27,8 +27,8 @@ template <class F> struct FacingDisk {
 /// division. If it meets the disk, the distance is k/v.
 template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, Vec3<F> w, F& v) {
     v = dot(w, disk.n);
-    const Vec3<F> off = w * disk.k - disk.c * v;
-    return (dot(off, off) <= disk.r2 * (v * v)) & (v < number<F>(0));
+    const Vec3<F> offset = w * disk.k - disk.c * v;
+    return (dot(offset, offset) <= disk.r2 * (v * v)) & (v < number<F>(0));
 }
 
 /// Like meets_disk, for a drawn direction. A sampler that aimed at disk k already knows the result. `alone`: the scene
@@ -41,8 +41,8 @@ CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& drawn, 
             v = dot(drawn.wi, disk.n);
             return drawn.met & (v < number<F>(0));
         }
-        const auto tested = meets_disk(disk, drawn.wi, v), own = drawn.disk == number<F>(static_cast<double>(k));
-        return (own & drawn.met & (v < number<F>(0))) | (tested & !own);
+        const auto tested = meets_disk(disk, drawn.wi, v), is_own = drawn.disk == number<F>(static_cast<double>(k));
+        return (is_own & drawn.met & (v < number<F>(0))) | (tested & !is_own);
     } else {
         return meets_disk(disk, drawn.wi, v);
     }
@@ -56,8 +56,8 @@ template <class F, class D> MaskOf<F> meets_light(const LocalLight<F>& light, co
         shines = Kind::shines(light);
     });
     if constexpr (requires { drawn.met; }) {
-        const auto own = drawn.disk == number<F>(static_cast<double>(k));
-        return (own & drawn.met & shines) | (met & !own);
+        const auto is_own = drawn.disk == number<F>(static_cast<double>(k));
+        return (is_own & drawn.met & shines) | (met & !is_own);
     }
     return met;
 }

@@ -59,9 +59,9 @@ public:
         add_lights(first, count, m_.g_lobe, m_.light_g_lobe, m_.around_g_lobe, m_.around_lobe, lobe);
         for (std::size_t c = 0; c < 3; ++c) {
             for (std::size_t i = 0; i < count; ++i) {
-                const std::size_t at = first + i;
-                const double lobes = shading_points_.rho_s_exact[at] * (shading_points_.tint[at][c] * lobe[c][i]);
-                out[c][i] = shading_points_.lambert[at][c] * diffuse[c][i] + lobes;
+                const std::size_t index = first + i;
+                const double lobes = shading_points_.rho_s_exact[index] * (shading_points_.tint[index][c] * lobe[c][i]);
+                out[c][i] = shading_points_.lambert[index][c] * diffuse[c][i] + lobes;
             }
             over_n(out[c].data(), count);
         }
@@ -100,9 +100,9 @@ private:
     bool is_power_of_2_;
 };
 
-/// Returns how many points from `first` on are next to each other in the image, at most `most`.
-std::size_t run_length(const ShadingPoints& points, std::size_t first, std::size_t most) {
-    const std::size_t last = std::min(points.count, first + most);
+/// Returns how many points from `first` on are next to each other in the image, at most `limit`.
+std::size_t run_length(const ShadingPoints& points, std::size_t first, std::size_t limit) {
+    const std::size_t last = std::min(points.count, first + limit);
     std::size_t end = first + 1;
     while (end < last && points.pixel[end] == points.pixel[end - 1] + 1) ++end;
     return end - first;
@@ -124,13 +124,13 @@ void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const
     std::array<double, MeanRadiance::longest> squares, y;
     for (std::size_t first = 0, count; first < shading_points.count; first += count) {
         count = run_length(shading_points, first, MeanRadiance::longest);
-        const std::size_t at = shading_points.pixel[first];
+        const std::size_t pixel = shading_points.pixel[first];
         mean_of(first, count, mean);
         std::copy_n(m.spread.data() + first, count, squares.data());
         mean_of.over_n(squares.data(), count);
         for (std::size_t i = 0; i < count; ++i) y[i] = luminance(Rgb{mean[0][i], mean[1][i], mean[2][i]});
         const auto store = [&](std::vector<float>& plane, const auto& value) {
-            float* const to = plane.data() + at;
+            float* const to = plane.data() + pixel;
             for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<float>(value(i));
         };
         store(film.r, [&](std::size_t i) { return mean[0][i]; });
@@ -139,9 +139,9 @@ void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const
         store(film.y, [&](std::size_t i) { return y[i]; });
         store(film.second_moment, [&](std::size_t i) { return squares[i] + y[i] * y[i]; });
         store(film.var, [&](std::size_t i) { return film.n > 1 ? m.spread[first + i] / (n * (n - 1)) : 0; });
-        std::copy_n(m.largest.data() + first, count, film.largest.data() + at);
-        std::copy_n(m.horizon.data() + first, count, film.horizon.data() + at);
-        std::copy_n(m.hits.data() + first, count, film.light_hits.data() + at);
+        std::copy_n(m.largest.data() + first, count, film.largest.data() + pixel);
+        std::copy_n(m.horizon.data() + first, count, film.horizon.data() + pixel);
+        std::copy_n(m.hits.data() + first, count, film.light_hits.data() + pixel);
     }
 }
 
@@ -373,19 +373,20 @@ void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
             runs.clear();
             u.clear();
             lights_at.clear();
-            for (std::size_t at = i; at < end; ++at) {
-                const Vec3<double> wo{
-                    double(shading_points.wox[at]), double(shading_points.woy[at]), double(shading_points.woz[at])};
-                runs.push_back(run_at(shading_points, at, wo, static_cast<std::size_t>(count)));
-                if (!lights.empty()) add_lights_at(shading_points, at, lights_at);
-                add_numbers(shading_points.pixel[at], call.seed, first, count, numbers, u);
+            for (std::size_t index = i; index < end; ++index) {
+                const Vec3<double> wo{double(shading_points.wox[index]), double(shading_points.woy[index]),
+                    double(shading_points.woz[index])};
+                runs.push_back(run_at(shading_points, index, wo, static_cast<std::size_t>(count)));
+                if (!lights.empty()) add_lights_at(shading_points, index, lights_at);
+                add_numbers(shading_points.pixel[index], call.seed, first, count, numbers, u);
             }
             wi.resize(runs.size() * count);
             pdf.resize(wi.size());
             sampler.draw({.runs = runs, .u = u, .lights = lights, .lights_at = lights_at}, {wi, pdf});
             for (std::size_t k = 0; k < wi.size(); ++k) drawn.push_back(usable(wi[k], pdf[k]));
         }
-        for (std::size_t at = i; at < end; ++at) kernel(call, at, Prefetched<float>(drawn.data() + (at - i) * n));
+        for (std::size_t index = i; index < end; ++index)
+            kernel(call, index, Prefetched<float>(drawn.data() + (index - i) * n));
     }
 }
 

@@ -88,8 +88,8 @@ public:
 
 private:
     static Mutex& lock() {
-        static Mutex all;
-        return all;
+        static Mutex mutex;
+        return mutex;
     }
     Guard guard_;
     int before_;

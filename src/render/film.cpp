@@ -28,9 +28,9 @@ template <class Byte, class F> std::vector<std::span<Byte>> reference_bytes(F& f
 }
 
 std::string hash_of(const std::vector<std::span<const std::byte>>& planes) {
-    FilmHash all;
-    for (const auto plane : planes) all.add(plane);
-    return all.text();
+    FilmHash hash;
+    for (const auto plane : planes) hash.add(plane);
+    return hash.text();
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ struct Isa {
 };
 
 const std::vector<Isa>& family() {
-    static const std::vector<Isa> all = [] {
+    static const std::vector<Isa> isas = [] {
         std::vector<Isa> list = {{"scalar", true, scalar_kernels}};
 #define has CRESCENT_MACHINE_HAS
 #define CRESCENT_ADD(name, needs) list.push_back({#name, needs, name##_kernels});
@@ -79,7 +79,7 @@ const std::vector<Isa>& family() {
 #undef has
         return list;
     }();
-    return all;
+    return isas;
 }
 
 std::vector<KernelTable> tables_here() {

@@ -57,7 +57,7 @@ template <class A, class L, class E, class F> struct Lane : E {
     using E::shading_points, E::at;
     ShadingPoint<F> shading_point;
 
-    Lane(const ShadingPoints& all, std::size_t first, typename E::Room& room) : E(all, first, room) {
+    Lane(const ShadingPoints& points, std::size_t first, typename E::Room& room) : E(points, first, room) {
         shading_point = {load_lanes<F>(shading_points.wox, shading_points.woy, shading_points.woz, at),
             load_lanes<F>(shading_points.s, at), load_lanes<F>(shading_points.alpha, at),
             load_lanes<F>(shading_points.diffuse, at), load_lanes<F>(shading_points.rho_s, at)};
@@ -157,9 +157,9 @@ template <class A, class L, class E, class F> struct Lane : E {
         } else {
             x = accumulate(to, c, brdf, drawn, number<F>(1));
         }
-        const F off = x - to.pivot;
-        to.off = to.off + off;
-        to.square = to.square + off * off;
+        const F offset = x - to.pivot;
+        to.off = to.off + offset;
+        to.square = to.square + offset * offset;
         to.largest = larger(x, to.largest);
         // Only NaN, infinite and negative numbers have bits from 0x7f800000 up. -0, which is not negative, cannot arise
         // from the values of a shading point (shading_points.cpp).
@@ -195,9 +195,9 @@ template <class F> struct Totals {
         const double share = 1 / n;  // a power of two: exact
         for (std::size_t l = 0; l < count; ++l) {
             const float next = static_cast<float>(static_cast<double>(pivot[l]) + off[l] * share);
-            const double by = static_cast<double>(next) - static_cast<double>(pivot[l]);
-            square[l] += by * (n * by - 2 * off[l]);
-            off[l] -= n * by;
+            const double shift = static_cast<double>(next) - static_cast<double>(pivot[l]);
+            square[l] += shift * (n * shift - 2 * off[l]);
+            off[l] -= n * shift;
             pivot[l] = next;
         }
         return load_as<F>(pivot);
@@ -217,14 +217,14 @@ template <class F> struct Totals {
 template <class E, class F> [[gnu::noinline]] void write_sample_count(const E& emitters,
     const typename E::Totals& emitted, const RunningSums<F>& p, const Totals<F>& totals, std::uint64_t n,
     Moments& out) {
-    const std::size_t at = emitters.at;
-    add_lanes(p.g, totals.g, out.g.data() + at);
-    add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + at);
-    totals.spread(p, static_cast<double>(n), out.spread.data() + at);
+    const std::size_t index = emitters.at;
+    add_lanes(p.g, totals.g, out.g.data() + index);
+    add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + index);
+    totals.spread(p, static_cast<double>(n), out.spread.data() + index);
     emitted.write(emitters, out);
-    store(p.largest, out.largest.data() + at);
-    store(p.horizon, out.horizon.data() + at);
-    store(p.bad, out.bad.data() + at);
+    store(p.largest, out.largest.data() + index);
+    store(p.horizon, out.horizon.data() + index);
+    store(p.bad, out.bad.data() + index);
 }
 
 /// Any lobe, chosen at each call. Where a sample takes rays through trees, the choice costs nothing next to them, and
@@ -244,9 +244,9 @@ template <class F> struct AnyLobe {
     }
 };
 
-template <class L, class F> L lobe_of(const ShadingPoints& points, const ShadingPoint<F>& at) {
-    if constexpr (requires { L{points.lobe, at.s, at.alpha}; }) return L{points.lobe, at.s, at.alpha};
-    else return L(at.s, at.alpha);
+template <class L, class F> L lobe_of(const ShadingPoints& points, const ShadingPoint<F>& point) {
+    if constexpr (requires { L{points.lobe, point.s, point.alpha}; }) return L{points.lobe, point.s, point.alpha};
+    else return L(point.s, point.alpha);
 }
 
 /// Writes the random numbers of samples j to end, two each, from a block of their dimensions.
@@ -268,8 +268,8 @@ template <class F> CRESCENT_INLINE void draw_numbers(
 /// directions and sums each have a loop of their own: a whole sample is a longer chain of dependent operations than a
 /// processor looks ahead, and the steps of a short loop overlap.
 template <class A, class L, class E, class F, class Make>
-void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& room, const Make& make) {
-    Lane<A, L, E, F> lane(*call.shading_points, at, room);
+void estimate_pack(const KernelCall& call, std::size_t index, typename E::Room& room, const Make& make) {
+    Lane<A, L, E, F> lane(*call.shading_points, index, room);
     RunningSums<F> gathered;
     Totals<F> totals;
     typename E::Totals emitted(room);
@@ -312,17 +312,17 @@ void estimate_pack(const KernelCall& call, std::size_t at, typename E::Room& roo
 
 template <class A, class L, class E, class F> void estimate(const KernelCall& call) {
     typename E::Room room(*call.shading_points, call.memory);
-    for (std::size_t at = 0; at < call.shading_points->count; at += Lanes<F>::count)
+    for (std::size_t index = 0; index < call.shading_points->count; index += Lanes<F>::count)
         estimate_pack<A, L, E, F>(
-            call, at, room, [](const ShadingPoint<F>& shading_point) { return A(shading_point); });
+            call, index, room, [](const ShadingPoint<F>& shading_point) { return A(shading_point); });
 }
 
 template <class E, class F> void estimate_combined(const KernelCall& call, const CombinationCall& combination) {
     typename E::Room room(*call.shading_points, call.memory);
-    for (std::size_t at = 0; at < call.shading_points->count; at += Lanes<F>::count) {
+    for (std::size_t index = 0; index < call.shading_points->count; index += Lanes<F>::count) {
         if (call.stop && call.stop->load(std::memory_order_relaxed)) return;
-        estimate_pack<CombinedArm<F>, AnyLobe<F>, E, F>(call, at, room, [&](const ShadingPoint<F>& shading_point) {
-            return CombinedArm<F>(combination, *call.shading_points, at, shading_point);
+        estimate_pack<CombinedArm<F>, AnyLobe<F>, E, F>(call, index, room, [&](const ShadingPoint<F>& shading_point) {
+            return CombinedArm<F>(combination, *call.shading_points, index, shading_point);
         });
     }
 }

@@ -19,27 +19,27 @@ template <class F> CRESCENT_INLINE Vec3<F> select_each(MaskOf<F> m, Vec3<F> a, V
     return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }
 
-/// One built-in sampler, whose type is known from its index alone. `at`: where it was made.
+/// One built-in sampler, whose type is known from its index alone. `memory`: where it was made.
 template <class F> struct PackSampler {
-    void (*make)(std::byte* at, const ShadingPoint<F>& point);
+    void (*make)(std::byte* memory, const ShadingPoint<F>& point);
     /// Draws; the density may be a part of it, which is above 0 if it is.
-    void (*draw)(const std::byte* at, Vec3<F> wo, Vec2<F> u, DrawnByAny<F>& out);
+    void (*draw)(const std::byte* memory, Vec3<F> wo, Vec2<F> u, DrawnByAny<F>& out);
     /// The density of a drawn direction where it may be only a part; null: it never is.
-    F (*whole_pdf)(const std::byte* at, Vec2<F> u, MaskOf<F> where);
+    F (*whole_pdf)(const std::byte* memory, Vec2<F> u, MaskOf<F> where);
     /// The density of a direction of another sampler. Lanes outside of `where` may have any value.
-    F (*pdf)(const std::byte* at, Vec3<F> wo, const DrawnByAny<F>& drawn, MaskOf<F> where);
+    F (*pdf)(const std::byte* memory, Vec3<F> wo, const DrawnByAny<F>& drawn, MaskOf<F> where);
 };
 
-template <class F, class A> const A& sampler_at(const std::byte* at) {
-    return *std::launder(reinterpret_cast<const A*>(at));
+template <class F, class A> const A& sampler_at(const std::byte* memory) {
+    return *std::launder(reinterpret_cast<const A*>(memory));
 }
 
-template <class F, class A> void make_sampler(std::byte* at, const ShadingPoint<F>& point) {
-    ::new (static_cast<void*>(at)) A(point);
+template <class F, class A> void make_sampler(std::byte* memory, const ShadingPoint<F>& point) {
+    ::new (static_cast<void*>(memory)) A(point);
 }
 template <class F, class A>
-[[gnu::noinline]] void draw_direction(const std::byte* at, Vec3<F> wo, Vec2<F> u, DrawnByAny<F>& out) {
-    const A& arm = sampler_at<F, A>(at);
+[[gnu::noinline]] void draw_direction(const std::byte* memory, Vec3<F> wo, Vec2<F> u, DrawnByAny<F>& out) {
+    const A& arm = sampler_at<F, A>(memory);
     const auto take = [&](const auto& drawn) {
         out.wi = drawn.wi;
         out.pdf = drawn.pdf;
@@ -57,12 +57,12 @@ template <class F, class A>
     if constexpr (requires { arm.sample_part(u); }) take(arm.sample_part(u));
     else take(arm.sample(wo, u));
 }
-template <class F, class A> [[gnu::noinline]] F whole_density(const std::byte* at, Vec2<F> u, MaskOf<F> where) {
-    return sampler_at<F, A>(at).whole_pdf(u, where).v;
+template <class F, class A> [[gnu::noinline]] F whole_density(const std::byte* memory, Vec2<F> u, MaskOf<F> where) {
+    return sampler_at<F, A>(memory).whole_pdf(u, where).v;
 }
 template <class F, class A>
-[[gnu::noinline]] F density_of(const std::byte* at, Vec3<F> wo, const DrawnByAny<F>& drawn, MaskOf<F> where) {
-    const A& arm = sampler_at<F, A>(at);
+[[gnu::noinline]] F density_of(const std::byte* memory, Vec3<F> wo, const DrawnByAny<F>& drawn, MaskOf<F> where) {
+    const A& arm = sampler_at<F, A>(memory);
     if constexpr (requires { arm.pdf_where(drawn, where); }) return arm.pdf_where(drawn, where).v;
     else return arm.pdf(wo, drawn.wi).v;
 }
@@ -83,11 +83,11 @@ template <class F> struct PackSamplers {
         return {pack_sampler<F, A<F>>()...};
     }
     template <template <class> class... A> static constexpr std::size_t largest(ArmList<A...>) {
-        std::size_t most = 0;
-        ((most = sizeof(A<F>) > most ? sizeof(A<F>) : most), ...);
-        return most;
+        std::size_t size = 0;
+        ((size = sizeof(A<F>) > size ? sizeof(A<F>) : size), ...);
+        return size;
     }
-    static constexpr auto all = table(Samplers{});
+    static constexpr auto entries = table(Samplers{});
     static constexpr std::size_t size = (largest(Samplers{}) + 63) / 64 * 64;
 };
 
@@ -102,8 +102,9 @@ public:
     static constexpr std::size_t lanes = Lanes<F>::count;
     using Form = CombinationCall::Form;
 
-    CombinedArm(const CombinationCall& of, const ShadingPoints& points, std::size_t at, const ShadingPoint<F>& point)
-        : of_(of), points_(points), at_(at), wo_(point.wo) {
+    CombinedArm(
+        const CombinationCall& plan, const ShadingPoints& points, std::size_t index, const ShadingPoint<F>& point)
+        : of_(plan), points_(points), at_(index), wo_(point.wo) {
         for (std::size_t k = 0; k < of_.samplers; ++k) sampler(k).make(place(k), point);
         if (of_.form == Form::every) {
             for (std::size_t k = 0; k < of_.samplers; ++k)
@@ -156,7 +157,7 @@ private:
     };
 
     const PackSampler<F>& sampler(std::size_t k) const {
-        return PackSamplers<F>::all[static_cast<std::size_t>(of_.sampler[k])];
+        return PackSamplers<F>::entries[static_cast<std::size_t>(of_.sampler[k])];
     }
     std::byte* place(std::size_t k) { return memory_ + k * PackSamplers<F>::size; }
     const std::byte* place(std::size_t k) const { return memory_ + k * PackSamplers<F>::size; }
@@ -175,11 +176,11 @@ private:
 
     /// Chooses a sampler for each lane by u.x, and stretches that back to (0, 1).
     Vec2<F> choose(Vec2<F> u, Indices& chosen) const {
-        const LaneArray<F> by(u.x);
+        const LaneArray<F> numbers(u.x);
         LaneArray<F> out;
         for (std::size_t l = 0; l < lanes; ++l)
             out.at[l] = as_float(choose_part([&](std::size_t k) { return share_[k][l]; }, of_.samplers,
-                static_cast<double>(by.at[l]), chosen.of[l]));
+                static_cast<double>(numbers.at[l]), chosen.of[l]));
         return {out.pack(), u.y};
     }
 
@@ -206,20 +207,20 @@ private:
     [[gnu::noinline]] WeightAndPdf<F> weigh(
         const DrawnByAny<F>& drawn, Vec2<F> u, const Indices& chosen, MaskOf<F> where) const {
         float p[most_parts][lanes];
-        F own = drawn.pdf.v;
+        F whole = drawn.pdf.v;
         const bool one_sampler = of_.form == Form::every;
         for (std::size_t k = 0; k < of_.samplers; ++k) {
             if (one_sampler ? k != chosen.of[0] : !any(chosen.mask(k))) continue;
             const auto here = one_sampler ? where : where & chosen.mask(k);
-            if (sampler(k).whole_pdf && any(here)) own = select(here, sampler(k).whole_pdf(place(k), u, here), own);
+            if (sampler(k).whole_pdf && any(here)) whole = select(here, sampler(k).whole_pdf(place(k), u, here), whole);
         }
         for (std::size_t k = 0; k < of_.samplers; ++k) {
             if (one_sampler && k == chosen.of[0]) {
-                store(own, p[k]);
+                store(whole, p[k]);
                 continue;
             }
             const MaskOf<F> here = one_sampler ? no_lane<F>() : chosen.mask(k), others = where & !here;
-            store(any(others) ? select(here, own, sampler(k).pdf(place(k), wo_, drawn, others)) : own, p[k]);
+            store(any(others) ? select(here, whole, sampler(k).pdf(place(k), wo_, drawn, others)) : whole, p[k]);
         }
         LaneArray<F> weight;
         if (of_.form == Form::mixture) {
@@ -235,28 +236,28 @@ private:
         if (of_.has_weights) ask_for_weights(drawn, chosen, where, p, w);
         else heuristic(chosen, count, p, w);
         for (std::size_t l = 0; l < lanes; ++l) weight.at[l] = static_cast<float>(w[l] / count[l]);
-        return {weight.pack(), own};
+        return {weight.pack(), whole};
     }
 
     /// Relative to the own density: a large one does not overflow. As Combination::mis_weight().
     void heuristic(const Indices& chosen, const double (&count)[lanes], const float (&p)[most_parts][lanes],
         double (&w)[lanes]) const {
-        double own[lanes], sum[lanes], least[lanes];
+        double density_of_drawn[lanes], sum[lanes], least[lanes];
         for (std::size_t l = 0; l < lanes; ++l) {
-            own[l] = static_cast<double>(p[chosen.of[l]][l]);
+            density_of_drawn[l] = static_cast<double>(p[chosen.of[l]][l]);
             sum[l] = 0;
             least[l] = 0;
         }
         for (std::size_t k = 0; k < of_.samplers; ++k)
             for (std::size_t l = 0; l < lanes; ++l) {
                 const double density = static_cast<double>(p[k][l]);
-                const double ratio = chosen.of[l] == k ? 1 : share_[k][l] * density / (count[l] * own[l]);
+                const double ratio = chosen.of[l] == k ? 1 : share_[k][l] * density / (count[l] * density_of_drawn[l]);
                 sum[l] += of_.power ? ratio * ratio : ratio;
                 least[l] = density >= least[l] || density < 0 ? least[l] : density;  // NaN if one is
                 least[l] = density < 0 ? std::numeric_limits<double>::quiet_NaN() : least[l];
             }
         for (std::size_t l = 0; l < lanes; ++l) {
-            w[l] = count[l] > 0 && own[l] > 0 ? 1 / sum[l] : 0;
+            w[l] = count[l] > 0 && density_of_drawn[l] > 0 ? 1 / sum[l] : 0;
             if (!(least[l] >= 0)) w[l] = std::numeric_limits<double>::quiet_NaN();
         }
     }

@@ -11,13 +11,13 @@
 namespace crescent {
 namespace CRESCENT_ISA {
 
-template <class F> F load_lanes(const std::vector<float>& a, std::size_t at) { return load_as<F>(a.data() + at); }
-template <class F> UintOf<F> load_lanes(const std::vector<std::uint32_t>& a, std::size_t at) {
-    return load_as<UintOf<F>>(a.data() + at);
+template <class F> F load_lanes(const std::vector<float>& a, std::size_t index) { return load_as<F>(a.data() + index); }
+template <class F> UintOf<F> load_lanes(const std::vector<std::uint32_t>& a, std::size_t index) {
+    return load_as<UintOf<F>>(a.data() + index);
 }
 template <class F> Vec3<F> load_lanes(
-    const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::size_t at) {
-    return {load_lanes<F>(x, at), load_lanes<F>(y, at), load_lanes<F>(z, at)};
+    const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::size_t index) {
+    return {load_lanes<F>(x, index), load_lanes<F>(y, index), load_lanes<F>(z, index)};
 }
 
 /// Sums that change only for samples that meet a light.
@@ -38,16 +38,16 @@ template <class F> struct LightRoom {
     F *met_g, *met_g_lobe;
     double *total_g, *total_g_lobe;  // lane l of light k at k * lanes + l
 
-    LightRoom(const ShadingPoints& shading_points, std::byte* at)
+    LightRoom(const ShadingPoints& shading_points, std::byte* memory)
         : count(shading_points.light_count()),
-          disks(take<LocalDisk<F>>(at, shading_points.disks.size())),
-          facing(take<FacingDisk<F>>(at, shading_points.disks.size())),
-          others(take<LocalLight<F>>(at, shading_points.others.size())),
-          cones(take<DiskCone<F>>(at, count)),
-          met_g(take<F>(at, count)),
-          met_g_lobe(take<F>(at, count)),
-          total_g(take<double>(at, count * Lanes<F>::count)),
-          total_g_lobe(take<double>(at, count * Lanes<F>::count)) {
+          disks(take<LocalDisk<F>>(memory, shading_points.disks.size())),
+          facing(take<FacingDisk<F>>(memory, shading_points.disks.size())),
+          others(take<LocalLight<F>>(memory, shading_points.others.size())),
+          cones(take<DiskCone<F>>(memory, count)),
+          met_g(take<F>(memory, count)),
+          met_g_lobe(take<F>(memory, count)),
+          total_g(take<double>(memory, count * Lanes<F>::count)),
+          total_g_lobe(take<double>(memory, count * Lanes<F>::count)) {
         constexpr std::size_t of_disk = sizeof(LocalDisk<F>) + sizeof(FacingDisk<F>), of_other = sizeof(LocalLight<F>);
         static_assert((of_disk > of_other ? of_disk : of_other) + sizeof(DiskCone<F>) + 2 * sizeof(F) +
                     2 * sizeof(double) * Lanes<F>::count + 128 <=
@@ -56,12 +56,12 @@ template <class F> struct LightRoom {
     }
 
 protected:
-    template <class T> static T* take(std::byte*& at, std::size_t elements) {
-        const std::size_t past = reinterpret_cast<std::uintptr_t>(at) % alignof(T);
-        at += past ? alignof(T) - past : 0;
-        T* const first = reinterpret_cast<T*>(at);
+    template <class T> static T* take(std::byte*& memory, std::size_t elements) {
+        const std::size_t past = reinterpret_cast<std::uintptr_t>(memory) % alignof(T);
+        memory += past ? alignof(T) - past : 0;
+        T* const first = reinterpret_cast<T*>(memory);
         for (std::size_t k = 0; k < elements; ++k) ::new (static_cast<void*>(first + k)) T;
-        at += elements * sizeof(T);
+        memory += elements * sizeof(T);
         return first;
     }
 };
@@ -87,7 +87,7 @@ template <class F> struct LightTotals {
     double *g, *g_lobe;  // lane l of light k at k * count + l
 
     explicit LightTotals(LightRoom<F>& room) : g(room.total_g), g_lobe(room.total_g_lobe) {
-        for (std::size_t at = 0; at < room.count * count; ++at) g[at] = g_lobe[at] = 0;
+        for (std::size_t element = 0; element < room.count * count; ++element) g[element] = g_lobe[element] = 0;
     }
     /// Adds the block's sums and clears them.
     void take(Lights<F>& lights) {
@@ -124,11 +124,11 @@ template <class F> struct Lights {
     DiskCone<F>* cones;
     LightHitSums<F> met;
 
-    [[gnu::noinline]] Lights(const ShadingPoints& all, std::size_t first, LightRoom<F>& room)
-        : shading_points(all),
+    [[gnu::noinline]] Lights(const ShadingPoints& points, std::size_t first, LightRoom<F>& room)
+        : shading_points(points),
           at(first),
-          disk_count(all.disks.size()),
-          light_count(all.light_count()),
+          disk_count(points.disks.size()),
+          light_count(points.light_count()),
           disks(room.disks),
           facing(room.facing),
           others(room.others),
@@ -259,9 +259,9 @@ protected:
 
     /// Returns `seen`, with 0 where a body crosses the ray between lo and hi.
     [[gnu::always_inline]] F seen_past_bodies(const WorldRay& ray, F lo, F hi, F seen) const {
-        const U own = load_lanes<F>(shading_points.shape, at);
+        const U own_shape = load_lanes<F>(shading_points.shape, at);
         for (const OccluderF& body : shading_points.occluders) {
-            const auto other = select(own == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
+            const auto other = select(own_shape == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
             seen = select(other & blocked_by(body, ray.o, ray.d, lo, hi), number<F>(0), seen);
         }
         return seen;

@@ -25,10 +25,10 @@ template <class F> struct SurroundedRoom : LightRoom<F> {
     AroundSums<F>* sums;
     AroundSums<LaneTotals<F>>* totals;
 
-    SurroundedRoom(const ShadingPoints& shading_points, std::byte* at) : LightRoom<F>(shading_points, at) {
-        at += memory_of_light * shading_points.light_count();
-        sums = LightRoom<F>::template take<AroundSums<F>>(at, 1);
-        totals = LightRoom<F>::template take<AroundSums<LaneTotals<F>>>(at, 1);
+    SurroundedRoom(const ShadingPoints& shading_points, std::byte* memory) : LightRoom<F>(shading_points, memory) {
+        memory += memory_of_light * shading_points.light_count();
+        sums = LightRoom<F>::template take<AroundSums<F>>(memory, 1);
+        totals = LightRoom<F>::template take<AroundSums<LaneTotals<F>>>(memory, 1);
         static_assert(sizeof *sums + sizeof *totals + 256 <= memory_of_light);
     }
 };
@@ -48,30 +48,30 @@ template <class F> struct SurroundedTotals : LightTotals<F> {
         const bool any = lights.met.any;
         LightTotals<F>::take(lights);
         if (!any) return;
-        AroundSums<F>& of = *lights.around;
+        AroundSums<F>& sums = *lights.around;
         const auto move = [](F& sum, LaneTotals<F>& total) {
             add_lanes(sum, total.at);
             sum = number<F>(0);
         };
-        move(of.g, around->g);
-        move(of.g_lobe, around->g_lobe);
+        move(sums.g, around->g);
+        move(sums.g_lobe, around->g_lobe);
         for (int c = 0; c < 3; ++c) {
-            move(of.rgb[c], around->rgb[c]);
-            move(of.rgb_lobe[c], around->rgb_lobe[c]);
+            move(sums.rgb[c], around->rgb[c]);
+            move(sums.rgb_lobe[c], around->rgb_lobe[c]);
         }
     }
     /// Writes the totals so far, including the partial block.
     void write(const Surrounded<F>& lights, Moments& out) const {
         LightTotals<F>::write(lights, out);
-        const AroundSums<F>& of = *lights.around;
+        const AroundSums<F>& sums = *lights.around;
         const auto put = [&](F sum, const LaneTotals<F>& total, std::vector<double>& to) {
             add_lanes(sum, total.at, to.data() + lights.at);
         };
-        put(of.g, around->g, out.around_g);
-        put(of.g_lobe, around->g_lobe, out.around_g_lobe);
+        put(sums.g, around->g, out.around_g);
+        put(sums.g_lobe, around->g_lobe, out.around_g_lobe);
         for (std::size_t c = 0; c < 3; ++c) {
-            put(of.rgb[c], around->rgb[c], out.around[c]);
-            put(of.rgb_lobe[c], around->rgb_lobe[c], out.around_lobe[c]);
+            put(sums.rgb[c], around->rgb[c], out.around[c]);
+            put(sums.rgb_lobe[c], around->rgb_lobe[c], out.around_lobe[c]);
         }
     }
 
@@ -94,8 +94,8 @@ template <class F> struct Surrounded : Lights<F> {
     using Lights<F>::shading_points, Lights<F>::at, Lights<F>::met;
     AroundSums<F>* around;
 
-    [[gnu::noinline]] Surrounded(const ShadingPoints& all, std::size_t first, SurroundedRoom<F>& room)
-        : Lights<F>(all, first, room), around(room.sums) {
+    [[gnu::noinline]] Surrounded(const ShadingPoints& points, std::size_t first, SurroundedRoom<F>& room)
+        : Lights<F>(points, first, room), around(room.sums) {
         const F zero = number<F>(0);
         *around = {zero, zero, {zero, zero, zero}, {zero, zero, zero}};
     }

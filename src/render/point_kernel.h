@@ -8,12 +8,12 @@
 
 namespace crescent {
 
-/// Estimates shading point `at` with an arm that hands out its directions.
-template <class A> using PointKernel = void (*)(const KernelCall&, std::size_t at, const A& arm);
+/// Estimates shading point `index` with an arm that hands out its directions.
+template <class A> using PointKernel = void (*)(const KernelCall&, std::size_t index, const A& arm);
 
-template <class A, class L, class E> void estimate_point(const KernelCall& call, std::size_t at, const A& arm) {
+template <class A, class L, class E> void estimate_point(const KernelCall& call, std::size_t index, const A& arm) {
     typename E::Room room(*call.shading_points, call.memory);
-    scalar::estimate_pack<A, L, E, float>(call, at, room, [&](const ShadingPoint<float>&) { return arm; });
+    scalar::estimate_pack<A, L, E, float>(call, index, room, [&](const ShadingPoint<float>&) { return arm; });
 }
 
 /// [lobe + 1]

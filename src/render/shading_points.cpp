@@ -151,16 +151,16 @@ void ShadingPoints::add(const Scene& scene, std::uint32_t pixel_index, const Hit
 }
 
 template <class Work> void ShadingPoints::each_array(Work&& work) {
-    const auto all = [&](auto&... arrays) { (work(arrays), ...); };
-    all(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d,
+    const auto each = [&](auto&... arrays) { (work(arrays), ...); };
+    each(pixel, shape, wox, woy, woz, s, alpha, diffuse, rho_s, px, py, pz, tx, ty, tz, bx, by, bz, nx, ny, nz, fill_d,
         fill_s, lambert, rho_s_exact, tint);
-    for (std::size_t c = 0; around && c < 3; ++c) all(around_d[c], around_s[c]);
-    if (has_faces) all(face_x, face_y, face_z);
-    if (has_alpha_textures) all(alpha_texel);
-    for (DiskArrays& k : disks) all(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
+    for (std::size_t c = 0; around && c < 3; ++c) each(around_d[c], around_s[c]);
+    if (has_faces) each(face_x, face_y, face_z);
+    if (has_alpha_textures) each(alpha_texel);
+    for (DiskArrays& k : disks) each(k.cx, k.cy, k.cz, k.nx, k.ny, k.nz, k.d, k.s);
     for (LightArrays& k : others) {
-        for (std::vector<float>& numbers : k.numbers) all(numbers);
-        all(k.d, k.s);
+        for (std::vector<float>& numbers : k.numbers) each(numbers);
+        each(k.d, k.s);
     }
 }
 

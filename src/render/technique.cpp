@@ -22,9 +22,9 @@ public:
     int numbers() const override { return 2; }
     int built_in() const override { return arm_index(A<float>::name); }
 
-    void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const override {
+    void draw(const PointRows& rows, std::span<const double> u, std::span<PointDraw> out) const override {
         std::size_t row = 0;
-        each_run(at, [&](const A<float>& arm, const PointRun& run) {
+        each_run(rows, [&](const A<float>& arm, const PointRun& run) {
             for (std::size_t i = 0; i < run.rows; ++i, ++row) {
                 const auto d = arm.sample(run.wo, {as_float(u[2 * row]), as_float(u[2 * row + 1])});
                 out[row] = {d.wi, static_cast<double>(d.pdf.v)};
@@ -37,20 +37,20 @@ public:
             }
         });
     }
-    void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const override {
+    void density(const PointRows& rows, std::span<const Vec3<float>> wi, std::span<double> out) const override {
         std::size_t row = 0;
-        each_run(at, [&](const A<float>& arm, const PointRun& run) {
+        each_run(rows, [&](const A<float>& arm, const PointRun& run) {
             for (std::size_t i = 0; i < run.rows; ++i, ++row)
                 out[row] = static_cast<double>(arm.pdf(run.wo, wi[row]).v);
         });
     }
 
 private:
-    template <class Work> static void each_run(const PointRows& at, Work&& work) {
-        const ShadingPoints& p = at.points;
+    template <class Work> static void each_run(const PointRows& rows, Work&& work) {
+        const ShadingPoints& p = rows.points;
         std::vector<std::byte> memory(p.kernel_memory());
         scalar::LightRoom<float> room(p, memory.data());
-        for (const PointRun& run : at.runs) {
+        for (const PointRun& run : rows.runs) {
             const scalar::Lights<float> lights(p, run.point, room);
             ShadingPoint<float> point{.wo = run.wo,
                 .s = p.s[run.point],
@@ -65,8 +65,8 @@ private:
 };
 
 /// Calls work(batch, first row, rows) for consecutive parts of the rows, none longer than the sampler takes.
-template <class Work> void in_batches(const ExternalSampler& sampler, const PointRows& at, Work&& work) {
-    const ShadingPoints& p = at.points;
+template <class Work> void in_batches(const ExternalSampler& sampler, const PointRows& point_rows, Work&& work) {
+    const ShadingPoints& p = point_rows.points;
     const std::vector<ExternalLight> lights = sampler.uses_lights() ? lights_of(p) : std::vector<ExternalLight>{};
     std::vector<ExternalRun> runs;
     std::vector<ExternalLightAt> lights_at;
@@ -78,7 +78,7 @@ template <class Work> void in_batches(const ExternalSampler& sampler, const Poin
         runs.clear();
         lights_at.clear();
     };
-    for (const PointRun& run : at.runs)
+    for (const PointRun& run : point_rows.runs)
         for (std::size_t done = 0; done < run.rows;) {
             const std::size_t part = std::min(run.rows - done, sampler.batch_rows() - rows);
             runs.push_back(run_at(p, run.point, widen(run.wo), part));
@@ -95,11 +95,11 @@ public:
     explicit ExternalTechnique(std::shared_ptr<const ExternalSampler> sampler) : sampler_(std::move(sampler)) {}
     int numbers() const override { return sampler_->numbers(); }
 
-    void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const override {
+    void draw(const PointRows& point_rows, std::span<const double> u, std::span<PointDraw> out) const override {
         const auto count = static_cast<std::size_t>(numbers());
         std::vector<Vec3<double>> wi;
         std::vector<double> pdf;
-        in_batches(*sampler_, at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
+        in_batches(*sampler_, point_rows, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
             wi.resize(rows);
             pdf.resize(rows);
             ExternalBatch with_numbers = batch;
@@ -108,9 +108,9 @@ public:
             for (std::size_t i = 0; i < rows; ++i) out[first + i] = usable(wi[i], pdf[i]);
         });
     }
-    void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const override {
+    void density(const PointRows& point_rows, std::span<const Vec3<float>> wi, std::span<double> out) const override {
         std::vector<Vec3<double>> directions;
-        in_batches(*sampler_, at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
+        in_batches(*sampler_, point_rows, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
             directions.clear();
             for (const Vec3<float>& w : wi.subspan(first, rows)) directions.push_back(widen(w));
             sampler_->density(batch, directions, out.subspan(first, rows));
@@ -133,28 +133,28 @@ class MixtureTechnique : public Technique {
 public:
     MixtureTechnique(Techniques parts, WeightList weights) : parts_(std::move(parts)), weights_(std::move(weights)) {}
     int numbers() const override { return most_numbers(parts_); }
-    void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const override {
+    void draw(const PointRows& rows, std::span<const double> u, std::span<PointDraw> out) const override {
         const auto count = static_cast<std::size_t>(numbers());
-        const std::vector<double> weights = weights_at(at, weights_);
-        const Choices choices = choose(at, u, count, weights, parts_.size());
+        const std::vector<double> weights = weights_at(rows, weights_);
+        const Choices choices = choose(rows, u, count, weights, parts_.size());
         std::vector<std::vector<double>> p;
-        draw_chosen(parts_, at, u, count, choices, out, p);
+        draw_chosen(parts_, rows, u, count, choices, out, p);
         std::size_t row = 0;
-        for (std::size_t r = 0; r < at.runs.size(); ++r)
-            for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row)
+        for (std::size_t r = 0; r < rows.runs.size(); ++r)
+            for (std::size_t i = 0; i < rows.runs[r].rows; ++i, ++row)
                 if (out[row].pdf != 0) out[row].pdf = sum(weights, p, r, row);
     }
-    void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const override {
-        const std::vector<double> weights = weights_at(at, weights_);
+    void density(const PointRows& rows, std::span<const Vec3<float>> wi, std::span<double> out) const override {
+        const std::vector<double> weights = weights_at(rows, weights_);
         std::vector<std::vector<double>> p(parts_.size(), std::vector<double>(wi.size()));
         for (std::size_t k = 0; k < parts_.size(); ++k) {
             const auto first = static_cast<std::size_t>(std::ranges::find(parts_, parts_[k]) - parts_.begin());
             if (first < k) p[k] = p[first];  // a part that occurs several times is evaluated once
-            else parts_[k]->density(at, wi, p[k]);
+            else parts_[k]->density(rows, wi, p[k]);
         }
         std::size_t row = 0;
-        for (std::size_t r = 0; r < at.runs.size(); ++r)
-            for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row) out[row] = sum(weights, p, r, row);
+        for (std::size_t r = 0; r < rows.runs.size(); ++r)
+            for (std::size_t i = 0; i < rows.runs[r].rows; ++i, ++row) out[row] = sum(weights, p, r, row);
     }
 
 private:
@@ -188,9 +188,9 @@ std::shared_ptr<const Technique> built_in_technique(std::string_view sampler) {
 }
 
 int most_numbers(const Techniques& parts) {
-    int most = 2;
-    for (const auto& part : parts) most = std::max(most, part->numbers());
-    return most;
+    int largest = 2;
+    for (const auto& part : parts) largest = std::max(largest, part->numbers());
+    return largest;
 }
 
 std::shared_ptr<const Technique> external_technique(std::shared_ptr<const ExternalSampler> sampler) {
@@ -200,11 +200,11 @@ std::shared_ptr<const Technique> external_technique(std::shared_ptr<const Extern
     return std::make_shared<ExternalTechnique>(std::move(sampler));
 }
 
-void external_weights(const ExternalSampler& sampler, const PointRows& at, std::span<const Vec3<float>> wi,
+void external_weights(const ExternalSampler& sampler, const PointRows& point_rows, std::span<const Vec3<float>> wi,
     std::span<const double> p, std::span<double> out) {
     const std::size_t of_row = wi.empty() ? 0 : p.size() / wi.size();
     std::vector<Vec3<double>> directions;
-    in_batches(sampler, at, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
+    in_batches(sampler, point_rows, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
         directions.clear();
         for (const Vec3<float>& w : wi.subspan(first, rows)) directions.push_back(widen(w));
         sampler.weigh(
@@ -226,21 +226,21 @@ FormulaInputs formula_inputs(const ShadingPoints& points, const PointRun& run) {
     return in;
 }
 
-std::vector<double> weights_at(const PointRows& at, const WeightList& weights) {
-    std::vector<double> out(at.runs.size() * weights.size());
-    for (std::size_t r = 0; r < at.runs.size(); ++r)
+std::vector<double> weights_at(const PointRows& rows, const WeightList& weights) {
+    std::vector<double> out(rows.runs.size() * weights.size());
+    for (std::size_t r = 0; r < rows.runs.size(); ++r)
         weights.evaluate(
-            formula_inputs(at.points, at.runs[r]), std::span(out).subspan(r * weights.size(), weights.size()));
+            formula_inputs(rows.points, rows.runs[r]), std::span(out).subspan(r * weights.size(), weights.size()));
     return out;
 }
 
-Choices choose(const PointRows& at, std::span<const double> u, std::size_t numbers, std::span<const double> weights,
+Choices choose(const PointRows& rows, std::span<const double> u, std::size_t numbers, std::span<const double> weights,
     std::size_t parts) {
     Choices out;
     std::size_t row = 0;
-    for (std::size_t r = 0; r < at.runs.size(); ++r) {
+    for (std::size_t r = 0; r < rows.runs.size(); ++r) {
         const std::span<const double> w = weights.subspan(r * parts, parts);
-        for (std::size_t i = 0; i < at.runs[r].rows; ++i, ++row) {
+        for (std::size_t i = 0; i < rows.runs[r].rows; ++i, ++row) {
             out.part.emplace_back();
             out.stretched.push_back(
                 choose_part([&](std::size_t k) { return w[k]; }, parts, u[row * numbers], out.part.back()));
@@ -249,7 +249,7 @@ Choices choose(const PointRows& at, std::span<const double> u, std::size_t numbe
     return out;
 }
 
-void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const double> u, std::size_t numbers,
+void draw_chosen(const Techniques& parts, const PointRows& point_rows, std::span<const double> u, std::size_t numbers,
     const Choices& choices, std::span<PointDraw> out, std::vector<std::vector<double>>& p) {
     const std::size_t rows = choices.part.size();
     p.assign(parts.size(), std::vector<double>(rows));
@@ -263,7 +263,7 @@ void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const d
         mine.clear();
         runs.clear();
         std::size_t row = 0;
-        for (const PointRun& run : at.runs) {
+        for (const PointRun& run : point_rows.runs) {
             runs.push_back({run.point, run.wo, 0});
             for (std::size_t i = 0; i < run.rows; ++i, ++row)
                 if ((choices.part[row] == k) == chosen && (chosen || out[row].pdf != 0)) {
@@ -283,7 +283,7 @@ void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const d
             for (std::size_t j = 1; j < count; ++j) numbers_of_part.push_back(u[row * numbers + j]);
         }
         drawn.resize(mine.size());
-        parts[k]->draw({at.points, runs}, numbers_of_part, drawn);
+        parts[k]->draw({point_rows.points, runs}, numbers_of_part, drawn);
         for (std::size_t i = 0; i < mine.size(); ++i) {
             out[mine[i]] = drawn[i];
             p[k][mine[i]] = drawn[i].pdf;
@@ -294,7 +294,7 @@ void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const d
         wi.clear();
         for (const std::size_t row : mine) wi.push_back(out[row].wi);
         densities.resize(mine.size());
-        parts[k]->density({at.points, runs}, wi, densities);
+        parts[k]->density({point_rows.points, runs}, wi, densities);
         for (std::size_t i = 0; i < mine.size(); ++i) p[k][mine[i]] = densities[i];
     }
 }
@@ -304,8 +304,8 @@ void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const d
 
 namespace {
 
-LocalLight<double> local_light(const LightArrays& arrays, std::size_t at) {
-    const auto number = [&](std::size_t k) { return static_cast<double>(arrays.numbers[k][at]); };
+LocalLight<double> local_light(const LightArrays& arrays, std::size_t index) {
+    const auto number = [&](std::size_t k) { return static_cast<double>(arrays.numbers[k][index]); };
     const auto vector = [&](std::size_t k) { return Vec3d{number(k), number(k + 1), number(k + 2)}; };
     LocalLight<double> out{.kind = arrays.kind,
         .power = static_cast<double>(arrays.power),
@@ -317,9 +317,9 @@ LocalLight<double> local_light(const LightArrays& arrays, std::size_t at) {
     return out;
 }
 
-ExternalLightAt disk_at(const DiskArrays& disk, std::size_t at) {
-    const Vec3d center{double(disk.cx[at]), double(disk.cy[at]), double(disk.cz[at])};
-    const Vec3d normal{double(disk.nx[at]), double(disk.ny[at]), double(disk.nz[at])};
+ExternalLightAt disk_at(const DiskArrays& disk, std::size_t index) {
+    const Vec3d center{double(disk.cx[index]), double(disk.cy[index]), double(disk.cz[index])};
+    const Vec3d normal{double(disk.nx[index]), double(disk.ny[index]), double(disk.nz[index])};
     return {.center = center,
         .normal = normal,
         .edge_u = {},
@@ -352,19 +352,19 @@ std::vector<ExternalLight> lights_of(const ShadingPoints& shading_points) {
     return out;
 }
 
-void add_lights_at(const ShadingPoints& shading_points, std::size_t at, std::vector<ExternalLightAt>& to) {
-    for (const DiskArrays& disk : shading_points.disks) to.push_back(disk_at(disk, at));
+void add_lights_at(const ShadingPoints& shading_points, std::size_t index, std::vector<ExternalLightAt>& to) {
+    for (const DiskArrays& disk : shading_points.disks) to.push_back(disk_at(disk, index));
     for (const LightArrays& arrays : shading_points.others)
-        with_light_kind(arrays.kind, [&]<class Kind>() { to.push_back(light_at<Kind>(local_light(arrays, at))); });
+        with_light_kind(arrays.kind, [&]<class Kind>() { to.push_back(light_at<Kind>(local_light(arrays, index))); });
 }
 
-ExternalRun run_at(const ShadingPoints& points, std::size_t at, Vec3<double> wo, std::size_t rows) {
-    const Rgb& lambert = points.lambert[at];
+ExternalRun run_at(const ShadingPoints& points, std::size_t index, Vec3<double> wo, std::size_t rows) {
+    const Rgb& lambert = points.lambert[index];
     return {.wo = wo,
-        .surface = {.s = double(points.s[at]),
-            .alpha = double(points.alpha[at]),
-            .diffuse = double(points.diffuse[at]),
-            .lobe = points.rho_s_exact[at]},
+        .surface = {.s = double(points.s[index]),
+            .alpha = double(points.alpha[index]),
+            .diffuse = double(points.diffuse[index]),
+            .lobe = points.rho_s_exact[index]},
         .rows = rows,
         .rho_d = {lambert[0] * pi, lambert[1] * pi, lambert[2] * pi}};
 }

@@ -44,9 +44,9 @@ public:
     /// Returns the number of random numbers of a row, 1 to 8.
     virtual int numbers() const = 0;
     /// One draw a row; row i has u[i * numbers() ...], each in (0, 1). May be called by many threads.
-    virtual void draw(const PointRows& at, std::span<const double> u, std::span<PointDraw> out) const = 0;
+    virtual void draw(const PointRows& rows, std::span<const double> u, std::span<PointDraw> out) const = 0;
     /// Evaluates the density of each row's direction, 0 where it is never drawn.
-    virtual void density(const PointRows& at, std::span<const Vec3<float>> wi, std::span<double> out) const = 0;
+    virtual void density(const PointRows& rows, std::span<const Vec3<float>> wi, std::span<double> out) const = 0;
     /// The index of the sampler in samplers/all.h; -1: another one.
     virtual int built_in() const { return -1; }
 };
@@ -60,7 +60,7 @@ std::shared_ptr<const Technique> built_in_technique(std::string_view sampler);
 /// Throws OutputError if the sampler cannot evaluate its density.
 std::shared_ptr<const Technique> external_technique(std::shared_ptr<const ExternalSampler> sampler);
 /// Writes the sampler's weights for each wi, [row][K], from the densities p, [row][K].
-void external_weights(const ExternalSampler& sampler, const PointRows& at, std::span<const Vec3<float>> wi,
+void external_weights(const ExternalSampler& sampler, const PointRows& rows, std::span<const Vec3<float>> wi,
     std::span<const double> p, std::span<double> out);
 /// p = sum_k weight_k p_k: u[0] chooses a part and is stretched back to (0, 1).
 std::shared_ptr<const Technique> mixture_technique(Techniques parts, WeightList weights);
@@ -71,15 +71,15 @@ struct Choices {
     std::vector<double> stretched;
 };
 /// `weights`: those of each run, [run][part].
-Choices choose(const PointRows& at, std::span<const double> u, std::size_t numbers, std::span<const double> weights,
+Choices choose(const PointRows& rows, std::span<const double> u, std::size_t numbers, std::span<const double> weights,
     std::size_t parts);
 /// Evaluates the weights at the point of each run, [run][part].
-std::vector<double> weights_at(const PointRows& at, const WeightList& weights);
+std::vector<double> weights_at(const PointRows& rows, const WeightList& weights);
 /// The quantities of a formula at the point of a run.
 FormulaInputs formula_inputs(const ShadingPoints& points, const PointRun& run);
 
 /// Draws each row by its chosen part. p[part][row] receives the density of every part at the direction.
-void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const double> u, std::size_t numbers,
+void draw_chosen(const Techniques& parts, const PointRows& rows, std::span<const double> u, std::size_t numbers,
     const Choices& choices, std::span<PointDraw> out, std::vector<std::vector<double>>& p);
 
 // ---- What samplers from outside receive of shading points, and which of their draws are usable.
@@ -87,11 +87,11 @@ void draw_chosen(const Techniques& parts, const PointRows& at, std::span<const d
 /// Every light, in the scene's order; empty where there is none or no point.
 std::vector<ExternalLight> lights_of(const ShadingPoints& shading_points);
 
-/// Appends each of these lights as shading point `at` sees it.
-void add_lights_at(const ShadingPoints& shading_points, std::size_t at, std::vector<ExternalLightAt>& to);
+/// Appends each of these lights as shading point `index` sees it.
+void add_lights_at(const ShadingPoints& shading_points, std::size_t index, std::vector<ExternalLightAt>& to);
 
-/// Rows at shading point `at`.
-ExternalRun run_at(const ShadingPoints& shading_points, std::size_t at, Vec3<double> wo, std::size_t rows);
+/// Rows at shading point `index`.
+ExternalRun run_at(const ShadingPoints& shading_points, std::size_t index, Vec3<double> wo, std::size_t rows);
 
 /// A draw is usable if its direction is of unit length to 1e-4 and its pdf is above 0 and finite also in single
 /// precision, in which the estimate is computed. pdf 0, which means that nothing was drawn, is for the caller.

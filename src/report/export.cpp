@@ -27,25 +27,25 @@ Json json_of(double x) { return number(x); }
 Json json_of(std::uint64_t count) { return count; }
 
 /// Adds every metric of a region or of the frame.
-template <class Of> void add_metrics(Json& out, const Of& of) {
-    for_each_metric(
-        of, [&](std::string_view name, const MetricInfo&, auto value) { out[std::string(name)] = json_of(value); });
+template <class Of> void add_metrics(Json& out, const Of& metrics) {
+    for_each_metric(metrics,
+        [&](std::string_view name, const MetricInfo&, auto value) { out[std::string(name)] = json_of(value); });
 }
 
 Json run_json(const RunMetrics& run, bool paired) {
     Json regions = Json::object();
     for (const RegionMetrics& r : run.regions) {
-        Json& at = regions[r.region] = Json::object();
-        add_metrics(at, r);
-        at["pixels"] = r.pixels;
-        if (r.has_flip()) at["flip"] = number(r.flip);
-        if (r.tail) at["tail"] = tail_json(*r.tail);
+        Json& entry = regions[r.region] = Json::object();
+        add_metrics(entry, r);
+        entry["pixels"] = r.pixels;
+        if (r.has_flip()) entry["flip"] = number(r.flip);
+        if (r.tail) entry["tail"] = tail_json(*r.tail);
         if (!r.is_paired()) continue;
-        at["rmse"] = number_or_null(r.rmse, true);
-        at["mse"] = number(r.mse);
-        at["mse_error"] = number(r.mse_error);
-        at["mse_interval"] = numbers({r.mse_low(), r.mse_high()});
-        at["reference_error"] = number(r.reference_error);
+        entry["rmse"] = number_or_null(r.rmse, true);
+        entry["mse"] = number(r.mse);
+        entry["mse_error"] = number(r.mse_error);
+        entry["mse_interval"] = numbers({r.mse_low(), r.mse_high()});
+        entry["reference_error"] = number(r.reference_error);
     }
     Json out = {{"arm", run.key.arm}, {"n", run.key.n}, {"s", number(run.key.s)}, {"seed", run.key.seed},
         {"regions", std::move(regions)}};
@@ -123,9 +123,9 @@ Json rejection_json(const FalseRejection& r) {
         {"low", number(r.low)}, {"high", number(r.high)}};
 }
 
-template <class T, class F> Json list(const std::vector<T>& all, F one) {
+template <class T, class F> Json list(const std::vector<T>& items, F one) {
     Json out = Json::array();
-    for (const T& x : all) out.push_back(one(x));
+    for (const T& x : items) out.push_back(one(x));
     return out;
 }
 
@@ -254,9 +254,9 @@ std::vector<std::pair<std::string, std::string>> overrides_of(const Experiment& 
         const std::size_t equals = end_of_path(text);
         const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
         if (path == "seeds") continue;
-        const auto known = std::ranges::find(out, path, &std::pair<std::string, std::string>::first);
-        if (known == out.end()) out.emplace_back(path, value);
-        else known->second = value;
+        const auto found = std::ranges::find(out, path, &std::pair<std::string, std::string>::first);
+        if (found == out.end()) out.emplace_back(path, value);
+        else found->second = value;
     }
     return out;
 }

@@ -43,10 +43,10 @@ std::uint64_t Findings::headline_n() const {
     const std::uint64_t given = in_.experiment.n;
     for (const ArmPlan& arm : in_.experiment.arms)
         if (given > 0 && run(arm.name, given)) return given;
-    std::vector<const ArmPlan*> all;
-    for (const ArmPlan& arm : in_.experiment.arms) all.push_back(&arm);
-    if (const std::uint64_t n = common_n(all)) return n;
-    return all.empty() || all.front()->n.empty() ? 0 : all.front()->n.back();
+    std::vector<const ArmPlan*> arms;
+    for (const ArmPlan& arm : in_.experiment.arms) arms.push_back(&arm);
+    if (const std::uint64_t n = common_n(arms)) return n;
+    return arms.empty() || arms.front()->n.empty() ? 0 : arms.front()->n.back();
 }
 
 const RunMetrics* Findings::run(const std::string& arm, std::uint64_t n, std::optional<double> s) const {
@@ -117,11 +117,11 @@ std::uint64_t Findings::bad_samples() const {
 }
 
 std::vector<std::string> headline_metrics(const Experiment& experiment) {
-    std::vector<std::string> all;
+    std::vector<std::string> metrics;
     const bool combined = std::ranges::any_of(experiment.arms, &ArmPlan::is_combination);
     for (const MetricName& metric : metric_names(experiment))
-        if (metric.info->in_tables && (combined || !metric.info->of_combinations)) all.push_back(metric.name);
-    return all;
+        if (metric.info->in_tables && (combined || !metric.info->of_combinations)) metrics.push_back(metric.name);
+    return metrics;
 }
 
 }  // namespace crescent

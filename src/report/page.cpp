@@ -220,7 +220,7 @@ ArmPair arm_pair(const Page& page) {
     pair.narrow = arm_about_mirror(page.in.experiment);
     if (!pair.narrow) return {};
     double least = std::numeric_limits<double>::infinity();
-    std::ptrdiff_t most = 0;
+    std::ptrdiff_t largest = 0;
     for (const ArmPlan* arm : arms_about_normal(page.in.experiment)) {
         const auto ran = [&](std::uint64_t n) {
             return n > 0 && page.find.run(arm->name, n) && page.find.run(pair.narrow->name, n);
@@ -230,11 +230,11 @@ ArmPair arm_pair(const Page& page) {
         if (!ran(n)) continue;
         const double error = error_of(page, *arm, n);
         const std::ptrdiff_t sample_counts = shared_sample_counts(*arm, *pair.narrow);
-        if (!pair.broad || sample_counts > most || (sample_counts == most && error < least)) {
+        if (!pair.broad || sample_counts > largest || (sample_counts == largest && error < least)) {
             pair.broad = arm;
             pair.n = n;
             least = error;
-            most = sample_counts;
+            largest = sample_counts;
         }
     }
     return pair ? pair : ArmPair{};
@@ -329,12 +329,12 @@ void add_flip_rows(const Page& page, const std::vector<Column>& columns, Json& r
         bool any = false;
         for (const Column& column : columns) {
             const RunMetrics* run = page.find.run(column.arm, column.n, column.s);
-            const RegionMetrics* at = run ? run->region(region.name) : nullptr;
-            const bool measured = at && at->has_flip();
+            const RegionMetrics* values = run ? run->region(region.name) : nullptr;
+            const bool measured = values && values->has_flip();
             any = any || measured;
             const SeedSpread* band = page.find.band(column.arm, column.n, metric, column.s);
             cells.push_back(metric_cell(page, band));
-            if (!band && measured) cells.back()["value"] = with_minus(figures(at->flip));
+            if (!band && measured) cells.back()["value"] = with_minus(figures(values->flip));
         }
         if (any) rows.push_back({{"metric", metric_html(metric)}, {"cells", cells}});
     }
@@ -407,19 +407,20 @@ Json limits(const Page& page) {
 }
 
 Json assertions(const Page& page) {
-    const auto& all = page.in.metrics.assertions;
-    if (all.empty()) return false;
-    const auto failed = std::ranges::count_if(all, [](const AssertionResult& a) { return a.failed(); });
-    const auto empty = std::ranges::count_if(all, [](const AssertionResult& a) { return a.cannot_fail; });
+    const auto& results = page.in.metrics.assertions;
+    if (results.empty()) return false;
+    const auto failed = std::ranges::count_if(results, [](const AssertionResult& a) { return a.failed(); });
+    const auto empty = std::ranges::count_if(results, [](const AssertionResult& a) { return a.cannot_fail; });
     Json rows = Json::array();
-    for (const AssertionResult& a : all) {
+    for (const AssertionResult& a : results) {
         const bool ran = a.skipped.empty(), holds = ran && !a.failed();
         rows.push_back({{"name", a.name}, {"claim", a.text}, {"measured", cell_text(compact(a.measured))}, {"op", a.op},
             {"bound", cell_text(compact(a.bound))}, {"skipped", a.skipped}, {"fails", ran && a.failed()},
             {"holds", holds}, {"cannot_fail", holds && a.cannot_fail}});
     }
-    return {{"total", all.size()}, {"one", all.size() == 1}, {"failed", failed > 0 ? std::to_string(failed) : ""},
-        {"empty", empty > 0 ? std::to_string(empty) : ""}, {"rows", rows}};
+    return {{"total", results.size()}, {"one", results.size() == 1},
+        {"failed", failed > 0 ? std::to_string(failed) : ""}, {"empty", empty > 0 ? std::to_string(empty) : ""},
+        {"rows", rows}};
 }
 
 Json provenance(const Page& page) {

@@ -90,17 +90,17 @@ struct Series {
 };
 
 std::vector<Series> series_of(const Evidence& evidence) {
-    std::vector<Series> all;
+    std::vector<Series> series;
     for (const FurnaceQuantiles& q : evidence.furnace) {
-        auto found = std::find_if(all.begin(), all.end(),
+        auto found = std::find_if(series.begin(), series.end(),
             [&](const Series& s) { return s.arithmetic == q.arithmetic && s.u_bits == q.u_bits; });
-        if (found == all.end()) found = all.insert(all.end(), {q.arithmetic, q.u_bits, {}});
+        if (found == series.end()) found = series.insert(series.end(), {q.arithmetic, q.u_bits, {}});
         found->sample_counts.push_back(&q);
     }
-    for (Series& s : all)
+    for (Series& s : series)
         std::sort(
             s.sample_counts.begin(), s.sample_counts.end(), [](const auto* a, const auto* b) { return a->n < b->n; });
-    return all;
+    return series;
 }
 
 const FurnaceResult* combined_furnace(const Page& page) {
@@ -174,14 +174,14 @@ Json furnace_charts(const Page& page) {
 
 /// Medians by N, one cell per panel.
 Json furnace_medians(const Evidence& evidence) {
-    const auto all = series_of(evidence);
+    const auto series = series_of(evidence);
     std::set<std::uint64_t> sample_counts;
-    for (const Series& s : all)
+    for (const Series& s : series)
         for (const FurnaceQuantiles* q : s.sample_counts) sample_counts.insert(q->n);
     Json out = Json::array();
     for (const std::uint64_t n : sample_counts) {
         Json cells = Json::array();
-        for (const Series& s : all) {
+        for (const Series& s : series) {
             const auto found = std::ranges::find(s.sample_counts, n, [](const FurnaceQuantiles* q) { return q->n; });
             cells.push_back(cell_text(found == s.sample_counts.end() ? "" : figures((*found)->median)));
         }
@@ -194,11 +194,11 @@ Json furnace_medians(const Evidence& evidence) {
 /// run; "" with one panel.
 std::string furnace_html(const Page& page) {
     const Evidence& evidence = page.in.evidence;
-    const auto all = series_of(evidence);
-    const auto coarse = std::min_element(all.begin(), all.end(), [](const Series& a, const Series& b) {
+    const auto series = series_of(evidence);
+    const auto coarse = std::min_element(series.begin(), series.end(), [](const Series& a, const Series& b) {
         return std::pair(a.arithmetic, a.u_bits) < std::pair(b.arithmetic, b.u_bits);
     });
-    const auto fine = std::max_element(all.begin(), all.end(), [](const Series& a, const Series& b) {
+    const auto fine = std::max_element(series.begin(), series.end(), [](const Series& a, const Series& b) {
         return std::pair(a.arithmetic, a.u_bits) < std::pair(b.arithmetic, b.u_bits);
     });
     if (coarse == fine || evidence.expected <= 0) return {};
@@ -356,14 +356,14 @@ std::optional<double> relative(const SeedSpread* b) {
 }
 
 /// Returns "18 to 22 % below", for deviations of one sign; empty if the signs differ or nothing was published.
-std::string spread(const std::vector<double>& all) {
-    if (all.empty()) return {};
-    const auto [low, high] = std::minmax_element(all.begin(), all.end());
+std::string spread(const std::vector<double>& values) {
+    if (values.empty()) return {};
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
     if (*low < 0 && *high > 0) return {};
     const double least = std::min(std::fabs(*low), std::fabs(*high)),
-                 most = std::max(std::fabs(*low), std::fabs(*high));
-    const std::string range = most - least < 0.005 ? fmt::format("{:.0f}", 100 * most)
-                                                   : fmt::format("{:.0f} to {:.0f}", 100 * least, 100 * most);
+                 greatest = std::max(std::fabs(*low), std::fabs(*high));
+    const std::string range = greatest - least < 0.005 ? fmt::format("{:.0f}", 100 * greatest)
+                                                       : fmt::format("{:.0f} to {:.0f}", 100 * least, 100 * greatest);
     return range + " % " + (*low < 0 ? "below" : "above");
 }
 
@@ -372,13 +372,13 @@ std::string highlight_remark(const Page& page, const std::string& region) {
     std::string parts;
     bool below = true;
     for (const char* kind : {"rmse.", "var."}) {
-        std::vector<double> all;
+        std::vector<double> ratios;
         for (const ArmPlan* arm : arms_about_normal(page.in.experiment))
             if (const auto r = relative(page.find.band(arm->name, page.find.headline_n(), kind + region)))
-                all.push_back(*r);
-        const std::string range = spread(all);
+                ratios.push_back(*r);
+        const std::string range = spread(ratios);
         if (range.empty()) continue;
-        below = below && all.front() < 0;
+        below = below && ratios.front() < 0;
         parts += (parts.empty() ? "" : ", ") + metric_html(kind + region) + " " + range;
     }
     if (parts.empty()) return {};
@@ -436,18 +436,18 @@ std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const 
             published.push_back(*b->published);
     if (published.size() < 3 || published.size() != narrow.n.size()) return {};
     const double limit = departure(narrow.n, published);
-    int close = 0, of = 0;
+    int close = 0, count = 0;
     for (const std::uint32_t seed : page.in.provenance.seeds) {
         const auto ladder = ladder_of(page, narrow, region, seed);
         if (ladder.empty()) continue;
-        ++of;
+        ++count;
         if (departure(narrow.n, ladder) <= limit) ++close;
     }
-    if (of < 2) return {};
+    if (count < 2) return {};
     return fmt::format(
         "The published ladder of {} in {} deviates from slope −1/2 by at most {}. Of {} seeds here, {} keep as "
         "close: the others meet a rare bright sample at some sample count.",
-        escape(narrow.name), escape(region), percent(limit, 2), of, close);
+        escape(narrow.name), escape(region), percent(limit, 2), count, close);
 }
 
 /// A published rise of RMSE with N, for an arm whose square has no finite expectation.
@@ -457,42 +457,43 @@ std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::stri
                          *b = page.find.band(narrow.name, narrow.n[i], "rmse." + region);
         if (!a || !b || !a->published || !b->published || *b->published <= *a->published) continue;
         const double factor = *b->published / *a->published;
-        int rose = 0, so_much = 0, of = 0;
+        int rose = 0, so_much = 0, count = 0;
         for (const std::uint32_t seed : page.in.provenance.seeds) {
             const auto ladder = ladder_of(page, narrow, region, seed);
             if (ladder.empty()) continue;
-            ++of;
+            ++count;
             rose += ladder[i] > ladder[i - 1];
             so_much += ladder[i] >= factor * ladder[i - 1];
         }
-        if (of < 2) return {};
+        if (count < 2) return {};
         return fmt::format(
             "From <i>N</i> = {} to {} the published {} of {} rises by a factor of {:.2f}. In {} of {} seeds here it "
             "rises, in {} by that much. With an infinite variance behind it, it need not fall.",
-            narrow.n[i - 1], narrow.n[i], metric_html("rmse." + region), escape(narrow.name), factor, rose, of,
+            narrow.n[i - 1], narrow.n[i], metric_html("rmse." + region), escape(narrow.name), factor, rose, count,
             so_much);
     }
     return {};
 }
 
 Json remarks(const Page& page) {
-    std::vector<std::string> all;
+    std::vector<std::string> list;
     const ArmPair pair = arm_pair(page);
     const ArmPlan *broad = pair.broad, *narrow = pair.narrow;
     if (pair) {
         const std::string hot = page.find.region_where_worst(broad->name, narrow->name, page.find.headline_n());
         const std::string cold = page.find.region_where_worst(narrow->name, broad->name, page.find.headline_n());
-        if (!hot.empty()) all.push_back(highlight_remark(page, hot));
+        if (!hot.empty()) list.push_back(highlight_remark(page, hot));
         if (!cold.empty() && cold != hot)
             if (const auto r = relative(page.find.band(broad->name, page.find.headline_n(), "rmse." + cold)))
-                all.push_back(fmt::format(
+                list.push_back(fmt::format(
                     "For {}, {}: {}.", escape(broad->name), metric_html("rmse." + cold), signed_percent(*r)));
-        for (const char* metric : {"fireflies", "y_mean", "horizon_frac"}) all.push_back(exponent_remark(page, metric));
-        if (!hot.empty()) all.push_back(smooth_ladder_remark(page, *narrow, hot));
-        if (!cold.empty()) all.push_back(rise_remark(page, *narrow, cold));
+        for (const char* metric : {"fireflies", "y_mean", "horizon_frac"})
+            list.push_back(exponent_remark(page, metric));
+        if (!hot.empty()) list.push_back(smooth_ladder_remark(page, *narrow, hot));
+        if (!cold.empty()) list.push_back(rise_remark(page, *narrow, cold));
     }
-    std::erase_if(all, [](const std::string& remark) { return remark.empty(); });
-    return all;
+    std::erase_if(list, [](const std::string& remark) { return remark.empty(); });
+    return list;
 }
 
 }  // namespace
@@ -505,11 +506,11 @@ Json disagreements(const Page& page) {
         if (!b.published || b.band.heavy || b.band.seeds < 2) continue;
         ++checked;
         if (*b.published >= b.band.q05 && *b.published <= b.band.q95) continue;
-        const auto off = relative(&b);
+        const auto deviation = relative(&b);
         rows.push_back({{"metric", metric_html(b.metric)}, {"run", run_html(b.key, page.in.experiment)},
             {"published", cell_text(figures_of(b.metric, *b.published))},
             {"median", cell_text(figures_of(b.metric, b.band.median))}, {"interval", interval_html(b.metric, b.band)},
-            {"off", off ? signed_percent(*off) : "–"}});
+            {"off", deviation ? signed_percent(*deviation) : "–"}});
     }
     if (checked == 0) return false;
     const std::size_t outside = rows.size();

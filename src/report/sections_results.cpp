@@ -131,10 +131,10 @@ Json failure_b(Page& page) {
 namespace {
 
 std::vector<const Ladder*> ladders_in(const Page& page, const std::string& region) {
-    std::vector<const Ladder*> all;
+    std::vector<const Ladder*> ladders;
     for (const Ladder& l : page.in.metrics.ladders)
-        if (l.region == region && l.n.size() > 1 && l.n.size() == l.rmse.size()) all.push_back(&l);
-    return all;
+        if (l.region == region && l.n.size() > 1 && l.n.size() == l.rmse.size()) ladders.push_back(&l);
+    return ladders;
 }
 
 std::string slope_interval_html(const Ladder& l) {
@@ -179,16 +179,16 @@ std::vector<Point> guide(const Point& first, const Axis& x) {
 }
 
 std::string ladder_chart(const Page& page, const std::string& region) {
-    const auto all = ladders_in(page, region);
+    const auto ladders = ladders_in(page, region);
     std::vector<double> ns, values;
-    for (const Ladder* l : all)
+    for (const Ladder* l : ladders)
         for (const Point& p : points_of(*l)) {
             ns.push_back(p.x);
             values.push_back(p.y);
         }
-    for (const Ladder* l : all)
+    for (const Ladder* l : ladders)
         for (const Point& p : published_of(page, *l)) values.push_back(p.y);
-    for (const Ladder* l : all) {
+    for (const Ladder* l : ladders) {
         const LadderBand band = band_of(page, *l);
         values.insert(values.end(), band.low.begin(), band.low.end());
         values.insert(values.end(), band.high.begin(), band.high.end());
@@ -199,7 +199,7 @@ std::string ladder_chart(const Page& page, const std::string& region) {
     x.ticks.erase(std::unique(x.ticks.begin(), x.ticks.end()), x.ticks.end());
     x.high *= 2.2;  // room for names at the ends of lines
     Chart chart(420, 330, x, log_axis(metric_text("rmse." + region), values), "RMSE against N in region " + region);
-    for (const Ladder* l : all) {
+    for (const Ladder* l : ladders) {
         const auto points = points_of(*l);
         const std::string colour = page.colour(l->arm);
         if (const LadderBand band = band_of(page, *l); band.n.size() > 1)
@@ -260,16 +260,16 @@ bool is_heavy(const FurnaceResult& f) { return f.tail && f.tail->heavy(); }
 
 /// Whether the reading is the expected one, by its standard error.
 void add_verdict(const FurnaceResult& f, Json& to) {
-    const double off = std::fabs(f.measured - f.expected);
+    const double deviation = std::fabs(f.measured - f.expected);
     to["heavy"] = is_heavy(f);
     to["differs"] = false;
     to["remark"] = "";
     if (is_heavy(f)) return;
     if (!(f.se > 0)) {
-        to["remark"] = off == 0 ? "exact" : "no standard error";
+        to["remark"] = deviation == 0 ? "exact" : "no standard error";
         return;
     }
-    const double z = off / f.se;
+    const double z = deviation / f.se;
     to["differs"] = !(z <= 3);
     to["remark"] = fmt::format("{}, {:.1f} standard errors off", z <= 3 ? "agrees" : "", z);
 }
@@ -277,10 +277,10 @@ void add_verdict(const FurnaceResult& f, Json& to) {
 }  // namespace
 
 Json furnaces(const Page& page) {
-    const std::vector<FurnaceResult>& all = page.in.metrics.furnaces;
-    if (all.empty()) return false;
+    const std::vector<FurnaceResult>& results = page.in.metrics.furnaces;
+    if (results.empty()) return false;
     Json rows = Json::array(), shortfalls = Json::array();
-    for (const FurnaceResult& f : all) {
+    for (const FurnaceResult& f : results) {
         rows.push_back({{"name", f.name}, {"arm", f.arm}, {"part", f.part == "lobe" ? "lobe alone" : f.part},
             {"n", f.n}, {"expected", cell_text(figures(f.expected))},
             {"published", cell_text(f.published ? figures(*f.published) : "")},
@@ -288,12 +288,12 @@ Json furnaces(const Page& page) {
             {"tail", cell_text(tail_text(f.tail))}});
         add_verdict(f, rows.back());
         if (!is_heavy(f) || f.expected <= 0) continue;
-        const double off = f.measured / f.expected - 1;
+        const double deviation = f.measured / f.expected - 1;
         shortfalls.push_back({{"name", f.name}, {"measured", with_minus(figures(f.measured))},
-            {"expected", with_minus(figures(f.expected))}, {"off", percent(std::fabs(off), 2)}, {"short", off < 0},
-            {"tail", tail_text(f.tail)}});
+            {"expected", with_minus(figures(f.expected))}, {"off", percent(std::fabs(deviation), 2)},
+            {"short", deviation < 0}, {"tail", tail_text(f.tail)}});
     }
-    const bool published = std::ranges::any_of(all, [](const FurnaceResult& f) { return f.published.has_value(); });
+    const bool published = std::ranges::any_of(results, [](const FurnaceResult& f) { return f.published.has_value(); });
     return {{"with_published", published}, {"rows", rows}, {"shortfalls", shortfalls}};
 }
 

@@ -57,10 +57,10 @@ std::string lobe(const Material& m) {
 Json shape_of(const Page& page, const std::string& name, std::string_view kind, const std::string& where,
     const Material& material, bool blocks) {
     const auto found = page.in.metrics.shape_pixels.find(name);
-    const bool known = found != page.in.metrics.shape_pixels.end();
+    const bool is_known = found != page.in.metrics.shape_pixels.end();
     return {{"name", name}, {"kind", kind}, {"where", where}, {"rho_d", rgb(material.rho_d)}, {"rho_d_file", ""},
         {"lobe", lobe(material)}, {"alpha_file", ""}, {"blocks", blocks},
-        {"pixels", known ? std::to_string(found->second) : "–"}};
+        {"pixels", is_known ? std::to_string(found->second) : "–"}};
 }
 
 Json shapes_of(const Page& page) {
@@ -103,9 +103,9 @@ Json scene_section(Page& page) {
 namespace {
 
 std::string sample_counts(const ArmPlan& arm) {
-    std::vector<std::string> all;
-    for (const std::uint64_t n : arm.n) all.push_back(std::to_string(n));
-    return listed(all);
+    std::vector<std::string> counts;
+    for (const std::uint64_t n : arm.n) counts.push_back(std::to_string(n));
+    return listed(counts);
 }
 
 /// Returns whether the density depends only on the polar angle about one direction.
@@ -208,9 +208,9 @@ Json below_the_reference(const ReportInputs& in) {
 Json row_of(const ReferenceQuality& r) { return {{"region", r.region}, {"s", shortest(r.s)}}; }
 
 /// Returns where the reference's own error is too large a part of an RMSE.
-Json too_coarse(const std::vector<ReferenceQuality>& all) {
+Json too_coarse(const std::vector<ReferenceQuality>& references) {
     Json out = Json::array();
-    for (const ReferenceQuality& r : all)
+    for (const ReferenceQuality& r : references)
         if (r.error_share > most_error_share) {
             out.push_back(row_of(r));
             out.back()["share"] = percent(r.error_share, 2);
@@ -219,8 +219,8 @@ Json too_coarse(const std::vector<ReferenceQuality>& all) {
 }
 
 /// The Monte Carlo reference against the quadrature.
-void add_both(const std::vector<ReferenceQuality>& all, Json& to) {
-    for (const ReferenceQuality& r : all) {
+void add_both(const std::vector<ReferenceQuality>& references, Json& to) {
+    for (const ReferenceQuality& r : references) {
         Json row = row_of(r);
         row["difference"] = cell_text(figures(*r.rms_difference, 3));
         row["standard_error"] = cell_text(figures(*r.rms_standard_error, 3));
@@ -229,15 +229,15 @@ void add_both(const std::vector<ReferenceQuality>& all, Json& to) {
         to["both"].push_back(row);
     }
     const auto worst =
-        std::ranges::max_element(all, {}, [](const ReferenceQuality& r) { return *r.max_relative_rmse_change; });
+        std::ranges::max_element(references, {}, [](const ReferenceQuality& r) { return *r.max_relative_rmse_change; });
     to["worst"] = row_of(*worst);
     to["worst"]["change"] = percent(*worst->max_relative_rmse_change, 2);
     to["worst"]["explained"] = std::ranges::all_of(
-        all, [](const ReferenceQuality& r) { return *r.rms_difference <= 2 * *r.rms_standard_error; });
+        references, [](const ReferenceQuality& r) { return *r.rms_difference <= 2 * *r.rms_standard_error; });
 }
 
-void add_one(const std::vector<ReferenceQuality>& all, Json& to) {
-    for (const ReferenceQuality& r : all) {
+void add_one(const std::vector<ReferenceQuality>& references, Json& to) {
+    for (const ReferenceQuality& r : references) {
         Json row = row_of(r);
         row["error"] = cell_text(figures(r.paired_error ? *r.paired_error : *r.quadrature_error, 2));
         row["share"] = std::isfinite(r.error_share) ? percent(r.error_share, 2) : "above it";
@@ -248,19 +248,19 @@ void add_one(const std::vector<ReferenceQuality>& all, Json& to) {
 }  // namespace
 
 Json reference(Page& page) {
-    const auto& all = page.in.metrics.references;
+    const auto& references = page.in.metrics.references;
     const ReferencePlan& plan = page.in.experiment.reference;
     Json plates = page.figures.plates(PlateKind::reference);
-    if (all.empty() && plates.empty()) return false;
-    const bool both = !all.empty() && all.front().max_relative_rmse_change.has_value();
+    if (references.empty() && plates.empty()) return false;
+    const bool both = !references.empty() && references.front().max_relative_rmse_change.has_value();
     const bool paired = plan.kind == ReferenceKind::paired;
     Json out = {{"quadrature", !both && !paired}, {"paired", !both && paired}, {"two", both}, {"n", plan.n},
         {"own_seed", plan.seed}, {"lobe", plural(plan.lobe_spp, "sample")}, {"disk", plural(plan.disk_spp, "sample")},
         {"used", plan.kind == ReferenceKind::quadrature ? "quadrature" : "Monte Carlo reference"},
-        {"both", Json::array()}, {"one", Json::array()}, {"too_coarse", too_coarse(all)},
+        {"both", Json::array()}, {"one", Json::array()}, {"too_coarse", too_coarse(references)},
         {"below", below_the_reference(page.in)}, {"plates", std::move(plates)}};
-    if (both) add_both(all, out);
-    else add_one(all, out);
+    if (both) add_both(references, out);
+    else add_one(references, out);
     return out;
 }
 

@@ -24,19 +24,19 @@ struct Paint {
 };
 constexpr const char *green = "32", *red = "1;31", *bold = "1";
 
-std::string failures_line(const std::vector<const AssertionResult*>& failed, std::size_t of) {
-    const std::string head = fmt::format("{} of {} assertions FAIL: ", failed.size(), of);
-    std::string all = head;
-    for (const AssertionResult* a : failed) all += (a == failed.front() ? "" : ", ") + a->name;
-    if (width(all) <= columns || failed.size() == 1) return clip(all, columns);
+std::string failures_line(const std::vector<const AssertionResult*>& failed, std::size_t total) {
+    const std::string head = fmt::format("{} of {} assertions FAIL: ", failed.size(), total);
+    std::string line = head;
+    for (const AssertionResult* a : failed) line += (a == failed.front() ? "" : ", ") + a->name;
+    if (width(line) <= columns || failed.size() == 1) return clip(line, columns);
     const std::string more = fmt::format(", and {} more", failed.size() - 1);
     return clip(head + failed.front()->name, columns - more.size()) + more;
 }
 
 /// Returns how many were skipped, one line for each reason.
-std::string skipped_lines(const std::vector<AssertionResult>& all) {
+std::string skipped_lines(const std::vector<AssertionResult>& assertions) {
     std::map<std::string, std::uint64_t> reasons;
-    for (const AssertionResult& a : all)
+    for (const AssertionResult& a : assertions)
         if (!a.skipped.empty()) ++reasons[a.skipped];
     std::string out;
     for (const auto& [why, count] : reasons) out += fmt::format("{} skipped: {}\n", plural(count, "assertion"), why);
@@ -44,16 +44,17 @@ std::string skipped_lines(const std::vector<AssertionResult>& all) {
 }
 
 std::string verdict(const std::vector<AssertionResult>& given, const Paint& paint) {
-    std::vector<AssertionResult> all;
-    std::ranges::copy_if(given, std::back_inserter(all), [](const AssertionResult& a) { return a.skipped.empty(); });
+    std::vector<AssertionResult> evaluated;
+    std::ranges::copy_if(
+        given, std::back_inserter(evaluated), [](const AssertionResult& a) { return a.skipped.empty(); });
     if (given.empty()) return "no assertions in this experiment\n";
-    if (all.empty()) return "no assertion was evaluated\n";
+    if (evaluated.empty()) return "no assertion was evaluated\n";
     std::vector<const AssertionResult*> failed;
-    for (const AssertionResult& a : all)
+    for (const AssertionResult& a : evaluated)
         if (a.failed()) failed.push_back(&a);
-    if (failed.empty() && all.size() == 1) return paint(green, "the one assertion holds") + "\n";
-    if (failed.empty()) return paint(green, fmt::format("all {} assertions hold", all.size())) + "\n";
-    std::string out = paint(red, failures_line(failed, all.size())) + "\n";
+    if (failed.empty() && evaluated.size() == 1) return paint(green, "the one assertion holds") + "\n";
+    if (failed.empty()) return paint(green, fmt::format("all {} assertions hold", evaluated.size())) + "\n";
+    std::string out = paint(red, failures_line(failed, evaluated.size())) + "\n";
     for (const AssertionResult* a : failed) {
         const std::string values = a->reference_good
             ? fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound))
@@ -115,11 +116,11 @@ std::string films(const std::map<std::string, std::string>& hashes, const Paint&
     for (const auto& [name, hash] : hashes) longest = std::max(longest, width(name) + width(hash));
     const std::size_t across = longest + 2 <= 38 ? 2 : 1;
     const std::size_t cell = across == 2 ? 38 : columns - 2;
-    std::size_t at = 0;
+    std::size_t index = 0;
     for (const auto& [name, hash] : hashes) {
         const std::string digits = clip(hash, cell / 2);
         out += fmt::format("  {}  {}", left(name, cell - 2 - width(digits)), digits);
-        if (++at % across == 0 || at == hashes.size()) out += "\n";
+        if (++index % across == 0 || index == hashes.size()) out += "\n";
     }
     return out;
 }

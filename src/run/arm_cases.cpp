@@ -38,8 +38,8 @@ public:
     std::string name() const override { return name_; }
     bool limited() const override { return limited_; }
     bool has_f() const override { return true; }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = brdf_value(surface_, at[i].wo, at[i].wi);
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
+        for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = brdf_value(surface_, pairs[i].wo, pairs[i].wi);
     }
 
 protected:
@@ -48,14 +48,14 @@ protected:
     const ShadingPoints& points() const { return *point_; }
 
     /// Calls work(rows, first, count) for consecutive parts of pairs, a run for each w_o.
-    template <class Work> void in_batches(std::span<const Pair> at, Work&& work) const {
+    template <class Work> void in_batches(std::span<const Pair> pairs, Work&& work) const {
         std::vector<PointRun> runs;
         std::vector<Vec3<float>> wi;
-        for (std::size_t first = 0; first < at.size(); first += most_rows) {
-            const std::size_t rows = std::min(most_rows, at.size() - first);
+        for (std::size_t first = 0; first < pairs.size(); first += most_rows) {
+            const std::size_t rows = std::min(most_rows, pairs.size() - first);
             runs.clear();
             wi.clear();
-            for (const Pair& pair : at.subspan(first, rows)) {
+            for (const Pair& pair : pairs.subspan(first, rows)) {
                 const Vec3<float> wo = as<float>(pair.wo);
                 const bool same =
                     !runs.empty() && runs.back().wo.x == wo.x && runs.back().wo.y == wo.y && runs.back().wo.z == wo.z;
@@ -65,10 +65,10 @@ protected:
             }
             work(PointRows{points(), runs}, std::span<const Vec3<float>>(wi), first);
         }
-        if (limited_) count(at.size());
+        if (limited_) count(pairs.size());
     }
-    void density_of(const Technique& technique, std::span<const Pair> at, std::span<double> out) const {
-        in_batches(at, [&](const PointRows& rows, std::span<const Vec3<float>> wi, std::size_t first) {
+    void density_of(const Technique& technique, std::span<const Pair> pairs, std::span<double> out) const {
+        in_batches(pairs, [&](const PointRows& rows, std::span<const Vec3<float>> wi, std::size_t first) {
             technique.density(rows, wi, out.subspan(first, wi.size()));
         });
     }
@@ -105,7 +105,9 @@ public:
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         draw_with(*technique_, wo, u, out);
     }
-    void pdf(int, std::span<const Pair> at, std::span<double> out) const override { density_of(*technique_, at, out); }
+    void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
+        density_of(*technique_, pairs, out);
+    }
 
 private:
     std::shared_ptr<const Technique> technique_;
@@ -122,29 +124,31 @@ public:
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         draw_with(part(t), wo, u, out);
     }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override { density_of(part(t), at, out); }
-    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        density_of(part(t), pairs, out);
+    }
+    void mis_weight(int t, std::span<const Pair> pairs, std::span<double> out) const override {
         const std::size_t parts = combination_->parts().size();
-        std::vector<std::vector<double>> p(parts, std::vector<double>(at.size()));
-        for (std::size_t k = 0; k < parts; ++k) density_of(*combination_->parts()[k], at, p[k]);
-        if (combination_->has_weight_function()) return weights_of_function(t, at, p, out);
+        std::vector<std::vector<double>> p(parts, std::vector<double>(pairs.size()));
+        for (std::size_t k = 0; k < parts; ++k) density_of(*combination_->parts()[k], pairs, p[k]);
+        if (combination_->has_weight_function()) return weights_of_function(t, pairs, p, out);
         std::vector<double> here(parts);
-        for (std::size_t i = 0; i < at.size(); ++i) {
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
             for (std::size_t k = 0; k < parts; ++k) here[k] = p[k][i];
-            FormulaInputs in = formula_inputs(points(), {0, as<float>(at[i].wo), 1});
-            in.cos_i = at[i].wi.z;
+            FormulaInputs in = formula_inputs(points(), {0, as<float>(pairs[i].wo), 1});
+            in.cos_i = pairs[i].wi.z;
             out[i] = combination_->mis_weight(static_cast<std::size_t>(t), in, here);
         }
     }
 
 private:
     void weights_of_function(
-        int t, std::span<const Pair> at, const std::vector<std::vector<double>>& p, std::span<double> out) const {
-        in_batches(at, [&](const PointRows& rows, std::span<const Vec3<float>> wi, std::size_t first) {
+        int t, std::span<const Pair> pairs, const std::vector<std::vector<double>>& p, std::span<double> out) const {
+        in_batches(pairs, [&](const PointRows& rows, std::span<const Vec3<float>> wi, std::size_t first) {
             std::vector<std::vector<double>> here;
-            for (const std::vector<double>& of : p)
-                here.emplace_back(of.begin() + static_cast<std::ptrdiff_t>(first),
-                    of.begin() + static_cast<std::ptrdiff_t>(first + wi.size()));
+            for (const std::vector<double>& densities : p)
+                here.emplace_back(densities.begin() + static_cast<std::ptrdiff_t>(first),
+                    densities.begin() + static_cast<std::ptrdiff_t>(first + wi.size()));
             const std::vector<std::size_t> drawn_by(wi.size(), static_cast<std::size_t>(t));
             std::ranges::copy(combination_->mis_weights(rows, drawn_by, wi, here), out.begin() + std::ptrdiff_t(first));
         });
@@ -164,24 +168,24 @@ public:
     void pdf(int, std::span<const Pair>, std::span<double> out) const override { std::ranges::fill(out, 0); }
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         std::vector<WeightedDirection> drawn;
-        std::vector<Pair> at;
+        std::vector<Pair> pairs;
         std::vector<double> value;
         const std::size_t rows_a_batch = 512;
         for (std::size_t first = 0; first < u.size(); first += rows_a_batch) {
             const std::size_t rows = std::min(rows_a_batch, u.size() - first);
             drawn.assign(rows, {});
-            at.clear();
+            pairs.clear();
             value.resize(rows);
             const PointRun run{0, as<float>(wo), rows};
             combination_->sample(
                 {points(), {&run, 1}},
                 [&](std::size_t, std::size_t row, std::uint32_t block) { return hashed(u[first + row], block); },
                 drawn);
-            for (const WeightedDirection& d : drawn) at.push_back({wo, widen(d.drawn.wi)});
-            f(at, value);
+            for (const WeightedDirection& d : drawn) pairs.push_back({wo, widen(d.drawn.wi)});
+            f(pairs, value);
             for (std::size_t i = 0; i < rows; ++i) {
                 const double p = double(drawn[i].drawn.pdf.v);
-                Draw& d = out[first + i] = {at[i].wi, p == 0 ? 0.0 : 1.0};
+                Draw& d = out[first + i] = {pairs[i].wi, p == 0 ? 0.0 : 1.0};
                 d.weight = p == 0 ? 0 : value[i] * std::max(d.wi.z, 0.0) * double(drawn[i].weight) / p;
             }
         }
@@ -204,12 +208,12 @@ CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
     CaseLighting out;
     out.fill = luminance(scene.fill());
     const std::vector<ExternalLight> lights = lights_of(points);
-    std::vector<ExternalLightAt> at;
-    add_lights_at(points, 0, at);
+    std::vector<ExternalLightAt> seen;
+    add_lights_at(points, 0, seen);
     for (std::size_t k = 0; k < lights.size(); ++k) {
-        if (!at[k].shines) continue;
+        if (!seen[k].shines) continue;
         const double radiance = luminance(lights[k].radiance);
-        const Vec3d c = at[k].center, n = at[k].normal, u = at[k].edge_u, v = at[k].edge_v;
+        const Vec3d c = seen[k].center, n = seen[k].normal, u = seen[k].edge_u, v = seen[k].edge_v;
         if (dot(u, u) > 0) {
             out.area_lights.push_back({radiance, lights::Rectangle{c - u - v, 2.0 * u, 2.0 * v, true}});
         } else if (dot(n, n) > 0) {  // a disk; a side that shines faces the point
@@ -248,8 +252,9 @@ public:
     std::vector<CheckCase> at_pixels(int count) {
         const std::vector<std::uint32_t> seen = geometry_pixels();
         for (int k = 0; k < count && static_cast<std::size_t>(k) < seen.size(); ++k) {
-            const std::uint64_t all = seen.size(), many = std::min<std::uint64_t>(all, std::uint64_t(count));
-            const Point point = point_of(seen[(2 * std::uint64_t(k) + 1) * all / (2 * many)]);
+            const std::uint64_t count_seen = seen.size(),
+                                many = std::min<std::uint64_t>(count_seen, std::uint64_t(count));
+            const Point point = point_of(seen[(2 * std::uint64_t(k) + 1) * count_seen / (2 * many)]);
             for (const auto& [theta, azimuth] : wo_) add(point, tilt(theta, azimuth), theta, azimuth);
             if (!wo_.empty()) continue;
             const Vec3d wo{double(point->wox[0]), double(point->woy[0]), double(point->woz[0])};
@@ -340,12 +345,12 @@ private:
 
     std::shared_ptr<const SamplerAdapter> adapter_at(const Point& point) const {
         const ArmPlan* arm = experiment_.find_arm(sampler_);
-        if (const auto own = outside_.find(sampler_); own != outside_.end()) {
-            if (own->second->as_combination()) {
-                const std::shared_ptr<const Combination> c(own->second, own->second->as_combination());
+        if (const auto found = outside_.find(sampler_); found != outside_.end()) {
+            if (found->second->as_combination()) {
+                const std::shared_ptr<const Combination> c(found->second, found->second->as_combination());
                 return limited_in_time(combined_at(point, c), seconds_);
             }
-            return std::make_shared<OneTechnique>(sampler_, point, limited_, external_technique(own->second));
+            return std::make_shared<OneTechnique>(sampler_, point, limited_, external_technique(found->second));
         }
         const std::string name = arm ? arm->sampler : sampler_;
         if (name == "mis-balance" || name == "mis-power") {

@@ -45,8 +45,8 @@ std::string mark_of(const std::string& path) {
 /// not used.
 std::string build_mark() {
     Dl_info about{};
-    const bool known = dladdr(reinterpret_cast<const void*>(&mark_of), &about) != 0;
-    return mark_of(program_file()) + " " + mark_of(known ? about.dli_fname : "");
+    const bool found = dladdr(reinterpret_cast<const void*>(&mark_of), &about) != 0;
+    return mark_of(program_file()) + " " + mark_of(found ? about.dli_fname : "");
 }
 
 std::string key_of(const Experiment& experiment, const std::string& work) {

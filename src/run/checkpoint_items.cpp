@@ -62,23 +62,23 @@ private:
     std::string_view rest_;
 };
 
-#define CRESCENT_FIELD(name, Type) io(of.name);
-template <class Stream, class Region> void transfer_region(Stream& io, Region& of) {
-    io(of.region);
-    io(of.pixels);
-    io(of.flip);
-    io(of.mse);
-    io(of.mse_error);
-    io(of.reference_error);
+#define CRESCENT_FIELD(name, Type) io(values.name);
+template <class Stream, class Region> void transfer_region(Stream& io, Region& values) {
+    io(values.region);
+    io(values.pixels);
+    io(values.flip);
+    io(values.mse);
+    io(values.mse_error);
+    io(values.reference_error);
     CRESCENT_REGION_METRICS(CRESCENT_FIELD)
 }
 
-template <class Stream, class Run> void transfer(Stream& io, Run& of) {
-    io(of.key.arm);
-    io(of.key.n);
-    io(of.key.s);
-    io(of.key.seed);
-    for (auto& region : of.regions) transfer_region(io, region);
+template <class Stream, class Run> void transfer(Stream& io, Run& values) {
+    io(values.key.arm);
+    io(values.key.n);
+    io(values.key.s);
+    io(values.key.seed);
+    for (auto& region : values.regions) transfer_region(io, region);
     CRESCENT_FRAME_METRICS(CRESCENT_FIELD)
 }
 #undef CRESCENT_FIELD

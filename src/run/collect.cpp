@@ -69,17 +69,17 @@ void add_tails(
 }
 
 void add_hashes(Measured& out) {
-    std::vector<std::pair<std::string, std::function<std::string()>>> all;
-    for (const auto& [key, film] : out.films) all.emplace_back(to_string(key), [&] { return hash(film); });
+    std::vector<std::pair<std::string, std::function<std::string()>>> films;
+    for (const auto& [key, film] : out.films) films.emplace_back(to_string(key), [&] { return hash(film); });
     for (const ReferenceFilm& film : out.quadrature)
-        all.emplace_back(fmt::format("quadrature s={}", film.s), [&] { return hash(film); });
+        films.emplace_back(fmt::format("quadrature s={}", film.s), [&] { return hash(film); });
     for (const ReferenceFilm& film : out.monte_carlo)
-        all.emplace_back(fmt::format("note reference s={}", film.s), [&] { return hash(film); });
+        films.emplace_back(fmt::format("note reference s={}", film.s), [&] { return hash(film); });
     for (const ReferenceFilm& film : out.paired)
-        all.emplace_back(fmt::format("paired s={}", film.s), [&] { return hash(film); });
-    std::vector<std::string> hashes(all.size());
-    parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) { hashes[k] = all[k].second(); });
-    for (std::size_t k = 0; k < all.size(); ++k) out.metrics.film_hashes[all[k].first] = hashes[k];
+        films.emplace_back(fmt::format("paired s={}", film.s), [&] { return hash(film); });
+    std::vector<std::string> hashes(films.size());
+    parallel_for(std::size_t{0}, films.size(), [&](std::size_t k) { hashes[k] = films[k].second(); });
+    for (std::size_t k = 0; k < films.size(); ++k) out.metrics.film_hashes[films[k].first] = hashes[k];
 }
 
 void add_references_compared(Measured& out) {

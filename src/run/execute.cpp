@@ -58,9 +58,9 @@ Flips flips_of(const RunPlan& plan, const Prepared& prepared, const Job& job, co
     const Experiment& experiment = plan.experiment;
     const ArmPlan* arm = experiment.find_arm(job.arm);
     ensure(arm != nullptr, "a job is of an arm of the experiment");
-    const auto own = std::ranges::find(films, experiment.n_of(*arm), &Film::n);
+    const auto found = std::ranges::find(films, experiment.n_of(*arm), &Film::n);
     Flips out;
-    out.film = own == films.end() ? films.size() - 1 : static_cast<std::size_t>(own - films.begin());
+    out.film = found == films.end() ? films.size() - 1 : static_cast<std::size_t>(found - films.begin());
     const FlipImage test[] = {flip_image(films[out.film])};
     std::vector<Box> boxes;
     for (const Region& region : experiment.regions) boxes.push_back(region.box);
@@ -193,8 +193,8 @@ Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& mon
 }
 
 Job with_sampler(Job job, const Prepared& prepared) {
-    const auto own = prepared.outside.find(job.arm);
-    if (own != prepared.outside.end()) job.outside = own->second;
+    const auto external = prepared.outside.find(job.arm);
+    if (external != prepared.outside.end()) job.outside = external->second;
     return job;
 }
 

@@ -20,7 +20,8 @@ namespace {
 /// What it throws names the arm.
 class Named : public ExternalSampler {
 public:
-    Named(std::string arm, std::shared_ptr<const ExternalSampler> of) : arm_(std::move(arm)), of_(std::move(of)) {}
+    Named(std::string arm, std::shared_ptr<const ExternalSampler> sampler)
+        : arm_(std::move(arm)), of_(std::move(sampler)) {}
     std::string name() const override { return of_->name(); }
     int numbers() const override { return of_->numbers(); }
     std::size_t batch_rows() const override { return of_->batch_rows(); }

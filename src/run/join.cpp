@@ -59,14 +59,14 @@ std::map<std::string, std::string> values_in(const std::string& text) {
 }
 
 /// Returns where two experiments differ: "; ball.s is 32 there and 64 here".
-std::string difference(const std::string& there, const std::string& here) {
-    const auto a = values_in(there), b = values_in(here);
+std::string difference(const std::string& given, const std::string& here) {
+    const auto a = values_in(given), b = values_in(here);
     std::set<std::string> keys;
-    for (const auto& all : {a, b})
-        for (const auto& [key, value] : all) keys.insert(key);
+    for (const auto& values : {a, b})
+        for (const auto& [key, value] : values) keys.insert(key);
     const auto message = [](const auto& in, const std::string& key) {
-        const auto at = in.find(key);
-        return at == in.end() ? "not given" : at->second.substr(0, 60);
+        const auto found = in.find(key);
+        return found == in.end() ? "not given" : found->second.substr(0, 60);
     };
     for (const std::string& key : keys)
         if (key != "seeds" && message(a, key) != message(b, key))
@@ -128,9 +128,9 @@ public:
             RunMetrics run = part.file.metrics.runs[k];
             Json row = rows[k];
             for (RegionMetrics& region : run.regions) {
-                Json& at = row.at("regions").at(region.region);
-                if (region.tail) add_tail(part, run, region, at);
-                at.erase("tail");
+                Json& entry = row.at("regions").at(region.region);
+                if (region.tail) add_tail(part, run, region, entry);
+                entry.erase("tail");
                 region.tail.reset();
             }
             const auto [known, is_new] =
@@ -145,14 +145,14 @@ public:
     }
 
     const std::vector<RunMetrics>* of(std::uint32_t seed) const {
-        const auto at = by_seed_.find(seed);
-        return at == by_seed_.end() ? nullptr : &at->second;
+        const auto found = by_seed_.find(seed);
+        return found == by_seed_.end() ? nullptr : &found->second;
     }
 
     void give_tails(RunMetrics& run) const {
         for (RegionMetrics& region : run.regions)
-            if (const auto at = tails_.find({run.key.arm, run.key.s, region.region}); at != tails_.end())
-                region.tail = at->second.tail;
+            if (const auto found = tails_.find({run.key.arm, run.key.s, region.region}); found != tails_.end())
+                region.tail = found->second.tail;
     }
 
 private:
@@ -161,8 +161,8 @@ private:
         std::string text;
     };
 
-    void add_tail(const Part& part, const RunMetrics& run, const RegionMetrics& region, const Json& at) {
-        const std::string text = at.at("tail").dump();
+    void add_tail(const Part& part, const RunMetrics& run, const RegionMetrics& region, const Json& entry) {
+        const std::string text = entry.at("tail").dump();
         const auto [known, is_new] =
             tails_.try_emplace({run.key.arm, run.key.s, region.region}, KnownTail{region.tail, text});
         if (!is_new && known->second.text != text)
@@ -181,11 +181,11 @@ private:
 std::vector<AssertionResult> backend_claims(const std::vector<Part>& parts) {
     std::vector<AssertionResult> out;
     for (const Part& part : parts) {
-        const auto& all = part.file.metrics.assertions;
-        for (std::size_t k = part.file.experiment.assertions.size(); k < all.size(); ++k) {
-            const auto known = std::ranges::find(out, all[k].name, &AssertionResult::name);
-            if (known == out.end()) out.push_back(all[k]);
-            else if (all[k].failed()) *known = all[k];
+        const auto& results = part.file.metrics.assertions;
+        for (std::size_t k = part.file.experiment.assertions.size(); k < results.size(); ++k) {
+            const auto same = std::ranges::find(out, results[k].name, &AssertionResult::name);
+            if (same == out.end()) out.push_back(results[k]);
+            else if (results[k].failed()) *same = results[k];
         }
     }
     return out;

@@ -25,14 +25,14 @@ std::vector<std::uint32_t> seeds_of(const Experiment& experiment) {
 
 std::vector<Job> jobs_of(const Experiment& experiment, std::uint32_t seed) {
     std::vector<Job> jobs;
-    const double own = experiment.s();
-    for (const ArmPlan& arm : experiment.arms) jobs.push_back({arm.name, arm.sampler, arm.n, own, seed});
+    const double exponent = experiment.s();
+    for (const ArmPlan& arm : experiment.arms) jobs.push_back({arm.name, arm.sampler, arm.n, exponent, seed});
     if (!experiment.exponent) return jobs;
     const ExponentControl& control = *experiment.exponent;
     const ArmPlan& arm = *experiment.find_arm(control.arm);
     for (double s : control.s) {
-        const bool there = s == own && std::ranges::find(arm.n, control.n) != arm.n.end();
-        if (!there) jobs.push_back({arm.name, arm.sampler, {control.n}, s, seed});
+        const bool is_planned = s == exponent && std::ranges::find(arm.n, control.n) != arm.n.end();
+        if (!is_planned) jobs.push_back({arm.name, arm.sampler, {control.n}, s, seed});
     }
     return jobs;
 }
@@ -105,14 +105,14 @@ double of_emitters(const Experiment& experiment) {
 }  // namespace
 
 std::uint64_t memory_needed(const Experiment& experiment, std::uint64_t points) {
-    double sample_counts = 0, most = 0;
+    double sample_counts = 0, largest = 0;
     std::set<double> exponents;
     for (const Job& job : jobs_of(experiment, experiment.seed)) {
         sample_counts += static_cast<double>(job.n.size());
-        most = std::max(most, static_cast<double>(job.n.size()));
+        largest = std::max(largest, static_cast<double>(job.n.size()));
         exponents.insert(job.s);
     }
-    const double pixels = pixels_of(experiment), again = experiment.seeds > 1 ? most : 0;
+    const double pixels = pixels_of(experiment), again = experiment.seeds > 1 ? largest : 0;
     const double film = 4.0 * static_cast<double>(Film().planes().size());
     const bool whole_hits = pixels <= static_cast<double>(Scene::whole_hits);
     const double always = of_references(experiment, exponents.size()) + of_shape_map;
@@ -129,17 +129,17 @@ bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t avai
 }
 
 std::string why_too_large(const Experiment& experiment, std::uint64_t available) {
-    const auto needed = static_cast<double>(memory_needed(experiment)), there = static_cast<double>(available);
-    if (needed <= there) return "";
+    const auto needed = static_cast<double>(memory_needed(experiment)), bytes = static_cast<double>(available);
+    if (needed <= bytes) return "";
     const double pixels = pixels_of(experiment);
-    const double scale = std::sqrt(pixels_that_fit(pixels, needed, there) / pixels);
+    const double scale = std::sqrt(pixels_that_fit(pixels, needed, bytes) / pixels);
     const int width = static_cast<int>(experiment.image.width * scale),
               height = static_cast<int>(experiment.image.height * scale);
     std::string message = fmt::format(
         "this run needs about {:.2g} GB of memory, and {:.2g} GB are available: every sample count of every arm is "
         "held at {} "
         "x {} pixels",
-        needed / 1e9, there / 1e9, experiment.image.width, experiment.image.height);
+        needed / 1e9, bytes / 1e9, experiment.image.width, experiment.image.height);
     if (width > 0 && height > 0)
         message += fmt::format(
             "; expected fewer sample counts, or a smaller image, such as --set image.width={} --set image.height={} "

@@ -24,9 +24,9 @@ namespace {
 bool films_alone(const OutputParts& parts) { return parts.films && !parts.metrics && !parts.draws(); }
 
 RunPlan plan_of(const Experiment& experiment, const RunOptions& options) {
-    RunPlan all = plan(experiment, options.seeds);
-    if (!films_alone(options.parts)) return all;
-    return plan(experiment, {all.range.first, all.range.first});
+    RunPlan whole = plan(experiment, options.seeds);
+    if (!films_alone(options.parts)) return whole;
+    return plan(experiment, {whole.range.first, whole.range.first});
 }
 
 double samples_of(const RunPlan& plan, std::uint32_t seed, std::uint64_t pixels) {
@@ -92,13 +92,14 @@ RunResult run(const Experiment& experiment, const RunOptions& options, ProgressM
     std::optional<Checkpoint> checkpoint;  // a program may draw differently in the next run
     if (!may_change(plan.experiment))
         checkpoint.emplace(plan.experiment, checkpoint_key(plan, engine), out, options.keep_after_s, monitor);
-    Measured all = measured(plan, std::move(prepared), engine, options, monitor, checkpoint ? &*checkpoint : nullptr);
-    all.timing.total_s = start.seconds();
-    on_threads(threads_to_be_had(engine.threads), [&] { write(all, staging, monitor, options.parts); });
+    Measured results =
+        measured(plan, std::move(prepared), engine, options, monitor, checkpoint ? &*checkpoint : nullptr);
+    results.timing.total_s = start.seconds();
+    on_threads(threads_to_be_had(engine.threads), [&] { write(results, staging, monitor, options.parts); });
     staging.commit(monitor);
     if (checkpoint) checkpoint->discard();
-    std::string summary = terminal_summary(report_inputs(all), all.timing, options.out, options.parts);
-    return {std::move(all.metrics), std::move(all.timing), std::move(all.provenance), std::move(summary)};
+    std::string summary = terminal_summary(report_inputs(results), results.timing, options.out, options.parts);
+    return {std::move(results.metrics), std::move(results.timing), std::move(results.provenance), std::move(summary)};
 }
 
 Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor) {

@@ -98,10 +98,10 @@ void write_reports(const Measured& m, Staging& staging, const OutputParts& parts
 
 OutputParts output_parts(const std::string& words) {
     OutputParts out{.metrics = false, .films = false, .plates = false, .report = false};
-    const std::pair<const char*, bool*> all[] = {
+    const std::pair<const char*, bool*> parts[] = {
         {"metrics", &out.metrics}, {"films", &out.films}, {"plates", &out.plates}, {"report", &out.report}};
     std::vector<std::string> names;
-    for (const auto& [name, part] : all) names.emplace_back(name);
+    for (const auto& [name, part] : parts) names.emplace_back(name);
     for (std::size_t begin = 0; begin <= words.size();) {
         const std::size_t end = std::min(words.find(',', begin), words.size());
         const std::string word = words.substr(begin, end - begin);
@@ -110,7 +110,7 @@ OutputParts output_parts(const std::string& words) {
             throw InputError({"--only " + words, 0, 0},
                 fmt::format("expected metrics, films, plates or report, several with commas between, not '{}'{}", word,
                     did_you_mean(word, names)));
-        *all[found - names.begin()].second = true;
+        *parts[found - names.begin()].second = true;
         begin = end + 1;
     }
     return out;

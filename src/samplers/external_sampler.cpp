@@ -30,12 +30,12 @@ double kind_number(std::string_view kind) {
 
 void add_vector(const Vec3<double>& v, std::vector<double>& to) { to.insert(to.end(), {v.x, v.y, v.z}); }
 
-void add_light(const ExternalLight& light, const ExternalLightAt& at, std::vector<double>& to) {
+void add_light(const ExternalLight& light, const ExternalLightAt& seen, std::vector<double>& to) {
     to.push_back(kind_number(light.kind));
     to.push_back(light.radius);
     to.insert(to.end(), light.radiance.begin(), light.radiance.end());
-    for (const Vec3<double>& v : {at.center, at.normal, at.edge_u, at.edge_v}) add_vector(v, to);
-    to.push_back(at.shines ? 1 : 0);
+    for (const Vec3<double>& v : {seen.center, seen.normal, seen.edge_u, seen.edge_v}) add_vector(v, to);
+    to.push_back(seen.shines ? 1 : 0);
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ std::size_t context_columns(std::span<const std::string> uses, std::size_t light
 }
 
 void add_context(std::span<const std::string> uses, const ExternalRun& point, std::span<const ExternalLight> lights,
-    std::span<const ExternalLightAt> at, std::vector<double>& to) {
+    std::span<const ExternalLightAt> seen, std::vector<double>& to) {
     for (const std::string& name : uses) {
         if (name == "s") to.push_back(point.surface.s);
         else if (name == "alpha") to.push_back(point.surface.alpha);
@@ -61,7 +61,7 @@ void add_context(std::span<const std::string> uses, const ExternalRun& point, st
         else {
             ensure(name == "lights", "a handshake names known quantities only");
             to.push_back(static_cast<double>(lights.size()));
-            for (std::size_t k = 0; k < lights.size(); ++k) add_light(lights[k], at[k], to);
+            for (std::size_t k = 0; k < lights.size(); ++k) add_light(lights[k], seen[k], to);
         }
     }
 }

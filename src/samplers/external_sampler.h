@@ -93,9 +93,9 @@ public:
 /// The external samplers of an experiment's arms, by arm.
 using ExternalSamplers = std::map<std::string, std::shared_ptr<const ExternalSampler>, std::less<>>;
 /// Returns null if the arm is built in.
-inline const ExternalSampler* external_of(const ExternalSamplers& all, std::string_view arm) {
-    const auto found = all.find(arm);
-    return found == all.end() ? nullptr : found->second.get();
+inline const ExternalSampler* external_of(const ExternalSamplers& samplers, std::string_view arm) {
+    const auto found = samplers.find(arm);
+    return found == samplers.end() ? nullptr : found->second.get();
 }
 
 /// A sampler as the kernels take it: a name of the list in all.h, or an external sampler, which takes precedence.
@@ -116,9 +116,9 @@ std::span<const std::string_view> context_names();
 /// Number of columns of one row for a scene with this many lights.
 std::size_t context_columns(std::span<const std::string> uses, std::size_t lights);
 
-/// Appends the columns of one surface point, in the order of `uses`. `at`: each light relative to the point.
+/// Appends the columns of one surface point, in the order of `uses`. `seen`: each light relative to the point.
 void add_context(std::span<const std::string> uses, const ExternalRun& point, std::span<const ExternalLight> lights,
-    std::span<const ExternalLightAt> at, std::vector<double>& to);
+    std::span<const ExternalLightAt> seen, std::vector<double>& to);
 
 /// Reads names of context_names() separated by commas, each at most once; returns false for any other text.
 bool take_context_names(std::string_view text, std::vector<std::string>& out);

@@ -21,7 +21,7 @@ template <class F> struct GgxD {
         .axis = "the normal $n$",
         .check_cases = check_cases,
         .gl = {2e-5, "as blinn"}};
-    static ExpectedBehaviour theory(const CasePoint& at) { return {.bounded = at.rho_d == 0}; }
+    static ExpectedBehaviour theory(const CasePoint& point) { return {.bounded = point.rho_d == 0}; }
     Ggx<F> ggx;
     explicit GgxD(const ShadingPoint<F>& shading_point) : ggx{shading_point.alpha} {}
 

@@ -20,8 +20,8 @@ template <template <class> class A> constexpr SamplerInfo info_of() {
 
 }  // namespace
 
-std::string power_underflows(const CasePoint& at, double least) {
-    const bool so = at.rho_d > 0 && at.s * math::log(least) < -1074 * math::log(2.0) + math::log(at.s + 1);
+std::string power_underflows(const CasePoint& point, double least) {
+    const bool so = point.rho_d > 0 && point.s * math::log(least) < -1074 * math::log(2.0) + math::log(point.s + 1);
     return so
         ? "the lobe's power is less than the smallest number there is where Lambert is not 0: p is 0 in the arm's "
           "own arithmetic"
@@ -29,12 +29,12 @@ std::string power_underflows(const CasePoint& at, double least) {
 }
 
 const std::vector<SamplerInfo>& sampler_infos() {
-    static const std::vector<SamplerInfo> all = [] {
+    static const std::vector<SamplerInfo> list = [] {
         std::vector<SamplerInfo> infos;
         for_each_sampler(Samplers{}, [&]<template <class> class A>() { infos.push_back(info_of<A>()); });
         return infos;
     }();
-    return all;
+    return list;
 }
 
 const SamplerInfo* find_arm_info(std::string_view sampler) {

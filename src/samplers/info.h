@@ -45,7 +45,7 @@ struct ExpectedBehaviour {
 
 /// Returns why p of a cosine power s is 0 in double where Lambert is not, because the power of the cosine `least` is
 /// less than 2^-1074; "" if it is not.
-std::string power_underflows(const CasePoint& at, double least);
+std::string power_underflows(const CasePoint& point, double least);
 
 /// The light that a sampler finds.
 struct Reaches {
@@ -79,7 +79,7 @@ struct SamplerDoc {
 struct SamplerInfo : SamplerDoc {
     std::string_view name;  // its name in files, on plates and in the report
     int techniques = 1;     // directions drawn per sample
-    ExpectedBehaviour (*theory)(const CasePoint& at) = nullptr;
+    ExpectedBehaviour (*theory)(const CasePoint& point) = nullptr;
 };
 
 /// Returns the samplers in the order of the list in all.h.

@@ -23,7 +23,7 @@ template <class F> struct LightArea {
         .reaches = {.fill = false, .sky = false, .triangles = false},
         .check_cases = check_cases,
         .gl = {3.5e-6, "as light-solid-angle, over cos at the light"}};
-    static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
+    static ExpectedBehaviour theory(const CasePoint& point) { return theory_of_light_arm(point); }
     const LocalDisk<F>* disks;
     int count;
     const LocalLight<F>* others;  // after the disks
@@ -62,7 +62,7 @@ template <class F> struct LightArea {
             return {drawn, zero, drawn.pdf.v > zero};
         }
         Drawn<F> drawn = {{zero, zero, one}, {zero}};
-        F below = zero, own = zero;
+        F below = zero, chosen_light = zero;
         for (int k = 0; k < count;
             ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
             const F above = k + 1 < count + other_count ? below + disks[k].power : one;
@@ -71,7 +71,7 @@ template <class F> struct LightArea {
             drawn.wi = {select(chosen, one_disk.wi.x, drawn.wi.x), select(chosen, one_disk.wi.y, drawn.wi.y),
                 select(chosen, one_disk.wi.z, drawn.wi.z)};
             drawn.pdf.v = select(chosen, (above - below) * one_disk.pdf.v, drawn.pdf.v);
-            own = select(chosen, number<F>(k), own);
+            chosen_light = select(chosen, number<F>(k), chosen_light);
             below = above;
         }
         for (int k = 0; k < other_count; ++k) {
@@ -81,13 +81,13 @@ template <class F> struct LightArea {
             drawn.wi = {select(chosen, aimed.wi.x, drawn.wi.x), select(chosen, aimed.wi.y, drawn.wi.y),
                 select(chosen, aimed.wi.z, drawn.wi.z)};
             drawn.pdf.v = select(chosen, (above - below) * aimed.pdf, drawn.pdf.v);
-            own = select(chosen, number<F>(count + k), own);
+            chosen_light = select(chosen, number<F>(count + k), chosen_light);
             below = above;
         }
         const auto some = drawn.pdf.v > zero;
         // Disks may lie one behind another: every one that wi meets could have drawn it.
-        drawn.pdf.v = select(some, drawn.pdf.v + density_of_others(drawn.wi, own), zero);
-        return {drawn, own, some};
+        drawn.pdf.v = select(some, drawn.pdf.v + density_of_others(drawn.wi, chosen_light), zero);
+        return {drawn, chosen_light, some};
     }
 
     [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
@@ -102,8 +102,8 @@ private:
         for (int k = 0; k < count; ++k) {
             const LocalDisk<F>& d = disks[k];
             const F c = d.along, v = dot(wi, d.normal);
-            const Vec3<F> off = wi * c - d.to_center * v;
-            const auto met = (dot(off, off) <= sqr(d.radius) * (v * v)) & d.faces() & (c * v > number<F>(0)) &
+            const Vec3<F> offset = wi * c - d.to_center * v;
+            const auto met = (dot(offset, offset) <= sqr(d.radius) * (v * v)) & d.faces() & (c * v > number<F>(0)) &
                 !(but == number<F>(k));
             const F t = c / select(met, v, number<F>(1));
             sum = sum + select(met, d.power * density(d, sqr(t), abs(v)).v, number<F>(0));

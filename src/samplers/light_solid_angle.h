@@ -30,7 +30,7 @@ template <class F> struct LightSolidAngle {
         .reaches = {.fill = false, .sky = false, .triangles = false},
         .check_cases = check_cases,
         .gl = {2.5e-6, "frames and a cap: square roots and divisions alone"}};
-    static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
+    static ExpectedBehaviour theory(const CasePoint& point) { return theory_of_light_arm(point); }
     const LocalDisk<F>* disks;
     int count;
     const LocalLight<F>* others;  // after the disks
@@ -95,8 +95,8 @@ private:
         for (int k = 0; k < count; ++k) {
             const F share = k + 1 < count + other_count ? disks[k].power : number<F>(1) - below;
             const Cap cap = count == 1 ? first : cap_of(disks[k]);
-            const Vec3<F> off = wi - cap.axis;
-            const auto held = (number<F>(0.5) * dot(off, off) <= cap.height) & !(but == number<F>(k));
+            const Vec3<F> offset = wi - cap.axis;
+            const auto held = (number<F>(0.5) * dot(offset, offset) <= cap.height) & !(but == number<F>(k));
             sum = sum + select(held, share * cap.density, number<F>(0));
             below = below + share;
         }
@@ -127,12 +127,12 @@ private:
         const Vec3<F> near = d.to_center - t, far = d.to_center + t;
         const F sum = sqrt(dot(near, near)) + sqrt(dot(far, far));
         const F q = number<F>(-4) * dot(d.to_center, t) / larger(sqr(sum), tiny);
-        const Vec3<F> off = t * q, y = d.to_center + off;
+        const Vec3<F> offset = t * q, y = d.to_center + offset;
         const F y2 = larger(dot(y, y), tiny);
         const F tan2 = larger(sqr(d.radius) * ((one - q) * (one + q)), zero) / y2;
         const F cos = one / sqrt(one + tan2);
         const F height = larger(tan2 / (one + tan2) / (one + cos), tiny);
-        return {y * (one / sqrt(y2)), height, select(d.faces(), number<F>(0.5 / pi) / height, zero), y, off};
+        return {y * (one / sqrt(y2)), height, select(d.faces(), number<F>(0.5 / pi) / height, zero), y, offset};
     }
 
     DrawnToDisk<F> towards(int k, const Cap& cap, Vec2<F> u) const {

@@ -25,7 +25,7 @@ template <class F> struct LightTriangle {
         .misses = light_arm_misses,
         .reaches = {.fill = false, .lights = false, .sky = false},
         .check_cases = check_cases};
-    static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
+    static ExpectedBehaviour theory(const CasePoint& point) { return theory_of_light_arm(point); }
 
     const Surroundings* around;
     Vec3<F> position;

@@ -40,9 +40,10 @@ template <class F, class Heuristic> struct TwoSampleMis {
 
 struct BalanceHeuristic {
     /// 1 / (1 + other/own): no overflow for large densities; own = 0 was not drawn and has weight 0.
-    template <class F> static F weight(F own, F other) {
-        const auto drawn = own > number<F>(0);
-        return select(drawn, number<F>(1) / (number<F>(1) + other / select(drawn, own, number<F>(1))), number<F>(0));
+    template <class F> static F weight(F this_pdf, F other) {
+        const auto drawn = this_pdf > number<F>(0);
+        return select(
+            drawn, number<F>(1) / (number<F>(1) + other / select(drawn, this_pdf, number<F>(1))), number<F>(0));
     }
 };
 
@@ -66,10 +67,10 @@ template <class F> struct MisBalance : TwoSampleMis<F, BalanceHeuristic> {
 //   w_i = p_i^2 / (p_1^2 + p_2^2)      Veach & Guibas 1995, eq. (13) with beta = 2.
 
 struct PowerHeuristic {
-    template <class F> static F weight(F own, F other) {
-        const auto drawn = own > number<F>(0);
+    template <class F> static F weight(F this_pdf, F other) {
+        const auto drawn = this_pdf > number<F>(0);
         return select(
-            drawn, number<F>(1) / (number<F>(1) + sqr(other / select(drawn, own, number<F>(1)))), number<F>(0));
+            drawn, number<F>(1) / (number<F>(1) + sqr(other / select(drawn, this_pdf, number<F>(1)))), number<F>(0));
     }
 };
 

@@ -25,14 +25,14 @@ template <class F> struct Phong {
         .gl = {7e-6, "u^(1/(s+1)) by a plain log2 and exp2, then divided by"}};
     /// On Lambert (w.R)^s falls off faster than the integrand: Pareto weights, and beyond 90 deg from R no samples at
     /// all.
-    static ExpectedBehaviour theory(const CasePoint& at) {
-        if (!(at.rho_d > 0)) return {.bounded = true};
-        const bool tilted = at.theta_deg > 0;
+    static ExpectedBehaviour theory(const CasePoint& point) {
+        if (!(point.rho_d > 0)) return {.bounded = true};
+        const bool tilted = point.theta_deg > 0;
         ExpectedBehaviour t;
-        t.lost = (1 - math::cos(at.theta_deg * pi / 180)) / 2;
-        t.lost_of = at.rho_d;
-        t.underflows = power_underflows(at, 1e-3);  // 1e-6 of Lambert's light is below
-        t.tail_k = tilted ? at.s / (at.s + 1) : (at.s - 1) / (at.s + 1);
+        t.lost = (1 - math::cos(point.theta_deg * pi / 180)) / 2;
+        t.lost_of = point.rho_d;
+        t.underflows = power_underflows(point, 1e-3);  // 1e-6 of Lambert's light is below
+        t.tail_k = tilted ? point.s / (point.s + 1) : (point.s - 1) / (point.s + 1);
         if (tilted) t.wrong = "support";
         t.why = tilted
             ? "the lobe about R does not reach all of n's hemisphere, and Lambert does: the article's second error"

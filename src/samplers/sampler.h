@@ -97,9 +97,9 @@ template <class F> struct ShadingPoint {
 
 /// The light that samplers which aim only at lights cannot reach.
 inline constexpr std::string_view light_arm_misses = "the fill";
-inline ExpectedBehaviour theory_of_light_arm(const CasePoint& at) {
+inline ExpectedBehaviour theory_of_light_arm(const CasePoint& point) {
     ExpectedBehaviour t;
-    if (at.fill > 0) {
+    if (point.fill > 0) {
         t.wrong = "support";
         t.why = "an arm that aims at lights alone cannot find the fill";
     }

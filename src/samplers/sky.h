@@ -26,7 +26,7 @@ template <class F> struct SkyByTexel {
         .misses = light_arm_misses,
         .reaches = {.fill = false, .lights = false, .triangles = false},
         .check_cases = check_cases};
-    static ExpectedBehaviour theory(const CasePoint& at) { return theory_of_light_arm(at); }
+    static ExpectedBehaviour theory(const CasePoint& point) { return theory_of_light_arm(point); }
 
     const Surroundings* around;
     Frame<F> frame;

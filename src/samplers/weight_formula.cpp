@@ -183,11 +183,11 @@ double WeightFormula::operator()(const FormulaInputs& in) const {
     std::size_t top = 0;  // entries
     for (const Step& step : steps_) {
         const auto put = [&](double v) { stack[top++] = v; };
-        const auto two = [&](auto&& of) {
+        const auto two = [&](auto&& operation) {
             const double b = stack[--top], a = stack[--top];
-            put(of(a, b));
+            put(operation(a, b));
         };
-        const auto one = [&](auto&& of) { stack[top - 1] = of(stack[top - 1]); };
+        const auto one = [&](auto&& operation) { stack[top - 1] = operation(stack[top - 1]); };
         switch (step.code) {
             case Code::number: put(step.number); break;
             case Code::s: put(in.s); break;
@@ -214,8 +214,8 @@ double WeightFormula::operator()(const FormulaInputs& in) const {
 }
 
 WeightList::WeightList(
-    const std::vector<std::string>& texts, std::size_t samplers, bool of_direction, SourceLocation at)
-    : count_(samplers), at_(std::move(at)) {
+    const std::vector<std::string>& texts, std::size_t samplers, bool of_direction, SourceLocation place)
+    : count_(samplers), at_(std::move(place)) {
     if (texts.empty()) return;
     const auto wrong = [&](const std::string& message) { throw InputError(at_, message); };
     if (texts.size() != samplers)

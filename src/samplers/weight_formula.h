@@ -77,8 +77,8 @@ private:
 class WeightList {
 public:
     WeightList() = default;
-    /// Reads `texts`, one for each of `samplers`; throws InputError at `at`.
-    WeightList(const std::vector<std::string>& texts, std::size_t samplers, bool of_direction, SourceLocation at);
+    /// Reads `texts`, one for each of `samplers`; throws InputError at `place`.
+    WeightList(const std::vector<std::string>& texts, std::size_t samplers, bool of_direction, SourceLocation place);
     /// Equal weights.
     explicit WeightList(std::size_t samplers) : count_(samplers) {}
 

@@ -37,8 +37,8 @@ Azimuths of_ellipse(Flat p, Flat u, Flat v) {
 }  // namespace
 
 bool Azimuths::meet(double lo, double hi) const {
-    const double off = std::remainder(0.5 * (lo + hi) - middle, 2 * pi);
-    return std::fabs(off) <= half + 0.5 * (hi - lo);
+    const double distance = std::remainder(0.5 * (lo + hi) - middle, 2 * pi);
+    return std::fabs(distance) <= half + 0.5 * (hi - lo);
 }
 
 Azimuths azimuths_of_ellipse(Vec3d p, Vec3d u, Vec3d v, const Frame<double>& frame) {
@@ -60,9 +60,9 @@ Azimuths azimuths_of_corners(std::span<const Vec3d> points, Vec3d x, const Frame
     if (middle.x == 0 && middle.y == 0) return {};  // the axis meets their hull, and the azimuth is undefined
     double lo = pi, hi = -pi;
     for (std::size_t k = 0; k < points.size(); ++k) {
-        const double off = math::atan2(cross(middle, corners[k]), dot(middle, corners[k]));
-        lo = std::min(lo, off);
-        hi = std::max(hi, off);
+        const double angle = math::atan2(cross(middle, corners[k]), dot(middle, corners[k]));
+        lo = std::min(lo, angle);
+        hi = std::max(hi, angle);
     }
     if (!(hi - lo < pi)) return {};
     return {math::atan2(middle.y, middle.x) + 0.5 * (lo + hi), 0.5 * (hi - lo)};

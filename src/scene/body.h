@@ -91,10 +91,10 @@ template <class... Kind> struct KindList {
     }
     /// Calls f(name of a kind, parameter) for every parameter of every kind, in order.
     template <class F> static constexpr void each_parameter(F&& f) {
-        const auto of = [&]<class K>(std::type_identity<K>) {
+        const auto apply = [&]<class K>(std::type_identity<K>) {
             for (const Parameter<K>& parameter : K::parameters()) f(K::name, parameter);
         };
-        (of(std::type_identity<Kind>{}), ...);
+        (apply(std::type_identity<Kind>{}), ...);
     }
 };
 

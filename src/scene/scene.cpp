@@ -27,7 +27,7 @@ Scene::Made::Made(SceneData from) : data(std::move(from)) {
             if (light.is_disk() == disks) lights.push_back(light);
         if (disks) disk_count = lights.size();
     }
-    if (const auto own = data.surface_of_s()) s_shape = static_cast<std::ptrdiff_t>(*own);
+    if (const auto surface = data.surface_of_s()) s_shape = static_cast<std::ptrdiff_t>(*surface);
     origin = c.eye;
     rays = Rays(instances(), origin);
     origin = nearest_seen();
@@ -66,16 +66,16 @@ std::shared_ptr<const Surroundings> Scene::Made::surroundings() const {
 Scene::Scene(SceneData data) : made_(std::make_shared<const Made>(std::move(data))), s_(made_->data.s()) {}
 
 std::vector<MeshInstance> Scene::Made::instances() const {
-    std::vector<MeshInstance> all;
+    std::vector<MeshInstance> placed;
     for (std::size_t m = 0; m < data.meshes.size(); ++m) {
         const MeshObject& mesh = data.meshes[m];
         ensure(mesh.pack != nullptr, "the files of meshes are read before the scene is made");
-        const Affine own = mesh.placement.transform();
-        if (mesh.instances.empty()) all.push_back({mesh.pack, own, static_cast<int>(m)});
+        const Affine transform = mesh.placement.transform();
+        if (mesh.instances.empty()) placed.push_back({mesh.pack, transform, static_cast<int>(m)});
         for (const Placement& placement : mesh.instances)
-            all.push_back({mesh.pack, placement.transform().after(own), static_cast<int>(m)});
+            placed.push_back({mesh.pack, placement.transform().after(transform), static_cast<int>(m)});
     }
-    return all;
+    return placed;
 }
 
 std::array<Vec3d, 3> Scene::Made::corners(std::uint32_t instance, std::uint32_t triangle) const {
@@ -112,30 +112,30 @@ Vec3d Scene::Made::nearest_seen() const {
 void Scene::remember_primaries() {
     const std::size_t width = static_cast<std::size_t>(image().width),
                       height = static_cast<std::size_t>(image().height);
-    const auto remember = [&](auto& all, const auto& what) {
+    const auto remember = [&](auto& values, const auto& what) {
         parallel_for(std::size_t{0}, height, [&](std::size_t j) {
             for (std::size_t i = 0; i < width; ++i)
                 if (const auto hit = made_->trace(static_cast<int>(i), static_cast<int>(j)))
-                    all[j * width + i] = what(*hit);
+                    values[j * width + i] = what(*hit);
         });
     };
     if (width * height <= whole_hits) {
-        auto all = std::make_shared<std::vector<Hit>>(width * height);
-        remember(*all, [](const Hit& hit) { return hit; });
-        hits_ = std::move(all);
+        auto hits = std::make_shared<std::vector<Hit>>(width * height);
+        remember(*hits, [](const Hit& hit) { return hit; });
+        hits_ = std::move(hits);
     } else {
-        auto all = std::make_shared<std::vector<std::int32_t>>(width * height, -1);
-        remember(*all, [](const Hit& hit) { return hit.shape; });
-        shapes_ = std::move(all);
+        auto shapes = std::make_shared<std::vector<std::int32_t>>(width * height, -1);
+        remember(*shapes, [](const Hit& hit) { return hit.shape; });
+        shapes_ = std::move(shapes);
     }
 }
 
 void Scene::forget_hits() {
     if (!hits_) return;
-    auto all = std::make_shared<std::vector<std::int32_t>>();
-    all->reserve(hits_->size());
-    for (const Hit& hit : *hits_) all->push_back(hit.shape);
-    shapes_ = std::move(all);
+    auto shapes = std::make_shared<std::vector<std::int32_t>>();
+    shapes->reserve(hits_->size());
+    for (const Hit& hit : *hits_) shapes->push_back(hit.shape);
+    shapes_ = std::move(shapes);
     hits_ = nullptr;
 }
 
@@ -149,11 +149,11 @@ Scene Scene::with_s(double s) const {
 }
 
 std::optional<Hit> Scene::primary(int i, int j) const {
-    const std::size_t at =
+    const std::size_t index =
         static_cast<std::size_t>(j) * static_cast<std::size_t>(image().width) + static_cast<std::size_t>(i);
-    if (hits_) return (*hits_)[at].shape < 0 ? std::nullopt : std::optional<Hit>((*hits_)[at]);
+    if (hits_) return (*hits_)[index].shape < 0 ? std::nullopt : std::optional<Hit>((*hits_)[index]);
     if (!shapes_) return made_->trace(i, j);
-    const int shape = (*shapes_)[at];
+    const int shape = (*shapes_)[index];
     if (shape < 0) return {};
     if (static_cast<std::size_t>(shape) >= shapes().size()) return made_->trace(i, j);
     const Vec3d d = made_->towards(i, j);
@@ -261,8 +261,8 @@ Texels Scene::texels(const Hit& hit) const {
     ensure(!mesh.uv.empty(), "a mesh with a texture has texture coordinates");
     const Triangle& corners = mesh.triangles[hit.triangle];
     const auto along = [&](float Vec2<float>::* axis) {
-        const auto at = [&](std::size_t k) { return static_cast<double>(mesh.uv[corners[k]].*axis); };
-        return (1 - hit.u - hit.v) * at(0) + hit.u * at(1) + hit.v * at(2);
+        const auto coordinate = [&](std::size_t k) { return static_cast<double>(mesh.uv[corners[k]].*axis); };
+        return (1 - hit.u - hit.v) * coordinate(0) + hit.u * coordinate(1) + hit.v * coordinate(2);
     };
     const double u = along(&Vec2<float>::x), v = along(&Vec2<float>::y);
     if (rho_d) out.rho_d = texel_at(*rho_d, u, v);

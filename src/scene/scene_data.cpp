@@ -55,10 +55,11 @@ std::optional<Rgb> albedo_of_reveal(const Shape& shape) {
 
 std::optional<Line> cut(const shapes::Disk& disk, Vec3d center, Vec3d k) {
     const Vec3d across = k - dot(k, disk.normal) * disk.normal;
-    const double size2 = dot(across, across), off = dot(k, center);
-    if (!(size2 * sqr(disk.radius) > sqr(off))) return {};
-    const double half = std::sqrt(sqr(disk.radius) - sqr(off) / size2);
-    const Vec3d foot = center - (off / size2) * across, along = (half / std::sqrt(size2)) * cross(disk.normal, across);
+    const double size2 = dot(across, across), distance = dot(k, center);
+    if (!(size2 * sqr(disk.radius) > sqr(distance))) return {};
+    const double half = std::sqrt(sqr(disk.radius) - sqr(distance) / size2);
+    const Vec3d foot = center - (distance / size2) * across,
+                along = (half / std::sqrt(size2)) * cross(disk.normal, across);
     return Line{foot - along, foot + along};
 }
 

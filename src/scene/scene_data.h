@@ -255,9 +255,9 @@ struct Line {
     Vec3d from, to;
 };
 /// Returns the segment in which the plane of normal k through the origin cuts a figure whose middle or corner is at
-/// `at` from there.
-std::optional<Line> cut(const shapes::Disk& disk, Vec3d at, Vec3d k);
-std::optional<Line> cut(const shapes::Quad& quad, Vec3d at, Vec3d k);
+/// `point` from there.
+std::optional<Line> cut(const shapes::Disk& disk, Vec3d point, Vec3d k);
+std::optional<Line> cut(const shapes::Quad& quad, Vec3d point, Vec3d k);
 
 struct SceneData {
     Image image;

@@ -24,20 +24,20 @@ constexpr std::size_t columns_a_guide = 4;
 /// Appends `entries` guides: how many of `rising` are at most k / entries, for each k; below(x): x in their unit.
 template <class Numbers, class Below>
 void add_guides(std::vector<std::uint16_t>& out, std::size_t entries, const Numbers& rising, const Below& below) {
-    std::size_t at = 0;
+    std::size_t index = 0;
     for (std::size_t k = 0; k < entries; ++k) {
         const double x = below(static_cast<double>(k) / static_cast<double>(entries));
-        while (at < rising.size() && static_cast<double>(rising[at]) <= x) ++at;
-        out.push_back(static_cast<std::uint16_t>(at));
+        while (index < rising.size() && static_cast<double>(rising[index]) <= x) ++index;
+        out.push_back(static_cast<std::uint16_t>(index));
     }
 }
 
 /// The azimuth atan2(y, x) / (2 pi) within 1e-9, in a tenth of the time of math::atan2: half-angle reduction to
 /// |r| <= tan(pi / 8), and the series up to r^17.
 double rough_turns(double y, double x) {
-    const double ax = std::fabs(x), ay = std::fabs(y), most = ax > ay ? ax : ay, least = ax > ay ? ay : ax;
-    const bool halved = least > 0.41421356237309503 * most;
-    const double r = halved ? (least - most) / (least + most) : least / most, r2 = r * r;
+    const double ax = std::fabs(x), ay = std::fabs(y), longer = ax > ay ? ax : ay, least = ax > ay ? ay : ax;
+    const bool halved = least > 0.41421356237309503 * longer;
+    const double r = halved ? (least - longer) / (least + longer) : least / longer, r2 = r * r;
     constexpr std::array series = {1.0 / 15, 1.0 / 13, 1.0 / 11, 1.0 / 9, 1.0 / 7, 1.0 / 5, 1.0 / 3, 1.0};
     double sum = 1.0 / 17;
     for (const double term : series) sum = term - r2 * sum;
@@ -156,8 +156,8 @@ SkyTable::SkyTable(const SkyLight& light) : image_(light.image), scale_(light.sc
 double SkyTable::pdf(std::uint32_t texel) const { return luminance(radiance(texel)) / total_; }
 
 Rgb SkyTable::radiance(std::uint32_t texel) const {
-    const float* at = &image_->rgb[3 * std::size_t{texel}];
-    return {scale_ * double(at[0]), scale_ * double(at[1]), scale_ * double(at[2])};
+    const float* rgb = &image_->rgb[3 * std::size_t{texel}];
+    return {scale_ * double(rgb[0]), scale_ * double(rgb[1]), scale_ * double(rgb[2])};
 }
 
 SkyTable::RowEdges SkyTable::edges_of(int row) const {
@@ -171,8 +171,8 @@ SkyTable::RowEdges SkyTable::edges_of(int row) const {
 }
 
 double SkyTable::solid_angle(int row) const {
-    const RowEdges at = edges_of(row);
-    return 2 * pi / width() * (at.across ? 2 * (1 - at.polar) : at.equatorial - at.polar);
+    const RowEdges edges = edges_of(row);
+    return 2 * pi / width() * (edges.across ? 2 * (1 - edges.polar) : edges.equatorial - edges.polar);
 }
 
 SkyDraw SkyTable::sample(double u, double v) const {
@@ -191,14 +191,14 @@ SkyDraw SkyTable::sample(double u, double v) const {
     column = std::min(column, columns - 1);
     while (column + 1 < columns && double(first[column]) <= v) ++column;
     const double along = inside(v, column > 0 ? double(first[column - 1]) : 0, double(first[column]));
-    const RowEdges at = edges_of(static_cast<int>(row));
+    const RowEdges edges = edges_of(static_cast<int>(row));
     double h, y;
-    if (at.across) {
-        y = (1 - at.polar) * (1 - 2 * down);
+    if (edges.across) {
+        y = (1 - edges.polar) * (1 - 2 * down);
         h = 1 - std::fabs(y);
     } else {
-        h = at.polar + (at.equatorial - at.polar) * (at.below ? 1 - down : down);
-        y = at.below ? h - 1 : 1 - h;
+        h = edges.polar + (edges.equatorial - edges.polar) * (edges.below ? 1 - down : down);
+        y = edges.below ? h - 1 : 1 - h;
     }
     const double across = std::sqrt(h * (2 - h));
     const math::SinCos phi = math::sincos(2 * pi * ((static_cast<double>(column) + along) / width() - turns_));
@@ -215,11 +215,11 @@ std::uint32_t SkyTable::texel_at(Vec3d w) const {
     const int upper = std::min(static_cast<int>(above) - 1, last);
     const int row = w.y < 0 ? height() - 1 - upper : upper;
     const auto position = [&](double turn) { return (turn - std::floor(turn)) * width(); };
-    double at = position(rough_turns(w.x, -w.z) + turns_);
+    double place = position(rough_turns(w.x, -w.z) + turns_);
     // Within the error of the rough turn from the edge of a column, and for (0, 0): NaN.
-    const double beyond = at - std::floor(at);
-    if (!(beyond > 1e-4 && beyond < 1 - 1e-4)) at = position(math::atan2(w.x, -w.z) / (2 * pi) + turns_);
-    const int column = std::min(static_cast<int>(at), width() - 1);
+    const double beyond = place - std::floor(place);
+    if (!(beyond > 1e-4 && beyond < 1 - 1e-4)) place = position(math::atan2(w.x, -w.z) / (2 * pi) + turns_);
+    const int column = std::min(static_cast<int>(place), width() - 1);
     return static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(width()) + static_cast<std::uint32_t>(column);
 }
 

@@ -116,10 +116,10 @@ std::shared_ptr<const RgbImage> read_image_file(std::string_view bytes, const st
 
 // ---- Textures.
 
-std::string why_no_texture(const RgbImage& image, TextureOf of) {
+std::string why_no_texture(const RgbImage& image, TextureOf property) {
     for (std::size_t k = 0; k < image.texels(); ++k) {
         const float* const t = &image.rgb[3 * k];
-        const bool roughness = of == TextureOf::alpha;
+        const bool roughness = property == TextureOf::alpha;
         const auto good = [&](float x) { return x <= 1 && (roughness ? x > 0 : x >= 0); };
         if (good(t[0]) && good(t[1]) && good(t[2]) && (!roughness || (t[0] == t[1] && t[1] == t[2]))) continue;
         const std::size_t width = static_cast<std::size_t>(image.width);

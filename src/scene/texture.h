@@ -40,7 +40,7 @@ enum class TextureOf { rho_d, alpha };
 
 /// Where an image cannot be such a texture: the texel and what is wrong there; "" if it can. An albedo is from 0 to 1;
 /// a roughness is above 0, up to 1, and grey.
-std::string why_no_texture(const RgbImage& image, TextureOf of);
+std::string why_no_texture(const RgbImage& image, TextureOf property);
 
 /// Returns the texel at finite texture coordinates.
 Rgb texel_at(const RgbImage& image, double u, double v);

@@ -53,22 +53,22 @@ double TriangleLights::density(std::uint32_t k, double distance, Vec3d w) const 
 }
 
 TriangleDraw TriangleLights::sample(Vec3d x, double u, double v, bool whole) const {
-    const double at = u * powers_.back();
-    std::uint32_t k = 0;  // the first power above `at`, or the last: without branches, which chance decides
-    for (auto left = static_cast<std::uint32_t>(powers_.size()) - 1; left > 0;) {
-        const std::uint32_t half = (left + 1) / 2;
-        k += half & (0u - static_cast<std::uint32_t>(powers_[k + half - 1] <= at));
-        left -= half;
+    const double target = u * powers_.back();
+    std::uint32_t k = 0;  // the first power above `target`, or the last: without branches, which chance decides
+    for (auto remaining = static_cast<std::uint32_t>(powers_.size()) - 1; remaining > 0;) {
+        const std::uint32_t half = (remaining + 1) / 2;
+        k += half & (0u - static_cast<std::uint32_t>(powers_[k + half - 1] <= target));
+        remaining -= half;
     }
     const double low = k > 0 ? powers_[k - 1] : 0;
-    const double root = std::sqrt(std::clamp((at - low) / (powers_[k] - low), 0.0, 1.0));
+    const double root = std::sqrt(std::clamp((target - low) / (powers_[k] - low), 0.0, 1.0));
     const Side& side = sides_[k];
     const Vec3d to = side.corner + (root * (1 - v)) * side.e1 + (root * v) * side.e2 - x;
     const double distance = std::sqrt(dot(to, to));
     if (!(distance > 0)) return {{0, 0, 1}, no_triangle, 0};
     const Vec3d w = (1 / distance) * to;
-    const double own = density(k, distance, w);
-    return {w, k, own > 0 ? own + (whole ? pdf(x, w, k) : 0) : 0};
+    const double density_here = density(k, distance, w);
+    return {w, k, density_here > 0 ? density_here + (whole ? pdf(x, w, k) : 0) : 0};
 }
 
 template <class Work> void TriangleLights::each_met(Vec3d x, Vec3d w, Work&& work) const {
@@ -125,9 +125,9 @@ double TriangleLights::distance(std::uint32_t k, Vec3d x, Vec3d w) const {
 
 std::uint32_t TriangleLights::find(std::uint32_t instance, std::uint32_t triangle, Vec3d d) const {
     const auto key = [](const EmittingTriangle& t) { return std::tuple(t.instance, t.triangle); };
-    auto at = std::ranges::lower_bound(triangles_, std::tuple(instance, triangle), {}, key);
-    for (; at != triangles_.end() && key(*at) == std::tuple(instance, triangle); ++at) {
-        const auto k = static_cast<std::uint32_t>(at - triangles_.begin());
+    auto found = std::ranges::lower_bound(triangles_, std::tuple(instance, triangle), {}, key);
+    for (; found != triangles_.end() && key(*found) == std::tuple(instance, triangle); ++found) {
+        const auto k = static_cast<std::uint32_t>(found - triangles_.begin());
         if (dot(sides_[k].across, d) < 0) return k;
     }
     return no_triangle;

@@ -58,8 +58,8 @@ Functions<float> rounded(Functions<double> exact) {
     out.pdf = [exact](Vec3f wo, Vec3f wi) { return static_cast<float>(exact.pdf(widened(wo), widened(wi))); };
     if (exact.f) out.f = [exact](Vec3f wo, Vec3f wi) { return static_cast<float>(exact.f(widened(wo), widened(wi))); };
     out.sample = [exact, round](Vec3f wo, const float* u) {
-        double wide[PrimarySample::most] = {};
-        for (int k = 0; k < PrimarySample::most; ++k) wide[k] = static_cast<double>(u[k]);
+        double wide[PrimarySample::most_numbers] = {};
+        for (int k = 0; k < PrimarySample::most_numbers; ++k) wide[k] = static_cast<double>(u[k]);
         const Drawn<double> d = exact.sample(widened(wo), wide);
         const Vec3f wi = round(d.wi);
         return Drawn<float>{wi, d.pdf > 0 ? static_cast<float>(exact.pdf(widened(wo), widened(wi))) : 0.0f};

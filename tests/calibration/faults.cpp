@@ -24,7 +24,7 @@ const PlaceOfFault& nearest(const std::vector<PlaceOfFault>& all, Vec3d wo) {
 }
 
 /// Other numbers, a function of these and of the attempt: splitmix64 over their bits, 24 bits each.
-template <class F> std::array<F, PrimarySample::most> others(const F* u, std::uint64_t attempt) {
+template <class F> std::array<F, PrimarySample::most_numbers> others(const F* u, std::uint64_t attempt) {
     std::uint64_t h = attempt;
     const auto mixed = [](std::uint64_t x) {
         x += 0x9e3779b97f4a7c15u;
@@ -32,13 +32,13 @@ template <class F> std::array<F, PrimarySample::most> others(const F* u, std::ui
         x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
         return x ^ (x >> 31);
     };
-    for (int k = 0; k < PrimarySample::most; ++k) {
+    for (int k = 0; k < PrimarySample::most_numbers; ++k) {
         const double v = static_cast<double>(u[k]);
         std::uint64_t bits = 0;
         std::memcpy(&bits, &v, sizeof v);
         h = mixed(h ^ bits);
     }
-    std::array<F, PrimarySample::most> out{};
+    std::array<F, PrimarySample::most_numbers> out{};
     for (F& v : out) {
         h = mixed(h);
         v = F(h >> 40) * F(0x1p-24);
@@ -98,7 +98,7 @@ template <class F> struct FaultInjection {
             (fault.kind == FaultKind::nan_at_zero && u[0] == 0);
     }
     /// The direction; pdf 0 for no sample.
-    Drawn<F> direction(Vec3<F> wo, std::array<F, PrimarySample::most> u) const {
+    Drawn<F> direction(Vec3<F> wo, std::array<F, PrimarySample::most_numbers> u) const {
         if (fault.kind == FaultKind::one_number) u[1] = u[0];
         if (fault.kind == FaultKind::no_azimuth) u[1] = F(0.3125);
         if (fault.kind == FaultKind::leak && u[std::size_t(numbers)] < F(fault.size))
@@ -124,7 +124,7 @@ template <class F> struct FaultInjection {
         return d;
     }
     Drawn<F> sample(Vec3<F> wo, const F* u) const {
-        std::array<F, PrimarySample::most> v;
+        std::array<F, PrimarySample::most_numbers> v;
         std::copy_n(u, v.size(), v.begin());
         Drawn<F> d = direction(wo, v);
         constexpr F nan = std::numeric_limits<F>::quiet_NaN();
@@ -149,7 +149,7 @@ template <class F> Functions<F> injected(FaultInjection<F> injection) {
 template <class F> std::vector<Vec3d> drawn_at(const Functions<F>& s, Vec3d wo, Rng& rng, int count) {
     std::vector<Vec3d> out;
     for (int k = 0; k < count; ++k) {
-        F u[PrimarySample::most];
+        F u[PrimarySample::most_numbers];
         for (F& v : u) v = F(std::floor(rng.uniform(0, 0x1p24)) * 0x1p-24);
         const Drawn<F> d = s.sample(cast<F>(wo), u);
         if (d.pdf > 0) out.push_back(unit(widened(d.wi)));
@@ -256,7 +256,13 @@ bool is_true_of(std::string_view kind, std::string_view family, std::string_view
         {"leak", {"spread evenly", "does not have one of the lobes"}}, {"rotation", {"turned by"}},
         {"mismatch", {"An exponent or a roughness differs", "Across the surface p is"}},
         {"exponent", {"An exponent or a roughness differs"}}, {"hole", {"positive where no draw falls"}},
-        {"one number twice", {"lie on a curve"}}, {"lobe's pdf", {"the chooser's probability"}}};
+        {"one number twice", {"lie on a curve"}}, {"lobe's pdf", {"the chooser's probability"}},
+        {"one u used twice", {"lie on a curve"}}, {"axis about n but pdf about R", {"turned by"}},
+        {"second light forgotten in the pdf", {"the chooser's probability of that one lobe"}},
+        {"sqrt forgotten on the disk", {"a square root is missing"}},
+        {"texel centre for texel", {"have one direction, w_i"}},
+        {"pdf of the next texel", {"a shift of a table's columns"}},
+        {"delta part told as a density", {"must declare it (delta)"}}};
     const bool bounded = family == "cone" || family == "ring" || family.find(" light ") != family.npos ||
         family == "textured disk" || family == "projected solid angle of a rectangle";
     if (bounded && (kind == "leak" || kind == "mismatch") && text.find("p is a constant") != text.npos) return true;

@@ -56,7 +56,7 @@ TEST_P(EveryPowerFamily, ALeakMovesItsShareOfTheDraws) {
     const auto& b = std::get<Functions<double>>(t.wrong.functions);
     int differ = 0;
     for (int k = 0; k < draws / 8; ++k) {
-        double u[PrimarySample::most];
+        double u[PrimarySample::most_numbers];
         for (double& v : u) v = rng.uniform(0, 1);
         const Drawn<double> x = a.sample(wo, u), y = b.sample(wo, u);
         differ += x.pdf > 0 && !(y.pdf > 0 && versine(x.wi, y.wi) < 1e-20);

@@ -31,8 +31,8 @@ template <class F> Sampler weighted(std::string text, Traits traits, std::functi
     recipe.parameters = std::move(text);
     recipe.traits = traits;
     recipe.sample = [sample](Vec3d wo, const PrimarySample& u) {
-        F numbers[PrimarySample::most];
-        for (int k = 0; k < PrimarySample::most; ++k) numbers[k] = static_cast<F>(u[k]);
+        F numbers[PrimarySample::most_numbers];
+        for (int k = 0; k < PrimarySample::most_numbers; ++k) numbers[k] = static_cast<F>(u[k]);
         return sample(cast<F>(wo), numbers);
     };
     recipe.pdf = [pdf](Vec3d wo, Vec3d wi) { return pdf ? double(pdf(cast<F>(wo), cast<F>(wi))) : 0; };

@@ -106,7 +106,7 @@ Draws draws_of(const Sampler& s, Vec3d wo, int count, std::uint64_t seed) {
     for (int k = 0; k < count; ++k)
         std::visit(
             [&]<class F>(const Functions<F>& f) {
-                F u[PrimarySample::most];
+                F u[PrimarySample::most_numbers];
                 for (F& v : u) v = F(std::floor(rng.uniform(0, 0x1p24)) * 0x1p-24);
                 const Drawn<F> d = f.sample(cast<F>(wo), u);
                 out.wi.push_back(d.pdf > 0 ? widened(d.wi) : Vec3d{0, 0, 0});

@@ -129,7 +129,7 @@ Sampler azimuth(bool faulty) {
     f.f = f.pdf;
     if (faulty)
         f.sample = [sample = f.sample](Vec3d o, const double* u) {
-            const double v[PrimarySample::most] = {u[0], 0.3 / (2 * pi_of<double>)};
+            const double v[PrimarySample::most_numbers] = {u[0], 0.3 / (2 * pi_of<double>)};
             return sample(o, v);
         };
     return sampler(2, Wo::both, f);

@@ -128,14 +128,14 @@ private:
 
     /// The size of this look: a part of all that stage 1 may still evaluate, including what it has evaluated.
     Look next(int look) const {
-        const double all = remaining() - budget_.cost_of_sizes() + first_.done.cost();
+        const double affordable = remaining() - budget_.cost_of_sizes() + first_.done.cost();
         const std::uint32_t parts = 1u << 3 * (budget_.looks - 1 - look);
-        Look last = look_of(all);
+        Look last = look_of(affordable);
         Look begin = last.divided_by(1u << 3 * (budget_.looks - 1));
         begin.points = std::max(begin.points, 2 * static_cast<std::uint32_t>(out_.plan->tree.leaves().size()));
         const double of_f = Stage::of_f(source_, begin, is_of_weights() ? begin.independent : budget_.of_f());
         const double evaluated = first_.observations.weighted_draws + first_.integrals.light.points;
-        last = look_of(all - std::max(of_f - evaluated, 0.0));
+        last = look_of(affordable - std::max(of_f - evaluated, 0.0));
         return last.divided_by(parts);
     }
 
@@ -160,13 +160,13 @@ private:
     }
     bool goes_on() const {
         if (!out_.inconclusive || out_.wrong() || source_.recorded()) return false;
-        const double most = most_of_first_stage();
-        return most > 1.5 * first_.done.cost() && needed_of_first_stage() < out_of_reach * most;
+        const double limit = most_of_first_stage();
+        return limit > 1.5 * first_.done.cost() && needed_of_first_stage() < out_of_reach * limit;
     }
     void look_further(int k) {
-        const double most = most_of_first_stage();
+        const double limit = most_of_first_stage();
         const double needed = std::max(needed_of_first_stage(), 1.5 * first_.done.cost());
-        const Look to = look_of(k + 1 < further_looks ? std::min(needed, most) : most);
+        const Look to = look_of(k + 1 < further_looks ? std::min(needed, limit) : limit);
         look_at(to, budget_.looks + k, levels_.first * early_look);
     }
 
@@ -189,23 +189,23 @@ private:
     /// includes that of the draws that cause the difference. The member with the least p may have two draws where none
     /// was expected; the next stage has none of these with a probability of 13 %.
     std::vector<Least> suspects_of(const Evidence& e, double level) const {
-        std::map<Family, std::pair<double, Least>> most;
+        std::map<Family, std::pair<double, Least>> clearest;
         for (const auto& [family, least] : least_)
-            if (least.p() < level) most[family] = {-1, least};
-        if (most.empty()) return {};
+            if (least.p() < level) clearest[family] = {-1, least};
+        if (clearest.empty()) return {};
         test_all(e, [&](const Answer& a) {
-            const auto at = most.find(a.family);
-            if (at == most.end() || a.p * at->second.second.members >= level) return;
+            const auto found = clearest.find(a.family);
+            if (found == clearest.end() || a.p * found->second.second.members >= level) return;
             const double d = std::fabs(a.difference);
             const double errors =
                 std::max(d - a.floor, 0.0) / std::sqrt(a.sd * a.sd + d / e.observations.independent + 1e-300);
-            if (errors > at->second.first) {
-                at->second.first = errors;
-                at->second.second.answer = a;
+            if (errors > found->second.first) {
+                found->second.first = errors;
+                found->second.second.answer = a;
             }
         });
         std::vector<Least> out;
-        for (const auto& [family, chosen] : most) out.push_back(chosen.second);
+        for (const auto& [family, chosen] : clearest) out.push_back(chosen.second);
         return out;
     }
 
@@ -348,8 +348,8 @@ constexpr BuiltOn built_on[] = {{"support", true, true, false, false}, {"normali
 }  // namespace
 
 bool CheckAt::is_withheld(std::string_view verdict) const {
-    const auto many = [](std::uint64_t invalid, std::uint64_t of) {
-        return static_cast<double>(invalid) > most_invalid * static_cast<double>(of);
+    const auto many = [](std::uint64_t invalid, std::uint64_t evaluations) {
+        return static_cast<double>(invalid) > most_invalid * static_cast<double>(evaluations);
     };
     const DrawChecks& c = observations.checks;
     for (const BuiltOn& b : built_on)

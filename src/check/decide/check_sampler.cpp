@@ -36,9 +36,9 @@ std::vector<CheckOutcome> grouped(std::span<const CheckCase> check_cases) {
             return t.arm == check_cases[i].arm && t.brdf == check_cases[i].brdf &&
                 t.parameters == check_cases[i].parameters && t.lighting == check_cases[i].lighting;
         };
-        auto at = std::ranges::find_if(out, same);
-        if (at == out.end()) at = out.insert(out.end(), {check_cases[i].arm, {}, {}, {}, {}, 0, {}, {}});
-        at->check_cases.push_back(i);
+        auto outcome = std::ranges::find_if(out, same);
+        if (outcome == out.end()) outcome = out.insert(out.end(), {check_cases[i].arm, {}, {}, {}, {}, 0, {}, {}});
+        outcome->check_cases.push_back(i);
     }
     return out;
 }
@@ -51,12 +51,13 @@ bool takes_any_wo(std::span<const CheckCase> check_cases, const CheckOutcome& o)
 
 /// An estimate of f is not reciprocal. If a sampler is checked serially, no w_o has been checked before this call.
 bool estimates_f(const CheckCase& check_case, const CheckOutcome& o, const StreamKey& key) {
-    if (std::ranges::all_of(o.at, [](const auto& at) { return at.empty(); })) {
+    if (std::ranges::all_of(o.at, [](const auto& techniques) { return techniques.empty(); })) {
         Source source(*check_case.adapter, 0, check_case.wo, check_case.light);
         return look_for_noise(source, key).f();
     }
     const auto is_estimate = [](const CheckAt& c) { return c.scatter.f(); };
-    return std::ranges::any_of(o.at, [&](const auto& at) { return std::ranges::any_of(at, is_estimate); });
+    return std::ranges::any_of(
+        o.at, [&](const auto& techniques) { return std::ranges::any_of(techniques, is_estimate); });
 }
 
 void test_whole_sampler(std::span<const CheckCase> check_cases, const CheckSettings& settings, CheckOutcome& out) {
@@ -175,11 +176,11 @@ private:
         budget.most_evaluations =
             std::min(settings_.most_at_one, budget.evaluations + further_for_one(check_case)) / techniques;
         const double reserved = static_cast<double>(jobs_left_) * budget.evaluations;
-        std::vector<CheckAt>& at = job.outcome->at[job.index];
+        std::vector<CheckAt>& checks = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         cut = cut_of([&] {
             for (int t = 0; t < check_case.adapter->techniques(); ++t)
-                at.push_back(check_sampler_at(*check_case.adapter, t, check_case.wo,
+                checks.push_back(check_sampler_at(*check_case.adapter, t, check_case.wo,
                     {.light = check_case.light,
                         .place = static_cast<std::uint16_t>(index_of(job)),
                         .levels = levels_,
@@ -187,12 +188,12 @@ private:
                     budget, settings_.seed));
         });
         if (check_case.adapter->serial())
-            for (const CheckAt& c : at)
+            for (const CheckAt& c : checks)
                 further_ -= std::max(static_cast<double>(c.evaluations) - budget.evaluations, 0.0);
-        if (cut) at.clear();
-        job.outcome->tails[job.index] = tail_of(at);
-        log_first(check_case, at, cut);
-        for (CheckAt& c : at) release_unused(c, check_case.adapter->traits().has_pdf);
+        if (cut) checks.clear();
+        job.outcome->tails[job.index] = tail_of(checks);
+        log_first(check_case, checks, cut);
+        for (CheckAt& c : checks) release_unused(c, check_case.adapter->traits().has_pdf);
         monitor_.advance(1);
     }
 
@@ -209,8 +210,8 @@ private:
             for (const Finding& f : c.findings) add(f.first.family);
         }
         const bool open = std::ranges::any_of(techniques, &CheckAt::inconclusive);
-        const std::optional<std::string>& known = check_case.theory.wrong;
-        const bool expected = known && wrong.size() == 1 && wrong[0] == *known;
+        const std::optional<std::string>& known_fault = check_case.theory.wrong;
+        const bool expected = known_fault && wrong.size() == 1 && wrong[0] == *known_fault;
         const std::string found = !wrong.empty()
             ? fmt::format("{} wrong{}", fmt::join(wrong, ", "), expected ? " as expected" : "")
             : open ? "inconclusive"
@@ -230,7 +231,9 @@ private:
     /// Frees memory that neither the explanation nor the report needs, several megabytes at each w_o. A right w_o keeps
     /// only its numbers, unless pictures are drawn or the draws are the only evidence of the density.
     void release_unused(CheckAt& c, bool has_density) const {
-        const auto free = [](auto&... all) { (std::remove_reference_t<decltype(all)>().swap(all), ...); };
+        const auto free = [](auto&... containers) {
+            (std::remove_reference_t<decltype(containers)>().swap(containers), ...);
+        };
         free(c.observations.met, c.observations.node_by_set, c.integrals.light.weighted_points);
         if (settings_.keep_evidence) return;
         free(c.observations.weights);
@@ -253,17 +256,17 @@ private:
 
     /// Keeps the fault of the first draws if the later draws do not show it or are missing.
     void keep_first_fault(const Job& job, const std::optional<SmallFault>& fault) {
-        std::vector<CheckAt>& at = job.outcome->at[job.index];
+        std::vector<CheckAt>& techniques = job.outcome->at[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         if (cut) cut->first_draws = true;
         if (!fault) return;
         const auto not_valid = [](const auto& f) { return info(f.family).verdict == info(Family::values).verdict; };
-        for (const CheckAt& c : at) {
+        for (const CheckAt& c : techniques) {
             if (std::ranges::any_of(c.small, not_valid)) return;
             if (std::ranges::any_of(c.findings, [&](const Finding& f) { return not_valid(f.first); })) return;
         }
-        if (at.empty()) at.emplace_back().wo = case_of(job).wo;
-        at.front().small.push_back(*fault);
+        if (techniques.empty()) techniques.emplace_back().wo = case_of(job).wo;
+        techniques.front().small.push_back(*fault);
     }
 
     /// What the w_o of one program took so far.

@@ -93,9 +93,9 @@ std::vector<Efficiency> variances_of(std::span<const CheckCase> check_cases, std
     const CheckSettings& settings, const ProgressMonitor& monitor);
 /// Measures the time of one sample of each on one thread, in turns, so that a slow phase of the machine affects all
 /// equally.
-void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, std::span<Efficiency> all,
+void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, std::span<Efficiency> variances,
     const ProgressMonitor& monitor);
 /// One verdict for each case. Two samplers whose intervals overlap are not ranked.
-std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std::span<const Efficiency> all);
+std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std::span<const Efficiency> variances);
 
 }  // namespace crescent::check

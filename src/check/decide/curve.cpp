@@ -68,14 +68,14 @@ std::optional<SmallFault> draws_on_curve(Source& source, const StreamKey& key) {
     for (PrimarySample& x : u) {
         for (int k = 0; k < numbers; ++k) x[k] = std::clamp(x[k], 2 * step, 1 - 2 * step);
         for (int k = 0; k < numbers; ++k)
-            for (double by : {-step, step, -step / 2, step / 2}) {
+            for (double shift : {-step, step, -step / 2, step / 2}) {
                 around.push_back(x);
-                around.back()[k] += by;
+                around.back()[k] += shift;
             }
     }
-    std::vector<Draw> draws(around.size()), at(u.size());
+    std::vector<Draw> draws(around.size()), here(u.size());
     source.draw(around, draws);
-    source.draw(u, at);
+    source.draw(u, here);
     SmallFault out{.family = Family::repeats,
         .times = 0,
         .of = 0,
@@ -85,10 +85,10 @@ std::optional<SmallFault> draws_on_curve(Source& source, const StreamKey& key) {
     const auto each = static_cast<std::size_t>(4 * numbers);
     for (std::size_t i = 0; i < u.size(); ++i) {
         const Derivatives d(std::span<const Draw>(draws).subspan(each * i, each), numbers);
-        if (!d.known || !has_direction(at[i])) continue;
+        if (!d.known || !has_direction(here[i])) continue;
         ++out.of;
-        if (d.on_curve(at[i].pdf) && out.times++ == 0)
-            out.first = {.u = u[i], .draw = at[i], .p = at[i].pdf, .expected = 0};
+        if (d.on_curve(here[i].pdf) && out.times++ == 0)
+            out.first = {.u = u[i], .draw = here[i], .p = here[i].pdf, .expected = 0};
     }
     return out.of >= fewest && out.times >= most_of_points * out.of ? std::optional(out) : std::nullopt;
 }

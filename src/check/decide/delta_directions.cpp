@@ -45,10 +45,12 @@ std::vector<Draw> drawn_at(const Source& source, Vec3d wo, std::uint32_t n, cons
 bool turns_with_wo(const Source& source, Vec3d wi, const StreamKey& key) {
     constexpr double angle = 2.4;  // radians; no symmetry of a pattern
     if (!source.adapter.can_draw()) return false;
-    const math::SinCos by = math::sincos(angle);
-    const auto turned = [&](Vec3d w) { return Vec3d{by.cos * w.x - by.sin * w.y, by.sin * w.x + by.cos * w.y, w.z}; };
-    const std::vector<Draw> there = drawn_at(source, turned(source.wo), 256, key);
-    return std::ranges::any_of(there, [due = turned(wi)](const Draw& d) { return d.delta > 0 && near(d.wi, due); });
+    const math::SinCos rotation = math::sincos(angle);
+    const auto turned = [&](Vec3d w) {
+        return Vec3d{rotation.cos * w.x - rotation.sin * w.y, rotation.sin * w.x + rotation.cos * w.y, w.z};
+    };
+    const std::vector<Draw> draws = drawn_at(source, turned(source.wo), 256, key);
+    return std::ranges::any_of(draws, [due = turned(wi)](const Draw& d) { return d.delta > 0 && near(d.wi, due); });
 }
 
 SmallFault fault_at(const DeltaPart& p, const char* what) {
@@ -120,15 +122,16 @@ std::optional<Vec3d> reverse_power_ratio(const Source& source, Vec3d wi) {
     if (wi.z * wo.z > 0) return near(wi, mirrored(wo)) ? std::optional(Vec3d{1, 1, 1}) : std::nullopt;
     if (!source.traits.eta || near(wi, -wo) || !is_refracted(wo, wi, *source.traits.eta, false)) return {};
     if (source.traits.importance) return Vec3d{1, 1, 1};
-    const auto of = [up = wo.z > 0](double eta) { return sqr(sqr(up ? eta : 1 / eta)); };
-    return Vec3d{of(source.traits.eta->x), of(source.traits.eta->y), of(source.traits.eta->z)};
+    const auto solid_angle_factor = [up = wo.z > 0](double eta) { return sqr(sqr(up ? eta : 1 / eta)); };
+    return Vec3d{solid_angle_factor(source.traits.eta->x), solid_angle_factor(source.traits.eta->y),
+        solid_angle_factor(source.traits.eta->z)};
 }
 
 /// Compares the power of a part with that of its reverse path, if each is a single part.
 std::optional<SmallFault> reverse_power_fault(
-    const Source& source, const std::vector<DeltaPart>& all, const DeltaPart& p, const std::vector<Draw>& back) {
+    const Source& source, const std::vector<DeltaPart>& parts, const DeltaPart& p, const std::vector<Draw>& back) {
     const std::optional<Vec3d> due = reverse_power_ratio(source, p.wi);
-    const auto in_one_piece = std::ranges::count_if(all, [&](const DeltaPart& o) { return near(o.wi, p.wi); });
+    const auto in_one_piece = std::ranges::count_if(parts, [&](const DeltaPart& o) { return near(o.wi, p.wi); });
     if (!due || in_one_piece != 1 || p.otherwise > 0) return {};
     const Vec3d first = power_of(source, back[0]), forward_power = p.q * p.weight,
                 expected = {forward_power.x * due->x, forward_power.y * due->y, forward_power.z * due->z};

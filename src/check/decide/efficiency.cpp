@@ -39,17 +39,17 @@ std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKe
                 u[i] = numbers_at(draws, from + i, source.numbers(), source.resolution());
             std::vector<Draw> batch(u.size());
             source.draw(u, batch);
-            std::vector<std::size_t> at;
+            std::vector<std::size_t> indices;
             std::vector<Vec3d> wi;
             for (std::size_t i = 0; i < batch.size(); ++i)
                 if (batch[i].pdf > 0 && batch[i].wi.z > 0) {
-                    at.push_back(i);
+                    indices.push_back(i);
                     wi.push_back(batch[i].wi);
                 }
             std::vector<double> p(wi.size(), 1);
             std::vector<Vec3d> f(wi.size());
             source.f_cos(wi, f);
-            append_weights(source, batch, {.at = at, .wi = wi, .p = p, .f_cos = f}, x);
+            append_weights(source, batch, {.at = indices, .wi = wi, .p = p, .f_cos = f}, x);
         }
         if (out.empty()) out = std::move(x);
         else
@@ -124,28 +124,29 @@ std::optional<double> time_once(
 
 }  // namespace
 
-void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, std::span<Efficiency> all,
+void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, std::span<Efficiency> variances,
     const ProgressMonitor& monitor) {
-    constexpr std::size_t turns = 7, most = 1024, of_a_program = 512;
-    std::vector<PrimarySample> u(most);
+    constexpr std::size_t turns = 7, batch_draws = 1024, of_a_program = 512;
+    std::vector<PrimarySample> u(batch_draws);
     const StreamKey key{.seed = seed, .place = 0, .technique = 0, .stage = 1, .purpose = Purpose::light, .part = 4};
-    for (std::uint32_t i = 0; i < most; ++i) u[i] = numbers_at(key, i, PrimarySample::most, Resolution::single);
-    std::vector<std::vector<double>> times(all.size());
-    std::vector<Draw> draws(most);
+    for (std::uint32_t i = 0; i < batch_draws; ++i)
+        u[i] = numbers_at(key, i, PrimarySample::most_numbers, Resolution::single);
+    std::vector<std::vector<double>> times(variances.size());
+    std::vector<Draw> draws(batch_draws);
     for (std::size_t turn = 0; turn < turns; ++turn)
-        for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t i = 0; i < variances.size(); ++i) {
             monitor.check();
-            const CheckCase& check_case = check_cases[all[i].check_case];
-            if (!all[i].has_weights || times[i].size() < turn || !check_case.adapter->can_draw()) continue;
-            const std::size_t n = check_case.adapter->limited() ? of_a_program : most;
-            if (const std::optional<double> ns = time_once(check_case, std::span(u).first(n), draws, all[i]))
+            const CheckCase& check_case = check_cases[variances[i].check_case];
+            if (!variances[i].has_weights || times[i].size() < turn || !check_case.adapter->can_draw()) continue;
+            const std::size_t n = check_case.adapter->limited() ? of_a_program : batch_draws;
+            if (const std::optional<double> ns = time_once(check_case, std::span(u).first(n), draws, variances[i]))
                 times[i].push_back(*ns);
         }
-    for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t i = 0; i < variances.size(); ++i) {
         if (times[i].size() < turns) continue;
         std::sort(times[i].begin(), times[i].end());
-        all[i].nanoseconds = times[i][turns / 2];
-        all[i].cost_se = 0.5 * (times[i][turns - 2] - times[i][1]) / all[i].nanoseconds;
+        variances[i].nanoseconds = times[i][turns / 2];
+        variances[i].cost_se = 0.5 * (times[i][turns - 2] - times[i][1]) / variances[i].nanoseconds;
     }
 }
 
@@ -208,13 +209,13 @@ void test_one_efficiency(
 
 }  // namespace
 
-std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std::span<const Efficiency> all) {
+std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std::span<const Efficiency> variances) {
     std::vector<Verdict> out(check_cases.size());
     std::map<std::string, std::vector<const Efficiency*>> groups;
-    for (const Efficiency& e : all)
+    for (const Efficiency& e : variances)
         if (e.has_weights) groups[group_of(check_cases[e.check_case])].push_back(&e);
     std::size_t checked = 0;
-    for (const Efficiency& e : all) {
+    for (const Efficiency& e : variances) {
         if (!check_cases[e.check_case].baseline) checked = e.check_case;
         Verdict& v = out[e.check_case];
         v.arm = check_cases[e.check_case].arm;

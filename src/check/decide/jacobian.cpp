@@ -60,34 +60,34 @@ struct IntervalEnd {
 };
 
 /// Whether each of these draws has the direction of its point if number k is replaced by x.
-std::vector<bool> selects_branch(
-    Source& source, const std::vector<Point>& all, int k, const std::vector<std::pair<std::size_t, double>>& values) {
+std::vector<bool> selects_branch(Source& source, const std::vector<Point>& points, int k,
+    const std::vector<std::pair<std::size_t, double>>& values) {
     std::vector<PrimarySample> u;
     for (const auto& [i, x] : values) {
-        u.push_back(all[i].u);
+        u.push_back(points[i].u);
         u.back()[k] = std::clamp(x, ulp, 1 - ulp);
     }
     const std::vector<Draw> d = draws_at(source, u);
     std::vector<bool> out;
-    for (std::size_t j = 0; j < d.size(); ++j) out.push_back(same_direction(d[j], all[values[j].first].draw));
+    for (std::size_t j = 0; j < d.size(); ++j) out.push_back(same_direction(d[j], points[values[j].first].draw));
     return out;
 }
 
 /// Random values of number k for each point, one in each of `probes` equal parts, with both ends of [0, 1] and u.
 std::vector<std::vector<Probe>> probe_branches(
-    Source& source, const std::vector<Point>& all, int k, const StreamKey& key) {
+    Source& source, const std::vector<Point>& points, int k, const StreamKey& key) {
     Stream stream(key);
     std::vector<std::pair<std::size_t, double>> values;
-    for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
         values.emplace_back(i, 0.0);
         for (int n = 0; n < probes; ++n) values.emplace_back(i, (n + stream.number()) / probes);
         values.emplace_back(i, 1.0);
     }
-    const std::vector<bool> same = selects_branch(source, all, k, values);
-    std::vector<std::vector<Probe>> out(all.size());
+    const std::vector<bool> same = selects_branch(source, points, k, values);
+    std::vector<std::vector<Probe>> out(points.size());
     for (std::size_t j = 0; j < values.size(); ++j) out[values[j].first].push_back({values[j].second, same[j]});
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        out[i].push_back({all[i].u[k], true});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        out[i].push_back({points[i].u[k], true});
         std::ranges::sort(out[i], {}, &Probe::x);
     }
     return out;
@@ -95,8 +95,8 @@ std::vector<std::vector<Probe>> probe_branches(
 
 /// Adds one interval for each run of probes that select the branch; its ends are located by bisection. An interval
 /// within the gap between two probes is not found, which `confirm` allows for.
-void find_branches(Source& source, std::vector<Point>& all, int k, const StreamKey& key) {
-    const std::vector<std::vector<Probe>> probed = probe_branches(source, all, k, key);
+void find_branches(Source& source, std::vector<Point>& points, int k, const StreamKey& key) {
+    const std::vector<std::vector<Probe>> probed = probe_branches(source, points, k, key);
     std::vector<IntervalEnd> ends;
     struct Run {
         std::size_t point;
@@ -104,22 +104,22 @@ void find_branches(Source& source, std::vector<Point>& all, int k, const StreamK
         std::optional<std::size_t> low_end, high_end;  // indices into `ends`
     };
     std::vector<Run> runs;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const std::vector<Probe>& of = probed[i];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::vector<Probe>& probes = probed[i];
         std::vector<Run> mine;
-        for (std::size_t j = 0; j < of.size(); ++j) {
-            if (!of[j].same) continue;
-            Run run{.point = i, .from = of[j].x, .to = of[j].x, .low_end = {}, .high_end = {}};
+        for (std::size_t j = 0; j < probes.size(); ++j) {
+            if (!probes[j].same) continue;
+            Run run{.point = i, .from = probes[j].x, .to = probes[j].x, .low_end = {}, .high_end = {}};
             const std::size_t first = j;
-            while (j + 1 < of.size() && of[j + 1].same) ++j;
-            run.to = of[j].x;
+            while (j + 1 < probes.size() && probes[j + 1].same) ++j;
+            run.to = probes[j].x;
             if (first > 0) {
                 run.low_end = ends.size();
-                ends.push_back({i, run.from, of[first - 1].x});
+                ends.push_back({i, run.from, probes[first - 1].x});
             }
-            if (j + 1 < of.size()) {
+            if (j + 1 < probes.size()) {
                 run.high_end = ends.size();
-                ends.push_back({i, run.to, of[j + 1].x});
+                ends.push_back({i, run.to, probes[j + 1].x});
             }
             mine.push_back(run);
         }
@@ -128,16 +128,16 @@ void find_branches(Source& source, std::vector<Point>& all, int k, const StreamK
     for (int step = 0; step < bisections; ++step) {
         std::vector<std::pair<std::size_t, double>> values;
         for (const IntervalEnd& e : ends) values.emplace_back(e.point, (e.inside + e.outside) / 2);
-        const std::vector<bool> same = selects_branch(source, all, k, values);
+        const std::vector<bool> same = selects_branch(source, points, k, values);
         for (std::size_t j = 0; j < ends.size(); ++j) (same[j] ? ends[j].inside : ends[j].outside) = values[j].second;
     }
     for (const Run& run : runs)
-        all[run.point].branch.intervals.emplace_back(
+        points[run.point].branch.intervals.emplace_back(
             run.low_end ? ends[*run.low_end].inside : run.from, run.high_end ? ends[*run.high_end].inside : run.to);
 }
 
 /// The one of three numbers that only selects a branch; none if every number moves w.
-std::optional<int> chooser(Source& source, const std::vector<PrimarySample>& u, const std::vector<Draw>& at) {
+std::optional<int> chooser(Source& source, const std::vector<PrimarySample>& u, const std::vector<Draw>& draws) {
     constexpr double small_move = 0x1p-16;
     for (int k = 2; k >= 0; --k) {
         std::vector<PrimarySample> v = u;
@@ -145,9 +145,9 @@ std::optional<int> chooser(Source& source, const std::vector<PrimarySample>& u, 
         const std::vector<Draw> d = draws_at(source, v);
         int moved = 0, tested = 0;
         for (std::size_t i = 0; i < u.size(); ++i)
-            if (drawn(at[i])) {
+            if (drawn(draws[i])) {
                 ++tested;
-                moved += !same_direction(d[i], at[i]);
+                moved += !same_direction(d[i], draws[i]);
             }
         if (tested >= 16 && moved * 20 <= tested) return k;
     }
@@ -163,21 +163,21 @@ using CentralDifferences = std::array<Difference, steps>;
 
 double step_size(std::size_t s) { return std::ldexp(1.0, -coarsest - static_cast<int>(s)); }
 
-std::vector<CentralDifferences> differences(Source& source, const std::vector<Point>& all) {
-    std::vector<CentralDifferences> out(all.size());
+std::vector<CentralDifferences> differences(Source& source, const std::vector<Point>& points) {
+    std::vector<CentralDifferences> out(points.size());
     for (std::size_t s = 0; s < steps; ++s) {
         const double h = step_size(s);
         std::vector<PrimarySample> u;
-        for (const Point& p : all)
+        for (const Point& p : points)
             for (int side = 0; side < 4; ++side) {
                 u.push_back(p.u);
                 double& x = u.back()[side < 2 ? p.first : p.second];
                 x = std::clamp(x + (side % 2 ? -h : h), 0.0, 1 - ulp);
             }
         const std::vector<Draw> d = draws_at(source, u);
-        for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
             const Draw* q = &d[4 * i];
-            const double x = all[i].u[all[i].first], y = all[i].u[all[i].second];
+            const double x = points[i].u[points[i].first], y = points[i].u[points[i].second];
             if (std::min({x, y, 1 - x, 1 - y}) < 2 * h || !std::all_of(q, q + 4, drawn)) continue;
             const Vec3d a = q[0].wi - q[1].wi, b = q[2].wi - q[3].wi, n = cross(a, b);
             const auto [least, most] = std::minmax({q[0].pdf, q[1].pdf, q[2].pdf, q[3].pdf});
@@ -195,8 +195,8 @@ bool is_linear_below(const CentralDifferences& d, std::size_t s) {
     for (std::size_t k = s + 1; k < steps; ++k) {
         if (!(d[k].area >= 0)) return false;
         for (int n = 0; n < 2; ++n) {
-            const Vec3d off = d[k].along[n] - d[s].along[n] * (step_size(k) / step_size(s));
-            if (dot(off, off) > sqr(jacobian_error) * dot(d[s].along[n], d[s].along[n])) return false;
+            const Vec3d deviation = d[k].along[n] - d[s].along[n] * (step_size(k) / step_size(s));
+            if (dot(deviation, deviation) > sqr(jacobian_error) * dot(d[s].along[n], d[s].along[n])) return false;
         }
     }
     return true;
@@ -204,18 +204,19 @@ bool is_linear_below(const CentralDifferences& d, std::size_t s) {
 
 /// Uses the finest central differences of `steps_used` of which three successive steps agree and whose pdf values are
 /// nearly equal.
-void differentiate(Source& source, std::vector<Point>& all) {
-    const std::vector<CentralDifferences> of = differences(source, all);
-    for (std::size_t i = 0; i < all.size(); ++i)
+void differentiate(Source& source, std::vector<Point>& points) {
+    const std::vector<CentralDifferences> slopes = differences(source, points);
+    for (std::size_t i = 0; i < points.size(); ++i)
         for (std::size_t s = steps_used - 2; s-- > 0;) {  // finest first
-            const Difference *a = &of[i][s], *b = a + 1, *c = a + 2;
+            const Difference *a = &slopes[i][s], *b = a + 1, *c = a + 2;
             if (!(a->area > 0 && b->area > 0 && c->area > 0)) continue;
             const double least = std::min({a->least_pdf, b->least_pdf, c->least_pdf});
-            const double most = std::max({a->most_pdf, b->most_pdf, c->most_pdf});
+            const double largest_pdf = std::max({a->most_pdf, b->most_pdf, c->most_pdf});
             const double error = std::max(std::fabs(a->area - b->area), std::fabs(b->area - c->area)) / b->area;
-            if (!(most <= smooth * least) || !(error < jacobian_error) || !is_linear_below(of[i], s + 1)) continue;
-            all[i].error = error;
-            all[i].area = (4 * b->area - a->area) / 3;
+            if (!(largest_pdf <= smooth * least) || !(error < jacobian_error) || !is_linear_below(slopes[i], s + 1))
+                continue;
+            points[i].error = error;
+            points[i].area = (4 * b->area - a->area) / 3;
             break;
         }
 }
@@ -249,8 +250,8 @@ struct Round {
 Round test_points(Source& source, const StreamKey& key) {
     Round out;
     std::vector<std::pair<double, const MapDensity*>> suspects;  // p over its bound
-    const std::vector<MapDensity> all = map_densities(source, key);
-    for (const MapDensity& x : all) {
+    const std::vector<MapDensity> densities = map_densities(source, key);
+    for (const MapDensity& x : densities) {
         ++out.tested;
         const double ratio = x.p / x.drawn;
         if (ratio < 1 - jacobian_tolerance - 4 * x.error) suspects.emplace_back(ratio, &x);
@@ -290,22 +291,22 @@ std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
         first = *choosing == 0 ? 1 : 0;
         second = *choosing == 2 ? 1 : 2;
     }
-    std::vector<Point> all;
+    std::vector<Point> derived;
     for (std::size_t i = 0; i < u.size(); ++i)
-        if (drawn(draws[i])) all.push_back({.u = u[i], .draw = draws[i], .first = first, .second = second});
-    differentiate(source, all);
-    std::erase_if(all, [](const Point& x) { return !(x.error < jacobian_error); });
+        if (drawn(draws[i])) derived.push_back({.u = u[i], .draw = draws[i], .first = first, .second = second});
+    differentiate(source, derived);
+    std::erase_if(derived, [](const Point& x) { return !(x.error < jacobian_error); });
     if (choosing) {
         StreamKey of_probes = key;
         of_probes.part = static_cast<std::uint16_t>(key.part + 16);
-        find_branches(source, all, *choosing, of_probes);
+        find_branches(source, derived, *choosing, of_probes);
     }
     std::vector<Vec3d> w;
-    for (const Point& x : all) w.push_back(x.draw.wi);
+    for (const Point& x : derived) w.push_back(x.draw.wi);
     std::vector<double> p(w.size());
     source.density(w, p);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const Point& x = all[i];
+    for (std::size_t i = 0; i < derived.size(); ++i) {
+        const Point& x = derived[i];
         const double length = choosing ? x.branch.length() : 1;
         if (!(p[i] > 0) || !(length > least_branch)) continue;
         out.push_back(

@@ -21,8 +21,8 @@ namespace {
 /// The difference d for which Bennett's exponent is z2: Newton's method from Bernstein's bound, which is above it.
 double bennett_difference(double z2, double v, double b) {
     v = std::max(v, 1e-30);
-    const double by = b * z2 / 6, c = z2 * b * b / (2 * v);
-    double x = b / v * (by + std::sqrt(by * by + v * z2));
+    const double linear = b * z2 / 6, c = z2 * b * b / (2 * v);
+    double x = b / v * (linear + std::sqrt(linear * linear + v * z2));
     if (x < 1e-4) return std::sqrt(v * z2);
     for (int k = 0; k < 3; ++k) x -= ((1 + x) * math::log1p(x) - x - c) / math::log1p(x);
     return x * v / b;
@@ -267,11 +267,11 @@ public:
             for (std::size_t k = 0; k < ring.size() && !found; ++k) {
                 const Piece& leaf = leaves_[ring[k].second];
                 mass += leaf.mass;
-                for (int at = leaf.node; at >= 0; at = parent_[static_cast<std::size_t>(at)]) {
-                    const auto i = static_cast<std::size_t>(at);
+                for (int node = leaf.node; node >= 0; node = parent_[static_cast<std::size_t>(node)]) {
+                    const auto i = static_cast<std::size_t>(node);
                     const double before = variance_[i] > 0 ? sqr(difference(i)) : 0;
                     removed_[i] += leaf.claimed;
-                    touched.push_back(at);
+                    touched.push_back(node);
                     found = found || shows(i, before);
                 }
             }
@@ -307,13 +307,13 @@ private:
     }
     /// Whether node i, whose squared difference was `before`, detects the cap. The remaining draws have less variance.
     bool shows(std::size_t i, double before) {
-        const double now = difference(i), left = std::max(1 - removed_[i] / sums_[i].claimed, 1e-3);
+        const double now = difference(i), remaining = std::max(1 - removed_[i] / sums_[i].claimed, 1e-3);
         if (variance_[i] > 0) {
             double& shift = shift_[static_cast<std::size_t>(e_.plan.tree.nodes()[i].depth)];
             shift += (sqr(now) - before) / variance_[i];
             if (shift >= least_shift_[static_cast<std::size_t>(e_.plan.tree.nodes()[i].depth)]) return true;
         }
-        return least_[i] < 1 && now >= least_[i] * std::sqrt(left);
+        return least_[i] < 1 && now >= least_[i] * std::sqrt(remaining);
     }
 };
 
@@ -327,9 +327,9 @@ std::optional<double> cap_of(const Evidence& e, const std::vector<NodeSums>& sum
     std::vector<double> sizes;
     for (std::size_t i = 0; i < std::min(centres, sample.w.size()); ++i)
         sizes.push_back(caps.mass_about(sample.w[i], sample.p[i]));
-    const auto at = static_cast<std::ptrdiff_t>(stated_power * static_cast<double>(sizes.size()));
-    std::nth_element(sizes.begin(), sizes.begin() + at, sizes.end());
-    return sizes[static_cast<std::size_t>(at)];
+    const auto rank = static_cast<std::ptrdiff_t>(stated_power * static_cast<double>(sizes.size()));
+    std::nth_element(sizes.begin(), sizes.begin() + rank, sizes.end());
+    return sizes[static_cast<std::size_t>(rank)];
 }
 
 /// A place on the chart with the values of h.
@@ -368,8 +368,8 @@ public:
         source.density(turned, p);
         const double n = static_cast<double>(sample.w.size());
         for (std::size_t i = 0; i < turned.size(); ++i) {
-            const Place here = places[i], there = place_of(e, turned[i], p[i]);
-            add(moved_, there, here);
+            const Place here = places[i], target = place_of(e, turned[i], p[i]);
+            add(moved_, target, here);
             if (!(sample.p[i] > 0)) continue;
             const double change = p[i] / sample.p[i] - 1;
             Place times = here;
@@ -395,8 +395,9 @@ public:
             const TreeNode& x = e_.plan.tree.nodes()[t.node];
             if (x.depth >= depth) continue;
             const auto split = [&](const Change& change) {
-                const Sums &half = change.nodes[static_cast<std::size_t>(x.child)], &all = change.nodes[t.node];
-                return mean_of({half.sum - t.share * all.sum, half.square + t.share * t.share * all.square});
+                const Sums &half = change.nodes[static_cast<std::size_t>(x.child)], &whole_node = change.nodes[t.node];
+                return mean_of(
+                    {half.sum - t.share * whole_node.sum, half.square + t.share * t.share * whole_node.square});
             };
             out.push_back({split(moved_), split(weighted_)});
         }
@@ -439,10 +440,10 @@ private:
         }
     }
     /// Descends to the half that contains the place; false at the end.
-    bool step(std::size_t& i, ChartPoint at) const {
+    bool step(std::size_t& i, ChartPoint point) const {
         const TreeNode& x = e_.plan.tree.nodes()[i];
         if (x.child < 0 || x.depth == depth) return false;
-        i = static_cast<std::size_t>(x.child) + ((x.along_phi ? at.phi : at.t) >= x.rect.middle(x.along_phi));
+        i = static_cast<std::size_t>(x.child) + ((x.along_phi ? point.phi : point.t) >= x.rect.middle(x.along_phi));
         return true;
     }
     Estimated mean_of(const Sums& change) const {
@@ -463,9 +464,9 @@ std::vector<double> ratios_about(const std::vector<Turned::Effect>& one, const s
     std::vector<double> out;
     for (std::size_t t = 0; t < one.size(); ++t) {
         const double errors = t < whole ? of_one : of_largest;
-        const double most = std::max(
+        const double largest = std::max(
             low_end(one[t].moved, other[t].moved, errors), low_end(one[t].weighted, other[t].weighted, errors));
-        out.push_back(std::max(most, 0.0) / needed[t]);
+        out.push_back(std::max(largest, 0.0) / needed[t]);
     }
     return out;
 }
@@ -504,23 +505,23 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
     for (std::size_t i = 0; i < sample.w.size(); ++i) places.push_back(place_of(e, sample.w[i], sample.p[i]));
     std::array<std::vector<std::vector<double>>, axes> ratios;
     std::array<double, axes> changed{};
-    for (double by : {1.0, growth, growth * growth, growth * growth * growth}) {
+    for (double multiple : {1.0, growth, growth * growth, growth * growth * growth}) {
         const auto shown = [](const std::vector<std::vector<double>>& of_axis) {
             return of_axis.empty() || std::ranges::any_of(of_axis, [](const std::vector<double>& r) {
                 return std::ranges::any_of(r, [](double x) { return x >= 1; });
             });
         };
-        if (by > growth && std::ranges::all_of(ratios, shown)) break;
-        const Turned one(source, e, sample, places, 0, frame.t, by * target_rotation),
-            other(source, e, sample, places, 1, frame.b, by * target_rotation);
+        if (multiple > growth && std::ranges::all_of(ratios, shown)) break;
+        const Turned one(source, e, sample, places, 0, frame.t, multiple * target_rotation),
+            other(source, e, sample, places, 1, frame.b, multiple * target_rotation);
         const auto of_one = one.effects(whole, nodes), of_other = other.effects(whole, nodes);
         // Shifts are along one axis or the other.
         const int step = domain ? axes / 2 : 1;
         for (int k = 0; k < (source.is_line() ? 1 : axes); k += step) {
             const double angle = k * two_pi / 2 / axes, c = math::cos(angle), s = math::sin(angle);
-            const auto at = static_cast<std::size_t>(k);
-            ratios[at].push_back(ratios_about(of_one, of_other, c, s, needed, whole.size()));
-            if (by == 1) changed[at] = math::hypot(c * one.distance, s * other.distance);
+            const auto index = static_cast<std::size_t>(k);
+            ratios[index].push_back(ratios_about(of_one, of_other, c, s, needed, whole.size()));
+            if (multiple == 1) changed[index] = math::hypot(c * one.distance, s * other.distance);
         }
     }
     // About an axis of symmetry, or near it, a rotation changes nothing.

@@ -210,7 +210,9 @@ std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& ke
     if (source.has_density() && !source.estimates)
         compare(
             Pdf{source},
-            [&](Vec3d at, double a, double b) { return !same_to(a, b) && !differ_by_rounding(source, at, a, b); },
+            [&](Vec3d direction, double a, double b) {
+                return !same_to(a, b) && !differ_by_rounding(source, direction, a, b);
+            },
             "pdf(w) gives another answer in a block of another size");
     if (source.has_f() && !source.f_estimates)
         compare(
@@ -241,15 +243,15 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     // With more than two numbers, one may choose a texel and others the place in it.
     if (source.traits.numbers > 2 || source.traits.own_random || !source.adapter.can_draw()) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, 64);
-    const auto draws_moved_by = [&](int k, double by) {
+    const auto draws_moved_by = [&](int k, double shift) {
         std::vector<PrimarySample> v = u;
-        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? by : -by;
+        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? shift : -shift;
         std::vector<Draw> out(v.size());
         source.draw(v, out);
         return out;
     };
-    std::vector<Draw> at(u.size());
-    source.draw(u, at);
+    std::vector<Draw> here(u.size());
+    source.draw(u, here);
     const auto moved = [&](const Draw& a, const Draw& b) {
         const Vec3d d = a.wi - b.wi;
         return a.pdf > 0 && b.pdf > 0 ? std::sqrt(dot(d, d)) : -1;
@@ -264,12 +266,12 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
             .first = {},
             .what = "only the first bits of a random number move the draw"};
         for (std::size_t i = 0; i < u.size(); ++i) {
-            const double a = moved(at[i], far[i]), b = moved(at[i], near[i]);
+            const double a = moved(here[i], far[i]), b = moved(here[i], near[i]);
             const bool smooth = b > 0 && a > 1.5 * b && a < 3 * b;
             if (!smooth || a * few_bits_step / 0x1p-10 < few_bits_move) continue;
             ++out.of;
-            if (moved(at[i], least[i]) == 0 && out.times++ == 0) {
-                out.first = {.u = u[i], .draw = at[i], .p = 0, .expected = 0};
+            if (moved(here[i], least[i]) == 0 && out.times++ == 0) {
+                out.first = {.u = u[i], .draw = here[i], .p = 0, .expected = 0};
                 out.size = k;
             }
         }

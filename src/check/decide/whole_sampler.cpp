@@ -111,12 +111,12 @@ std::optional<SmallFault> special_places(
     if (adapter.has_f()) adapter.f(pairs, f);
     out.of += static_cast<double>(pairs.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) {  // a density may have a pole in a single direction
-        Draw at;
-        at.wi = pairs[i].wi;
+        Draw draw;
+        draw.wi = pairs[i].wi;
         std::optional<Vec3d> wo = pairs[i].wo;
         if (traits.wo == Traits::WoDomain::none) wo.reset();
-        if (std::isnan(p[i]) || p[i] < 0) note(out, {}, at, p[i], "pdf(w) is not a number >= 0", wo);
-        else if (std::isnan(f[i]) || f[i] < 0) note(out, {}, at, f[i], "f(w) is not a number >= 0", wo);
+        if (std::isnan(p[i]) || p[i] < 0) note(out, {}, draw, p[i], "pdf(w) is not a number >= 0", wo);
+        else if (std::isnan(f[i]) || f[i] < 0) note(out, {}, draw, f[i], "f(w) is not a number >= 0", wo);
     }
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }
@@ -156,13 +156,13 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const Strea
     const bool both = traits.wo == Traits::WoDomain::both;
     Stream stream(key);
     const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };
-    std::vector<Pair> there, back;
+    std::vector<Pair> forth, back;
     for (int i = 0; i < 256; ++i) {
         const Pair p{direction(both && (i & 1)), direction(both && (i & 2))};
-        there.push_back(p);
+        forth.push_back(p);
         back.push_back({p.wi, p.wo});
     }
-    const std::vector<Vec3d> f = f_of(adapter, there), g = f_of(adapter, back), again = f_of(adapter, there);
+    const std::vector<Vec3d> f = f_of(adapter, forth), g = f_of(adapter, back), again = f_of(adapter, forth);
     const int channels = traits.channels == 3 ? 3 : 1;
     SmallFault out{.family = Family::reciprocity,
         .times = 0,
@@ -170,16 +170,16 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const Strea
         .size = 0,
         .first = {},
         .what = "f(a, b) differs from f(b, a)"};
-    for (std::size_t i = 0; i < there.size(); ++i)
+    for (std::size_t i = 0; i < forth.size(); ++i)
         for (int c = 0; c < channels; ++c) {
-            const Pair& p = there[i];
+            const Pair& p = forth[i];
             const double a = channel_of(f[i], c), b = channel_of(g[i], c);
             if (differ(a, channel_of(again[i], c), same_number)) return {};  // a random estimate
             const bool across = p.wo.z * p.wi.z < 0;
-            Draw at;
-            at.wi = p.wi;
+            Draw draw;
+            draw.wi = p.wi;
             if ((!across || traits.eta) && differ(a * reciprocal_ratio(traits, p, c), b, reciprocity_tolerance)) {
-                note(out, {}, at, a, out.what);
+                note(out, {}, draw, a, out.what);
                 out.first.expected = b;
             }
         }

@@ -30,11 +30,11 @@ inline std::uint32_t scrambled_of(double evaluations) {
 /// The largest look within a number of evaluations: 0.36 to 0.18 of them are scrambled draws; points and independent
 /// draws share the rest equally.
 inline Look look_of(double evaluations) {
-    const double most = std::max(evaluations, 0.0);
+    const double available = std::max(evaluations, 0.0);
     Look out;
-    out.scrambled = scrambled_of(0.36 * most);
-    out.independent = static_cast<std::uint32_t>((most - out.scrambled) / 4);
-    out.points = static_cast<std::uint32_t>(most - out.scrambled - 2.0 * out.independent);
+    out.scrambled = scrambled_of(0.36 * available);
+    out.independent = static_cast<std::uint32_t>((available - out.scrambled) / 4);
+    out.points = static_cast<std::uint32_t>(available - out.scrambled - 2.0 * out.independent);
     return out;
 }
 
@@ -76,7 +76,7 @@ struct CheckBudget {
     static CheckBudget thorough() { return {6.4e6, 3}; }
 
 private:
-    std::uint32_t part(double of) const { return static_cast<std::uint32_t>(evaluations / of); }
+    std::uint32_t part(double divisor) const { return static_cast<std::uint32_t>(evaluations / divisor); }
 };
 
 /// Approximate number of points at which lost light is measured, in the leaves with a point where p was 0; at least two

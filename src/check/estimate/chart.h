@@ -28,10 +28,10 @@ inline ChartPoint to_chart(Vec3d w) {
     return {w.z >= 0 ? a : 2 - a, phi < 0 ? phi + two_pi : phi};
 }
 
-inline Vec3d from_chart(ChartPoint at) {
-    const double r = std::sqrt(std::max(0.0, at.t * (2 - at.t)));
-    const math::SinCos around = math::sincos(at.phi);
-    return {r * around.cos, r * around.sin, 1 - at.t};
+inline Vec3d from_chart(ChartPoint point) {
+    const double r = std::sqrt(std::max(0.0, point.t * (2 - point.t)));
+    const math::SinCos around = math::sincos(point.phi);
+    return {r * around.cos, r * around.sin, 1 - point.t};
 }
 
 /// Polar angle of t, radians.
@@ -69,8 +69,8 @@ inline constexpr std::array<double, chart_axes> axis_length = {2, two_pi};
 template <class T> using ByBand = std::array<T, chart_axes * bands>;
 
 /// The index of the band along an axis.
-inline std::size_t band_of(ChartPoint at, std::size_t axis) {
-    const double x = (axis == 0 ? at.t : at.phi) / axis_length[axis] * bands;
+inline std::size_t band_of(ChartPoint point, std::size_t axis) {
+    const double x = (axis == 0 ? point.t : point.phi) / axis_length[axis] * bands;
     return axis * bands + std::min(static_cast<std::size_t>(std::max(x, 0.0)), bands - 1);
 }
 

@@ -11,18 +11,18 @@
 
 namespace crescent::check {
 
-void LightIntegrals::scale(double by) {
+void LightIntegrals::scale(double factor) {
     for (auto* by_channel : {&all, &mean, &albedo})
-        for (Estimate& e : *by_channel) e.scale(by);
-    lost.scale(by);
-    lost_again.scale(by);
-    lit.scale(by);
-    largest_lost *= by;
+        for (Estimate& e : *by_channel) e.scale(factor);
+    lost.scale(factor);
+    lost_again.scale(factor);
+    lit.scale(factor);
+    largest_lost *= factor;
     for (auto& by_channel : leaves)
-        for (Estimate& e : by_channel) e.scale(by);
+        for (Estimate& e : by_channel) e.scale(factor);
     for (WeightedPoint& w : weighted_points) {
-        w.light *= by;
-        w.chance *= by;
+        w.light *= factor;
+        w.chance *= factor;
     }
 }
 
@@ -115,8 +115,8 @@ public:
             mis_.assign(w_.size(), 1);
             if (of_f_ && source_.adapter.techniques() > 1) source_.mis_weights(w_, mis_);
             measure_rounding(std::span(grids).subspan(first, last - first));
-            std::size_t at = 0;
-            for (std::size_t g = first; g < last; ++g) add_points(grids[g], rounding_[g - first], at);
+            std::size_t index = 0;
+            for (std::size_t g = first; g < last; ++g) add_points(grids[g], rounding_[g - first], index);
             first = last;
         }
         if (of_f_) measure_lost();
@@ -141,18 +141,19 @@ private:
         rounding_.assign(grids.size(), 0);
         if (tabulated_ || !source_.has_density() || source_.estimates || !plan_.in_single(source_)) return;
         std::vector<std::size_t> first;  // point of each grid
-        std::size_t at = 0;
+        std::size_t offset = 0;
         for (const Grid& g : grids) {
-            first.push_back(at);
-            at += g.points();
+            first.push_back(offset);
+            offset += g.points();
         }
         const std::vector<double> at_first = rounding_at(first);
         for (std::size_t g = 0; g < grids.size(); ++g) {
             if (!(at_first[g] > same_number)) continue;
             std::vector<std::size_t> points(grids[g].points());
             std::iota(points.begin(), points.end(), first[g]);
-            const std::vector<double> all = rounding_at(points);
-            rounding_[g] = std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
+            const std::vector<double> rounding = rounding_at(points);
+            rounding_[g] =
+                std::accumulate(rounding.begin(), rounding.end(), 0.0) / static_cast<double>(rounding.size());
         }
     }
 
@@ -162,33 +163,33 @@ private:
     std::vector<double> rounding_at(std::span<const std::size_t> points) {
         constexpr double longer = 1 + 2 * ulp;
         std::vector<Vec3d> w;
-        for (std::size_t at : points) w.push_back(w_[at]);
+        for (std::size_t index : points) w.push_back(w_[index]);
         std::vector<double> of_wo(w.size()), of_wi(w.size()), out;
         source_.density_from(source_.wo * longer, w, of_wo);
         for (Vec3d& v : w) v = v * longer;
         source_.density_from(source_.wo, w, of_wi);
         for (std::size_t i = 0; i < points.size(); ++i) {
-            double least = p_[points[i]], most = least;
+            double least = p_[points[i]], greatest = least;
             for (const double p : {of_wo[i], of_wi[i]})
                 if (p >= 0 && std::isfinite(p)) {
                     least = std::min(least, p);
-                    most = std::max(most, p);
+                    greatest = std::max(greatest, p);
                 }
-            out.push_back(most > 0 ? std::min(1.0, (most / least - 1) / 4) : 0);
+            out.push_back(greatest > 0 ? std::min(1.0, (greatest / least - 1) / 4) : 0);
         }
         return out;
     }
 
     /// f |cos| L at a point, summed over three channels.
-    double light_at(std::size_t at) const {
-        const Vec3d f = f_[at];
+    double light_at(std::size_t index) const {
+        const Vec3d f = f_[index];
         const double y = source_.channels() == 3 ? f.x + f.y + f.z : f.x;
-        return y > 0 ? y * source_.radiance(w_[at]) : 0;
+        return y > 0 ? y * source_.radiance(w_[index]) : 0;
     }
-    double lost_at(std::size_t at) {
-        if (p_[at] > 0) return 0;
-        const double lit = light_at(at);
-        return lit > 0 && source_.reached_otherwise(w_[at]) ? 0 : lit;
+    double lost_at(std::size_t index) {
+        if (p_[index] > 0) return 0;
+        const double lit = light_at(index);
+        return lit > 0 && source_.reached_otherwise(w_[index]) ? 0 : lit;
     }
 
     /// A thin region where p is 0 contains only a few points, too few for a test. Separate points measure the lost
@@ -232,25 +233,25 @@ private:
                 }
     }
 
-    void add_points(const Grid& g, double rounding, std::size_t& at) {
+    void add_points(const Grid& g, double rounding, std::size_t& index) {
         const Leaf& leaf = plan_.tree.leaves()[g.leaf];
         LeafIntegral& to = out_.leaves[g.leaf];
         const double k = to.per_point = g.per_point;
-        double least = 1e300, most = 0;
+        double least = 1e300, greatest = 0;
         bool lit = false;
-        for (int j = 0; j < g.cells(); ++j, at += 2) {
+        for (int j = 0; j < g.cells(); ++j, index += 2) {
             Values h[2];
             double second[2];
             for (std::size_t a = 0; a < 2; ++a) {
-                const double p = p_[at + a];
-                h[a] = plan_.values(leaf, w_[at + a], p);
+                const double p = p_[index + a];
+                h[a] = plan_.values(leaf, w_[index + a], p);
                 least = std::min(least, p);
-                most = std::max(most, p);
-                lit = lit || (of_f_ && light_at(at + a) > 0);
-                if (k * p > heavy_point) out_.heavy.push_back({chart_[at + a], p});
+                greatest = std::max(greatest, p);
+                lit = lit || (of_f_ && light_at(index + a) > 0);
+                if (k * p > heavy_point) out_.heavy.push_back({chart_[index + a], p});
                 second[a] = k * h[a][bridge] * h[a][bridge] * p;
                 to.second += second[a];
-                if (source_.may_draw(w_[at + a], p)) out_.domain += k;
+                if (source_.may_draw(w_[index + a], p)) out_.domain += k;
                 if (p > 0) {
                     to.solid_angle += k * h[a][bridge];
                     for (std::size_t q = 0; q < integrands; ++q) {
@@ -258,26 +259,26 @@ private:
                         out_.even_square[q] += k * h[a][q] * h[a][q];
                     }
                 }
-                if (tabulated_) allow_tabulation(h[a], w_[at + a], k, to);
+                if (tabulated_) allow_tabulation(h[a], w_[index + a], k, to);
                 for (double& v : h[a]) v *= p;
             }
             for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
             to.mass.add_pair(h[0][mass], h[1][mass], k);
             to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
-            if (source_.has_density()) add_to_bands(at, {h[0][bridge], h[1][bridge]}, second, k);
-            if (of_f_) take_light(g.leaf, at, k);
+            if (source_.has_density()) add_to_bands(index, {h[0][bridge], h[1][bridge]}, second, k);
+            if (of_f_) take_light(g.leaf, index, k);
         }
         if (of_f_ && least == 0 && lit) out_.light.lost_in.push_back(g.leaf);
-        to.top = most;
+        to.top = greatest;
         out_.points += static_cast<double>(g.points());
         to.rounding = rounding;
-        if (leaf.edge && most <= alike * least) allow_strip(leaf, to);
+        if (leaf.edge && greatest <= alike * least) allow_strip(leaf, to);
     }
 
     /// For a pair of points: values of h p, and of h^2 p times k.
-    void add_to_bands(std::size_t at, std::array<double, 2> value, const double (&second)[2], double k) {
+    void add_to_bands(std::size_t index, std::array<double, 2> value, const double (&second)[2], double k) {
         for (std::size_t axis = 0; axis < chart_axes; ++axis) {
-            const std::size_t i = band_of(chart_[at], axis), j = band_of(chart_[at + 1], axis);
+            const std::size_t i = band_of(chart_[index], axis), j = band_of(chart_[index + 1], axis);
             out_.second_by_band[i] += second[0];
             out_.second_by_band[j] += second[1];
             if (i == j) {
@@ -299,59 +300,60 @@ private:
     /// strip of that density; one of K_l points may lie in such a strip (the rule of succession).
     void allow_strip(const Leaf& leaf, LeafIntegral& to) {
         const double k = to.per_point, v = k * k * leaf.q * leaf.q / 2;
-        const Vec3d middle = from_chart(plan_.tree.rect(leaf).at(0.5, 0.5)), off = middle - plan_.middle;
+        const Vec3d middle = from_chart(plan_.tree.rect(leaf).at(0.5, 0.5)), offset = middle - plan_.middle;
         const double log_q = Plan::log_of(leaf.q) - plan_.median_log_p;
         to.bridge.variance += v;
-        const double times[integrands] = {4, 1, log_q * log_q, off.x * off.x, off.y * off.y, off.z * off.z};
+        const double times[integrands] = {
+            4, 1, log_q * log_q, offset.x * offset.x, offset.y * offset.y, offset.z * offset.z};
         for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].variance += v * times[q];
     }
 
-    void take_light(std::size_t leaf, std::size_t at, double k) {
+    void take_light(std::size_t leaf, std::size_t index, double k) {
         LightIntegrals& l = out_.light;
         for (int c = 0; c < source_.channels(); ++c) {
             const auto channel = static_cast<std::size_t>(c);
             double f[2], mean[2], flux[2];
             for (std::size_t a = 0; a < 2; ++a) {
-                f[a] = channel_of(f_[at + a], c);
-                mean[a] = f[a] * mean_bridge(f[a], p_[at + a], plan_.usual[channel], is_bridged(source_));
-                flux[a] = f[a] * flux_factor(source_, w_[at + a], c);
+                f[a] = channel_of(f_[index + a], c);
+                mean[a] = f[a] * mean_bridge(f[a], p_[index + a], plan_.usual[channel], is_bridged(source_));
+                flux[a] = f[a] * flux_factor(source_, w_[index + a], c);
             }
             l.all[channel].add_pair(f[0], f[1], k);
             l.mean[channel].add_pair(mean[0], mean[1], k);
             l.albedo[channel].add_pair(flux[0], flux[1], k);
             if (!l.leaves.empty()) l.leaves[leaf][channel].add_pair(f[0], f[1], k);
         }
-        const double lost[2] = {lost_at(at), lost_at(at + 1)};
-        l.lit.add_pair(light_at(at), light_at(at + 1), k);
+        const double lost[2] = {lost_at(index), lost_at(index + 1)};
+        l.lit.add_pair(light_at(index), light_at(index + 1), k);
         l.lost.add_pair(lost[0], lost[1], k);
         l.points += 2;
-        for (std::size_t a = 0; a < 2; ++a) note_weight(at + a, k);
+        for (std::size_t a = 0; a < 2; ++a) note_weight(index + a, k);
     }
 
-    void note_weight(std::size_t at, double k) {
-        const double p = p_[at], f = source_.channels() == 3 ? luminance(f_[at]) : f_[at].x;
-        const double share = mis_[at] * f * source_.radiance(w_[at]);
+    void note_weight(std::size_t index, double k) {
+        const double p = p_[index], f = source_.channels() == 3 ? luminance(f_[index]) : f_[index].x;
+        const double share = mis_[index] * f * source_.radiance(w_[index]);
         if (source_.has_density() && p > 0 && share > 0)
             out_.light.weighted_points.push_back({share / p, k * share, k * p});
     }
 };
 
-void scale(Integrals& x, double by) {
-    for (Estimate& e : x.sums) e.scale(by);
-    for (Estimate& e : x.bridge_by_band) e.scale(by);
-    for (double& v : x.second_by_band) v *= by;
-    x.domain *= by;
-    for (double& v : x.known_to) v *= by;
-    for (double& v : x.even) v *= by;
-    for (double& v : x.even_square) v *= by;
+void scale(Integrals& x, double factor) {
+    for (Estimate& e : x.sums) e.scale(factor);
+    for (Estimate& e : x.bridge_by_band) e.scale(factor);
+    for (double& v : x.second_by_band) v *= factor;
+    x.domain *= factor;
+    for (double& v : x.known_to) v *= factor;
+    for (double& v : x.even) v *= factor;
+    for (double& v : x.even_square) v *= factor;
     for (LeafIntegral& leaf : x.leaves) {
-        leaf.mass.scale(by);
-        leaf.bridge.scale(by);
-        leaf.second *= by;
-        leaf.solid_angle *= by;
-        leaf.per_point *= by;
-        leaf.known_to *= by;
-        leaf.rounding *= by;
+        leaf.mass.scale(factor);
+        leaf.bridge.scale(factor);
+        leaf.second *= factor;
+        leaf.solid_angle *= factor;
+        leaf.per_point *= factor;
+        leaf.known_to *= factor;
+        leaf.rounding *= factor;
     }
 }
 

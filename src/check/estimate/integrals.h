@@ -21,10 +21,10 @@ struct Estimate {
         variance += v;
         doubt += 2.0 / 3 * v * v;  // for v = x^2, x normal: var(v) = 2 E[v]^2, of which v^2 2/3 is an unbiased estimate
     }
-    void scale(double by) {
-        value *= by;
-        variance *= by * by;
-        doubt *= by * by * by * by;
+    void scale(double factor) {
+        value *= factor;
+        variance *= factor * factor;
+        doubt *= factor * factor * factor * factor;
     }
     void add(const Estimate& other) {
         value += other.value;
@@ -61,7 +61,7 @@ struct LightIntegrals {
     double largest_lost = 0;                      // largest contribution of one of these points
     std::vector<std::size_t> lost_in;             // these leaves, including those given before a pass
     double points = 0;
-    void scale(double by);
+    void scale(double factor);
     void add(const LightIntegrals& other);
 };
 

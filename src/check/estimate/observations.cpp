@@ -281,9 +281,9 @@ private:
         bool wrong = false, untrue = false;
         for (int c = 0; c < source_.channels(); ++c) {
             const auto channel = static_cast<std::size_t>(c);
-            const double x = channel_of(f, c), own = x / d.pdf, y = channel_of(expected, c);
-            const double w = !d.weight ? own : source_.channels() == 3 ? channel_of(d.weights, c) : *d.weight;
-            wrong = wrong || (derived && std::fabs(own - w) > same_number * std::max(own, 1e-6) + 1e-9);
+            const double x = channel_of(f, c), weight = x / d.pdf, y = channel_of(expected, c);
+            const double w = !d.weight ? weight : source_.channels() == 3 ? channel_of(d.weights, c) : *d.weight;
+            wrong = wrong || (derived && std::fabs(weight - w) > same_number * std::max(weight, 1e-6) + 1e-9);
             untrue = untrue || std::fabs(x - y) > same_number * std::max(y, 1e-6);
             if (set >= 0) continue;
             to_.mean[channel].add(w * mean_bridge(y, p_[k], plan_.usual[channel], is_bridged(source_)));
@@ -326,8 +326,8 @@ private:
         to_.mean_p += density;
         if (!source_.has_density()) {
             constexpr double ring = two_pi / 72;  // 5 degrees
-            const auto at = static_cast<std::size_t>(math::acos(std::clamp(w.z, -1.0, 1.0)) / ring);
-            ++to_.rings[std::min(at, to_.rings.size() - 1)];
+            const auto index = static_cast<std::size_t>(math::acos(std::clamp(w.z, -1.0, 1.0)) / ring);
+            ++to_.rings[std::min(index, to_.rings.size() - 1)];
         }
         if (p > 0) {
             const double log_p = v[bridge] > 0 ? v[slope] / v[bridge] : 0;
@@ -340,8 +340,8 @@ private:
     }
 
     /// The variance of C for random points is k integral of g^2 = k E[g^2 / p].
-    void complete(LeafIntegral& leaf, ChartPoint at, const Values& v, double p) {
-        if (to_.unmet++ < batch_size) to_.unmet_at.push_back({at, p});
+    void complete(LeafIntegral& leaf, ChartPoint point, const Values& v, double p) {
+        if (to_.unmet++ < batch_size) to_.unmet_at.push_back({point, p});
         const double draws = to_.independent;
         const auto add = [&](Estimate& e, double h) {
             const double x = leaf.per_point * p * h * h / draws;
@@ -400,13 +400,13 @@ bool same_weight(Vec3d a, Vec3d b) { return same_value(a.x, b.x) && same_value(a
 
 /// Returns false if there are too many.
 bool add_to(std::vector<DeltaPart>& parts, const Draw& d, Vec3d weight, bool by_weight) {
-    const auto at = std::ranges::find_if(parts, [&](const DeltaPart& p) {
+    const auto part = std::ranges::find_if(parts, [&](const DeltaPart& p) {
         return length(p.wi - d.wi) < same_number && same_value(p.q, d.delta) &&
             (!by_weight || same_weight(p.weight, weight));
     });
-    if (at != parts.end()) {
-        ++at->drawn;
-        at->otherwise += !same_weight(at->weight, weight);
+    if (part != parts.end()) {
+        ++part->drawn;
+        part->otherwise += !same_weight(part->weight, weight);
         return true;
     }
     if (parts.size() >= most_delta_parts) return false;
@@ -428,9 +428,9 @@ void DeltaParts::add(const Draw& d, Vec3d weight) {
     many_weights_ = many_weights_ || !add_to(apart_, d, weight, true);
 }
 
-const std::vector<DeltaPart>& DeltaParts::parts(double of) const {
+const std::vector<DeltaPart>& DeltaParts::parts(double draws) const {
     const bool even = std::ranges::all_of(alike_, [](const DeltaPart& p) { return p.otherwise == 0; });
-    return even || many_weights_ || !all_come_by_q(apart_, of) ? alike_ : apart_;
+    return even || many_weights_ || !all_come_by_q(apart_, draws) ? alike_ : apart_;
 }
 
 namespace {

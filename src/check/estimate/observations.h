@@ -28,10 +28,10 @@ struct DeltaPart {
 class DeltaParts {
 public:
     void add(const Draw& d, Vec3d weight);
-    /// The parts by direction and q, among `of` draws in all. A direction and q with several weights are several parts
-    /// if each is drawn as often as q: along the normal three indices refract three channels, chosen with equal
+    /// The parts by direction and q, among `draws` draws in all. A direction and q with several weights are several
+    /// parts if each is drawn as often as q: along the normal three indices refract three channels, chosen with equal
     /// probability, to one direction.
-    const std::vector<DeltaPart>& parts(double of) const;
+    const std::vector<DeltaPart>& parts(double draws) const;
     /// Whether there are more than `most_delta_parts`, as for a distribution that has a density.
     bool scattered() const { return scattered_; }
     bool empty() const { return alike_.empty(); }

@@ -31,12 +31,12 @@ class TreeGrowth {
     };
 
 public:
-    TreeGrowth(Tree& tree, Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, double step,
+    TreeGrowth(Tree& tree, Source& source, std::vector<DensityPoint> pilots, std::uint32_t draws, double step,
         const CheckBudget& budget, const StreamKey& key)
         : tree_(tree),
           source_(source),
           pilots_(std::move(pilots)),
-          of_(of),
+          of_(draws),
           step_(step),
           budget_(budget),
           stream_(key) {}
@@ -112,13 +112,13 @@ private:
         for (bool along_phi : {false, true}) {
             if (along_phi && source_.is_line()) continue;
             const double middle = rect.middle(along_phi);
-            const auto left = [&](ChartPoint at) { return (along_phi ? at.phi : at.t) < middle; };
+            const auto is_below = [&](ChartPoint point) { return (along_phi ? point.phi : point.t) < middle; };
             double sum[2] = {}, count[2] = {}, drawn = 0;
             for (const DensityPoint& e : g.points) {
-                sum[!left(e.at)] += e.p;
-                ++count[!left(e.at)];
+                sum[!is_below(e.at)] += e.p;
+                ++count[!is_below(e.at)];
             }
-            for (std::size_t k = g.first; k < g.last; ++k) drawn += left(pilots_[k].at);
+            for (std::size_t k = g.first; k < g.last; ++k) drawn += is_below(pilots_[k].at);
             double& to = gain[along_phi];
             to = std::fabs(2 * drawn - static_cast<double>(g.last - g.first)) / of_ + 1e-12;
             if (count[0] > 0 && count[1] > 0) to += rect.area() * std::fabs(sum[0] / count[0] - sum[1] / count[1]) / 2;
@@ -142,14 +142,14 @@ private:
             TreeNode halves[2] = {{parent.rect, -1, parent.depth + 1}, {parent.rect, -1, parent.depth + 1}};
             (*side ? halves[0].rect.phi1 : halves[0].rect.t1) = middle;
             (*side ? halves[1].rect.phi0 : halves[1].rect.t0) = middle;
-            const auto left = [&](const DensityPoint& e) { return (*side ? e.at.phi : e.at.t) < middle; };
+            const auto is_below = [&](const DensityPoint& e) { return (*side ? e.at.phi : e.at.t) < middle; };
             Growing parts[2];
             const Growing whole = std::move(at(i));
             for (Growing& part : parts) part.points.reserve(whole.points.size() + points_per_leaf);
-            for (const DensityPoint& e : whole.points) parts[!left(e)].points.push_back(e);
+            for (const DensityPoint& e : whole.points) parts[!is_below(e)].points.push_back(e);
             const auto begin = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.first);
             const auto end = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.last);
-            const auto split = static_cast<std::size_t>(std::partition(begin, end, left) - pilots_.begin());
+            const auto split = static_cast<std::size_t>(std::partition(begin, end, is_below) - pilots_.begin());
             parts[0].first = whole.first;
             parts[0].last = parts[1].first = split;
             parts[1].last = whole.last;
@@ -288,26 +288,26 @@ private:
         return Tree::is_grid | grid;
     }
     /// Sets the entries of these cells, which are the rectangle of the node.
-    void fill(std::uint32_t first, std::size_t node, const Cells& at) {
+    void fill(std::uint32_t first, std::size_t node, const Cells& block) {
         const TreeNode& x = tree_.nodes_[node];
-        const std::uint32_t from = x.along_phi ? at.phi0 : at.t0, to = x.along_phi ? at.phi1 : at.t1;
+        const std::uint32_t from = x.along_phi ? block.phi0 : block.t0, to = x.along_phi ? block.phi1 : block.t1;
         if (x.child < 0 || to - from == 1) {
             const std::uint32_t start =
                 leaves_below_[node] >= many_leaves ? add_grid(node) : static_cast<std::uint32_t>(node);
-            for (std::uint32_t t = at.t0; t < at.t1; ++t)
-                std::fill_n(tree_.starts_.begin() + first + t * cells + at.phi0, at.phi1 - at.phi0, start);
+            for (std::uint32_t t = block.t0; t < block.t1; ++t)
+                std::fill_n(tree_.starts_.begin() + first + t * cells + block.phi0, block.phi1 - block.phi0, start);
             return;
         }
-        Cells low = at, high = at;
+        Cells low = block, high = block;
         (x.along_phi ? low.phi1 : low.t1) = (x.along_phi ? high.phi0 : high.t0) = (from + to) / 2;
         fill(first, static_cast<std::size_t>(x.child), low);
         fill(first, static_cast<std::size_t>(x.child) + 1, high);
     }
 };
 
-Tree::Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, std::vector<DensityPoint> hints,
+Tree::Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t draws, std::vector<DensityPoint> hints,
     double step, const CheckBudget& budget, const StreamKey& key) {
-    TreeGrowth(*this, source, std::move(pilots), of, step, budget, key).grow(std::move(hints));
+    TreeGrowth(*this, source, std::move(pilots), draws, step, budget, key).grow(std::move(hints));
     StartGrids{*this};
     find_edges();
 }
@@ -349,31 +349,32 @@ void Tree::find_edges() {
     constexpr double outside = 1e-12, places[2] = {0.25, 0.75};
     constexpr std::size_t sides = 4, leaves_together = 512;
     std::vector<ChartPoint> beyond;
-    std::vector<std::size_t> of;  // the leaf of each of these points
+    std::vector<std::size_t> leaf_of;  // the leaf of each of these points
     std::vector<std::uint32_t> neighbours;
     for (std::size_t first = 0; first < leaves_.size(); first += leaves_together) {
         beyond.clear();
-        of.clear();
+        leaf_of.clear();
         for (std::size_t l = first; l < std::min(first + leaves_together, leaves_.size()); ++l) {
             if (!leaves_[l].met) continue;
             const ChartRect& r = rect(leaves_[l]);
             for (std::size_t side = 0; side < sides; ++side)
                 for (double x : places) {
-                    ChartPoint at = r.at(x, x);
-                    if (side == 0) at.t = r.t0 - outside;
-                    if (side == 1) at.t = r.t1 + outside;
-                    if (side == 2) at.phi = r.phi0 - outside < 0 ? r.phi0 - outside + two_pi : r.phi0 - outside;
-                    if (side == 3) at.phi = r.phi1 + outside >= two_pi ? r.phi1 + outside - two_pi : r.phi1 + outside;
-                    if (at.t < 0 || at.t > 2) continue;
-                    beyond.push_back(at);
-                    of.push_back(l);
+                    ChartPoint point = r.at(x, x);
+                    if (side == 0) point.t = r.t0 - outside;
+                    if (side == 1) point.t = r.t1 + outside;
+                    if (side == 2) point.phi = r.phi0 - outside < 0 ? r.phi0 - outside + two_pi : r.phi0 - outside;
+                    if (side == 3)
+                        point.phi = r.phi1 + outside >= two_pi ? r.phi1 + outside - two_pi : r.phi1 + outside;
+                    if (point.t < 0 || point.t > 2) continue;
+                    beyond.push_back(point);
+                    leaf_of.push_back(l);
                 }
         }
         neighbours.resize(beyond.size());
         find(beyond, neighbours);
-        for (std::size_t k = 0; k < of.size(); ++k) {
+        for (std::size_t k = 0; k < leaf_of.size(); ++k) {
             const Leaf& neighbour = leaves_[neighbours[k]];
-            Leaf& leaf = leaves_[of[k]];
+            Leaf& leaf = leaves_[leaf_of[k]];
             const double q = neighbour.met ? neighbour.q : 0;
             if (std::max(q, leaf.q) > alike * std::min(q, leaf.q)) leaf.edge = true;
         }
@@ -445,30 +446,31 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
         draws.assign(n, {});
         source.draw(key, from, u, draws);
         w.clear();
-        std::vector<const Draw*> of;
+        std::vector<const Draw*> usable;
         for (const Draw& d : draws) {
             if (d.delta != 0 || !(d.pdf > 0) || !std::isfinite(d.wi.x + d.wi.y + d.wi.z) || !std::isfinite(d.pdf))
                 continue;
             if (!(dot(d.wi, d.wi) > 0)) continue;
             w.push_back(d.wi);
-            of.push_back(&d);
+            usable.push_back(&d);
         }
         p.resize(w.size());
         source.density(w, p);
         for (std::size_t i = 0; i < w.size(); ++i) {
-            if (!is_direction(source.traits, *of[i], p[i])) continue;
+            if (!is_direction(source.traits, *usable[i], p[i])) continue;
             out.points.push_back({to_chart(w[i]), p[i]});
             out.directions.push_back(w[i]);
-            if (out.u.size() < budget.of_steps()) out.u.push_back(u[static_cast<std::size_t>(of[i] - draws.data())]);
-            if (!of[i]->weight) {
+            if (out.u.size() < budget.of_steps())
+                out.u.push_back(u[static_cast<std::size_t>(usable[i] - draws.data())]);
+            if (!usable[i]->weight) {
                 if (from == 0) {
                     unweighted.push_back(w[i]);
-                    unweighted_pdf.push_back(of[i]->pdf);
+                    unweighted_pdf.push_back(usable[i]->pdf);
                 }
                 continue;
             }
-            const Vec3d x =
-                source.channels() == 3 ? of[i]->weights : Vec3d{*of[i]->weight, *of[i]->weight, *of[i]->weight};
+            const Vec3d x = source.channels() == 3 ? usable[i]->weights
+                                                   : Vec3d{*usable[i]->weight, *usable[i]->weight, *usable[i]->weight};
             for (int c = 0; c < 3; ++c)
                 if (std::isfinite(channel_of(x, c)))
                     out.weight[static_cast<std::size_t>(c)] += channel_of(x, c) / out.of;
@@ -495,13 +497,13 @@ Values change_per_step(Source& source, const Plan& plan, const Pilot& pilot, con
     Values out{};
     for (std::size_t k = 0; k < which.size(); ++k) {
         if (!(p[k] > 0)) continue;
-        const auto at = [&](Vec3d w, double density) {
+        const auto values_at = [&](Vec3d w, double density) {
             return plan.values(plan.tree.leaves()[plan.tree.find(to_chart(w))], w, density);
         };
         const std::size_t i = which[k];
-        const Values here = at(pilot.directions[i], pilot.points[i].p), there = at(next[k], p[k]);
+        const Values here = values_at(pilot.directions[i], pilot.points[i].p), beside = values_at(next[k], p[k]);
         for (std::size_t q = 0; q < integrands; ++q)
-            out[q] += std::fabs(there[q] - here[q]) / static_cast<double>(steps.size());
+            out[q] += std::fabs(beside[q] - here[q]) / static_cast<double>(steps.size());
     }
     return out;
 }
@@ -523,9 +525,9 @@ Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::ve
     for (std::size_t i = 0; i < steps.size(); ++i) pilot.points[i].step = steps[i].jump;
     double median = 0;
     if (!log_p.empty()) {
-        const auto at = log_p.begin() + static_cast<std::ptrdiff_t>(log_p.size() / 2);
-        std::nth_element(log_p.begin(), at, log_p.end());
-        median = math::log(*at);
+        const auto median_place = log_p.begin() + static_cast<std::ptrdiff_t>(log_p.size() / 2);
+        std::nth_element(log_p.begin(), median_place, log_p.end());
+        median = math::log(*median_place);
     }
     key.purpose = Purpose::tree;
     Plan plan{.tree = Tree(source, pilot.points, pilot.of, std::move(hints), step, budget, key),

@@ -51,22 +51,22 @@ struct Leaf {
 
 class Tree {
 public:
-    /// `pilots`: the directions among `of` pilot draws. `hints`: other points with p. step: of the sampler's
+    /// `pilots`: the directions among `draws` pilot draws. `hints`: other points with p. step: of the sampler's
     /// arithmetic, as an angle.
-    Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t of, std::vector<DensityPoint> hints,
+    Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t draws, std::vector<DensityPoint> hints,
         double step, const CheckBudget& budget, const StreamKey& key);
 
     const std::vector<TreeNode>& nodes() const { return nodes_; }
     const std::vector<Leaf>& leaves() const { return leaves_; }
     /// The leaf that contains a point.
-    std::size_t find(ChartPoint at) const {
-        std::uint32_t i = start_of(at);
-        for (std::uint32_t next; (next = cuts_[i].next(at)) != i; i = next) {}
+    std::size_t find(ChartPoint point) const {
+        std::uint32_t i = start_of(point);
+        for (std::uint32_t next; (next = cuts_[i].next(point)) != i; i = next) {}
         return cuts_[i].leaf;
     }
     /// The leaves of many points. Several paths are followed at once, so that the memory accesses of one do not wait
     /// for those of another.
-    void find(std::span<const ChartPoint> at, std::span<std::uint32_t> leaves) const;
+    void find(std::span<const ChartPoint> points, std::span<std::uint32_t> leaves) const;
     const ChartRect& rect(const Leaf& leaf) const { return nodes_[static_cast<std::size_t>(leaf.node)].rect; }
     int depth() const { return depth_; }
     std::size_t rows() const { return rows_; }
@@ -77,7 +77,7 @@ private:
         double cut;
         std::uint32_t child : 31, along_phi : 1;
         std::uint32_t leaf;
-        std::uint32_t next(ChartPoint at) const { return child + ((along_phi ? at.phi : at.t) >= cut); }
+        std::uint32_t next(ChartPoint point) const { return child + ((along_phi ? point.phi : point.t) >= cut); }
     };
     std::vector<TreeNode> nodes_;
     std::vector<Leaf> leaves_;
@@ -95,17 +95,18 @@ private:
     int depth_ = 0;
     std::size_t rows_ = 0;
     /// The entry of a point in a grid.
-    std::uint32_t start_in(std::uint32_t grid, ChartPoint at) const {
+    std::uint32_t start_in(std::uint32_t grid, ChartPoint point) const {
         const auto cell = [](double x) {
             return static_cast<std::uint32_t>(std::min(std::max(0.0, x), cells - 1.0));  // 0 for NaN
         };
         const Grid& g = grids_[grid];
-        const std::uint32_t t = cell((at.t - g.t0) * g.cells_per_t), phi = cell((at.phi - g.phi0) * g.cells_per_phi);
+        const std::uint32_t t = cell((point.t - g.t0) * g.cells_per_t),
+                            phi = cell((point.phi - g.phi0) * g.cells_per_phi);
         return starts_[g.first + t * cells + phi];
     }
-    std::uint32_t start_of(ChartPoint at) const {
-        std::uint32_t start = start_in(0, at);
-        while (start & is_grid) start = start_in(start & ~is_grid, at);
+    std::uint32_t start_of(ChartPoint point) const {
+        std::uint32_t start = start_in(0, point);
+        while (start & is_grid) start = start_in(start & ~is_grid, point);
         return start;
     }
     friend class StartGrids;
@@ -134,10 +135,10 @@ struct Plan {
 
     /// h = q / (p + q), in [0, 1] (the bridge of Meng and Wong 1996), and h times the quantities of the other sums.
     Values values(const Leaf& leaf, Vec3d w, double p) const {
-        const double known = estimates ? leaf.q : p;
-        const double h = leaf.q / (known + leaf.q);
-        return {1, h, known > 0 ? h * (log_of(known) - median_log_p) : 0, h * (w.x - middle.x), h * (w.y - middle.y),
-            h * (w.z - middle.z)};
+        const double density = estimates ? leaf.q : p;
+        const double h = leaf.q / (density + leaf.q);
+        return {1, h, density > 0 ? h * (log_of(density) - median_log_p) : 0, h * (w.x - middle.x),
+            h * (w.y - middle.y), h * (w.z - middle.z)};
     }
     /// Whether the sampler computes in single precision, as it declares or as the step of its directions shows: that of
     /// an angle is angle_per_step ulp, here to a factor of 4.

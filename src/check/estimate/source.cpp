@@ -112,12 +112,12 @@ void Source::stated_pdf(std::span<const Vec3d> wi, std::span<double> out) {
 }
 
 void Source::f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth) {
-    const std::span<const Pair> at = pairs_of(wi);
+    const std::span<const Pair> pairs = pairs_of(wi);
     if (channels() == 3 && !truth) {
-        adapter.f_channels(at, out);
+        adapter.f_channels(pairs, out);
     } else {
         std::vector<double> y(wi.size());
-        truth ? adapter.reference_f(at, y) : adapter.f(at, y);
+        truth ? adapter.reference_f(pairs, y) : adapter.f(pairs, y);
         for (std::size_t i = 0; i < y.size(); ++i) out[i] = {y[i], y[i], y[i]};
     }
     invalid_.of_f += wi.size();
@@ -149,14 +149,14 @@ BothWays both_ways(const SamplerAdapter& adapter, StreamKey key) {
     const bool both = traits.wo == Traits::WoDomain::both;
     Stream stream(key);
     const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };
-    std::vector<Pair> there, back, through;
+    std::vector<Pair> forth, back, through;
     for (int i = 0; i < pair_count; ++i) {
-        there.push_back({direction(both && (i & 1)), direction(both && !(i & 1))});
-        back.push_back({there.back().wi, there.back().wo});
+        forth.push_back({direction(both && (i & 1)), direction(both && !(i & 1))});
+        back.push_back({forth.back().wi, forth.back().wo});
         through.push_back({direction(false), direction(true)});
     }
     std::vector<double> f(pair_count), g(pair_count), h(pair_count);
-    adapter.f(there, f);
+    adapter.f(forth, f);
     adapter.f(back, g);
     adapter.f(through, h);
     const auto everywhere = [](const std::vector<double>& v) {
@@ -166,7 +166,7 @@ BothWays both_ways(const SamplerAdapter& adapter, StreamKey key) {
     int positive = 0;
     for (std::size_t i = 0; i < f.size(); ++i) {
         positive += f[i] > 0;
-        phase = phase && nearly_equal(f[i] * std::fabs(there[i].wi.z), g[i] * std::fabs(there[i].wo.z));
+        phase = phase && nearly_equal(f[i] * std::fabs(forth[i].wi.z), g[i] * std::fabs(forth[i].wo.z));
         same = same && nearly_equal(f[i], g[i]);
     }
     if (phase) return BothWays::phase_function;
@@ -190,11 +190,11 @@ public:
         : source_(source), u_(u), w_(w) {}
 
     /// The jumps of these draws if number k moves inwards by the given distances.
-    std::vector<LocalStep> by_moving(const std::vector<std::size_t>& which, int k, const std::vector<double>& by) {
+    std::vector<LocalStep> by_moving(const std::vector<std::size_t>& which, int k, const std::vector<double>& moves) {
         std::vector<PrimarySample> v;
         for (std::size_t i : which) {
             v.push_back(u_[i]);
-            v.back()[k] += v.back()[k] < 0.5 ? by[i] : -by[i];
+            v.back()[k] += v.back()[k] < 0.5 ? moves[i] : -moves[i];
         }
         std::vector<Draw> draws(v.size());
         source_.draw(v, draws);
@@ -219,16 +219,16 @@ std::vector<LocalStep> jumps_along(Moved& moved, int k, std::size_t count) {
     std::vector<double> same(count), other(count, ulp);
     std::vector<std::size_t> open(count), closing;
     for (std::size_t i = 0; i < count; ++i) open[i] = i;
-    for (double by = ulp; by <= longest_move && !open.empty(); by *= 4) {
+    for (double distance = ulp; distance <= longest_move && !open.empty(); distance *= 4) {
         std::vector<std::size_t> still;
         const std::vector<LocalStep> d = moved.by_moving(open, k, other);
         for (std::size_t j = 0; j < open.size(); ++j) {
             const std::size_t i = open[j];
             if (d[j].jump == 0) {
-                same[i] = by;
-                other[i] = 4 * by;
+                same[i] = distance;
+                other[i] = 4 * distance;
                 still.push_back(i);
-            } else if (by > ulp) {
+            } else if (distance > ulp) {
                 out[i] = d[j];
                 closing.push_back(i);
             }
@@ -315,9 +315,9 @@ double of_neighbours(const std::vector<double>& near, const std::vector<double>&
     return near.size() >= enough && small > no_rounding && median_of(far) < 4 * small ? small : 0;
 }
 
-std::vector<Vec3d> beside(std::span<const Vec3d> at, double step) {
+std::vector<Vec3d> beside(std::span<const Vec3d> directions, double step) {
     std::vector<Vec3d> out;
-    for (Vec3d w : at) {
+    for (Vec3d w : directions) {
         const Frame<double> frame = frame_about(w);
         out.push_back(normalize(w + frame.t * step + frame.b * (0.7 * step)));
     }
@@ -341,7 +341,8 @@ std::vector<Vec3d> places_of(Source& source, const StreamKey& key) {
 EvaluationNoise look_for_noise(Source& source, const StreamKey& key) {
     EvaluationNoise out;
     if (!source.adapter.can_draw()) return out;  // a file has one answer for each direction
-    const std::vector<Vec3d> at = places_of(source, key), near = beside(at, fine_step), far = beside(at, coarse_step);
+    const std::vector<Vec3d> directions = places_of(source, key), near = beside(directions, fine_step),
+                             far = beside(directions, coarse_step);
     const SamplerAdapter& sampler = uncached(source.adapter);
     const auto answers = [&](const std::vector<Vec3d>& wi, bool of_f) {
         std::vector<Pair> pairs;
@@ -354,8 +355,8 @@ EvaluationNoise look_for_noise(Source& source, const StreamKey& key) {
     for (bool of_f : {false, true}) {
         if (of_f ? !source.has_f() : !source.has_density()) continue;
         double& scatter = of_f ? out.of_f : out.of_pdf;
-        const std::vector<double> first = answers(at, of_f);
-        scatter = of_repetition(differences(first, answers(at, of_f)));
+        const std::vector<double> first = answers(directions, of_f);
+        scatter = of_repetition(differences(first, answers(directions, of_f)));
         if (scatter > 0) continue;
         scatter = of_neighbours(differences(first, answers(near, of_f)), differences(first, answers(far, of_f)));
         out.hashed = out.hashed || scatter > 0;

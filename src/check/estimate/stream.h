@@ -107,7 +107,7 @@ inline std::vector<PrimarySample> first_numbers(const StreamKey& key, std::uint3
 // two-dimensional projections", new-joe-kuo-6.21201), each dimension Owen-scrambled by a hash: Laine and Karras 2011,
 // "Stratified sampling for stochastic transparency", with the constants of Vegdahl 2021.
 
-using SobolMatrix = std::array<std::array<std::uint32_t, 32>, PrimarySample::most>;
+using SobolMatrix = std::array<std::array<std::uint32_t, 32>, PrimarySample::most_numbers>;
 
 /// Directions v[dimension][bit].
 constexpr SobolMatrix sobol_matrix() {
@@ -115,8 +115,8 @@ constexpr SobolMatrix sobol_matrix() {
         int s;
         std::uint32_t a, m[5];
     };
-    constexpr Line lines[PrimarySample::most - 1] = {{1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}},
-        {4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}}, {5, 2, {1, 1, 5, 5, 17}}};
+    constexpr Line lines[PrimarySample::most_numbers - 1] = {{1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}},
+        {3, 2, {1, 1, 1}}, {4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}}, {5, 2, {1, 1, 5, 5, 17}}};
     SobolMatrix v{};
     for (int i = 0; i < 32; ++i) v[0][static_cast<std::size_t>(i)] = 1u << (31 - i);
     for (std::size_t d = 1; d < v.size(); ++d) {
@@ -211,7 +211,7 @@ public:
     }
 
 private:
-    std::array<std::uint32_t, PrimarySample::most> seeds_{};
+    std::array<std::uint32_t, PrimarySample::most_numbers> seeds_{};
     int count_;
     Resolution resolution_;
 };

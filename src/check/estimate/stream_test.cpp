@@ -60,18 +60,18 @@ TEST(CheckSobol, ARunOfPointsHasEachPointOfTheSequence) {
     points.points(333, run);
     for (std::uint32_t i = 0; i < run.size(); ++i) {
         const PrimarySample one = points.at(333 + i);
-        for (int d = 0; d < PrimarySample::most; ++d) EXPECT_EQ(run[i][d], one[d]) << i << " " << d;
+        for (int d = 0; d < PrimarySample::most_numbers; ++d) EXPECT_EQ(run[i][d], one[d]) << i << " " << d;
     }
     Stream seeds(StreamKey{7});
     for (int d = 0; d < 5; ++d) EXPECT_EQ(run[100][d], unit_number(owen_scrambled(sobol(433, d), seeds.bits()))) << d;
 }
 
 TEST(CheckSobol, EveryDimensionHasOnePointInEachOfItsIntervals) {
-    for (int d = 0; d < PrimarySample::most; ++d) EXPECT_EQ(most_in_a_cell(d, 0, 10, 0, 10, 77u, 0), 1) << d;
+    for (int d = 0; d < PrimarySample::most_numbers; ++d) EXPECT_EQ(most_in_a_cell(d, 0, 10, 0, 10, 77u, 0), 1) << d;
 }
 
 TEST(CheckSobol, PairsOfDimensionsHaveNoMoreThanEightPointsInACell) {  // t <= 3 of Joe and Kuo's first eight
-    for (int a = 0; a < PrimarySample::most; ++a)
+    for (int a = 0; a < PrimarySample::most_numbers; ++a)
         for (int b = 0; b < a; ++b) EXPECT_LE(most_in_a_cell(a, b, 5, 5, 10, 1u, 2u), 8) << a << " " << b;
 }
 

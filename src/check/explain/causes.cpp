@@ -37,38 +37,40 @@ struct Candidate {
 };
 
 std::optional<Candidate> constant_candidate(std::span<const Place> places) {
-    std::vector<MassRatio> all;
+    std::vector<MassRatio> ratios;
     bool any = false;
     for (const Place& place : places) {
-        all.push_back(mass_ratio(*place.at));
-        any = any || std::fabs(all.back().ratio - 1) > std::max(detection_floor, clear_errors * all.back().error);
+        ratios.push_back(mass_ratio(*place.at));
+        any = any || std::fabs(ratios.back().ratio - 1) > std::max(detection_floor, clear_errors * ratios.back().error);
     }
     if (!any) return {};
     Candidate out;
     out.hypothesis.name = "constant";
     out.hypothesis.free = true;
-    out.hypothesis.density = [](const SamplerAdapter& s, int t, std::span<const Pair> at, std::span<double> to) {
-        s.exact_pdf(t, at, to);
+    out.hypothesis.density = [](const SamplerAdapter& s, int t, std::span<const Pair> pairs, std::span<double> to) {
+        s.exact_pdf(t, pairs, to);
     };
-    for (const MassRatio& m : all) {
+    for (const MassRatio& m : ratios) {
         out.hypothesis.constants.push_back(1 / std::max(m.ratio, 1e-12));
         out.hypothesis.masses.push_back(out.hypothesis.constants.back());
     }
     score(out.hypothesis, places);
-    out.make_cause = [all, places](const Hypothesis&) {
-        const auto [low, high] = std::ranges::minmax_element(all, {}, &MassRatio::ratio);
+    out.make_cause = [ratios, places](const Hypothesis&) {
+        const auto [low, high] = std::ranges::minmax_element(ratios, {}, &MassRatio::ratio);
         double mean = 0, error = 0;
-        for (const MassRatio& m : all) {
-            mean += m.ratio / static_cast<double>(all.size());
+        for (const MassRatio& m : ratios) {
+            mean += m.ratio / static_cast<double>(ratios.size());
             error = std::max(error, m.error);
         }
         const double known_to = std::max(4 * error / mean, detection_floor);
         Cause cause{.factor = "constant", .exponent = mean, .error = error, .text = ""};
         if (high->ratio - low->ratio > 2 * known_to * mean) {
-            const auto at = [&](auto it) { return places[static_cast<std::size_t>(it - all.begin())].where(); };
+            const auto place_of = [&](auto it) {
+                return places[static_cast<std::size_t>(it - ratios.begin())].where();
+            };
             cause.text = fmt::format("p is a constant times what is drawn at each w_o, from {}{} to {}{}.",
-                with_error(low->ratio, 1.96 * low->error), at(low), with_error(high->ratio, 1.96 * high->error),
-                at(high));
+                with_error(low->ratio, 1.96 * low->error), place_of(low), with_error(high->ratio, 1.96 * high->error),
+                place_of(high));
             return cause;
         }
         const std::string name = number_name(mean, known_to, places[0].traits);
@@ -83,8 +85,8 @@ std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std:
     const double exponent = f.exponent;
     std::string out;
     if (f.name == "a constant across the surface") {
-        const double by = math::exp(-f.fitted), half = 1.96 * f.error * by;
-        out = fmt::format("Across the surface p is {} times what is drawn{}.", with_error(by, half),
+        const double factor = math::exp(-f.fitted), half = 1.96 * f.error * factor;
+        out = fmt::format("Across the surface p is {} times what is drawn{}.", with_error(factor, half),
             h.constants.empty() || std::fabs(h.constants[0] - 1) < 0.01 ? ", and right on the side of w_o"
                                                                         : ", relative to the side of w_o");
         out +=
@@ -93,19 +95,21 @@ std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std:
         return out;
     }
     const std::string power = std::fabs(exponent) == 1 ? "" : fmt::format("^{:g}", std::fabs(exponent));
-    double least = 1e300, most = 0;
+    double least = 1e300, greatest = 0;
     for (double c : h.constants) {
         least = std::min(least, c);
-        most = std::max(most, c);
+        greatest = std::max(greatest, c);
     }
     std::string times;
-    if (most < 1.02 * least && std::fabs(least - 1) > 0.01) {
+    if (greatest < 1.02 * least && std::fabs(least - 1) > 0.01) {
         const std::string name = number_name(least, 0.01, places[0].traits);
         times = fmt::format(" and a constant {:.4g}{}", least, name.empty() ? "" : " = " + name);
-    } else if (most > 1.02 * least) times = " and a constant at each w_o";
-    return fmt::format("Draws follow p {} {}{}{} (fitted exponent {}): {} {} in p.", exponent > 0 ? "times" : "over",
-        f.name, power, times, with_error(f.fitted, 1.96 * f.error), f.name,
-        exponent > 0 ? "is missing" : "occurs once too often");
+    } else if (greatest > 1.02 * least) times = " and a constant at each w_o";
+    std::string meaning = f.name == "cosine at the light" ? plane_words(-exponent) : "";
+    if (meaning.empty())
+        meaning = fmt::format("{}{} {} in p", f.name, power, exponent > 0 ? "is missing" : "is once too often");
+    return fmt::format("Draws follow p {} {}{}{} (fitted exponent {}): {}.", exponent > 0 ? "times" : "over", f.name,
+        power, times, with_error(f.fitted, 1.96 * f.error), meaning);
 }
 
 Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
@@ -168,10 +172,11 @@ Candidate candidate_of(const Hypothesis& frame) {
 Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, bool about_z) {
     Candidate out{turn.hypothesis, {}, about_z ? enough_for_frame : enough_for_fit};
     out.make_cause = [turn, places, about_z](const Hypothesis& h) {
-        std::size_t most = 0;
+        std::size_t largest = 0;
         for (std::size_t k = 1; k < turn.turns.size(); ++k)
-            if (dot(turn.turns[k].by, turn.turns[k].by) > dot(turn.turns[most].by, turn.turns[most].by)) most = k;
-        const Turn& t = turn.turns[most];
+            if (dot(turn.turns[k].by, turn.turns[k].by) > dot(turn.turns[largest].by, turn.turns[largest].by))
+                largest = k;
+        const Turn& t = turn.turns[largest];
         const double angle = std::sqrt(dot(t.by, t.by));
         const Vec3d axis = t.by * (1 / std::max(angle, 1e-300));
         Cause cause{.factor = about_z ? "turned about z" : "turned", .exponent = angle, .error = t.error, .text = ""};
@@ -183,7 +188,7 @@ Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, boo
                 std::fabs(t.by.z) > 0 ? fmt::format(" = 2 pi / {:.1f}", two_pi / std::fabs(t.by.z)) : "");
         else
             cause.text = fmt::format("Draws are those of p turned by {} rad about ({:.3f}, {:.3f}, {:.3f}){}.",
-                with_error(angle, 1.96 * t.error), axis.x, axis.y, axis.z, places[most].where());
+                with_error(angle, 1.96 * t.error), axis.x, axis.y, axis.z, places[largest].where());
         if (h.explained < 0.9)
             cause.text += fmt::format(" That explains {:.0f} % of the difference.", 100 * h.explained);
         return cause;
@@ -227,8 +232,8 @@ void add_if(Candidates& to, std::optional<Candidate> c) {
     if (c) to.push_back(std::move(*c));
 }
 
-void sort_by_gain(Candidates& all) {
-    std::ranges::sort(all, std::greater<>(), [](const Candidate& c) { return c.hypothesis.gain; });
+void sort_by_gain(Candidates& candidates) {
+    std::ranges::sort(candidates, std::greater<>(), [](const Candidate& c) { return c.hypothesis.gain; });
 }
 
 /// Causes without a fitted number except a constant, or a share of uniform draws, which may look like one.
@@ -266,10 +271,10 @@ Candidates fitted_candidates(std::span<const Place> places, std::span<const Leak
 }
 
 /// The candidate that passes, if no other of similar likelihood passes too.
-std::optional<Cause> passing(Candidates& all, std::span<const Place> places, bool& several) {
+std::optional<Cause> passing(Candidates& candidates, std::span<const Place> places, bool& several) {
     Candidate* found = nullptr;
     std::size_t checks = 0;
-    for (Candidate& c : all) {
+    for (Candidate& c : candidates) {
         if (found) {
             const double less = found->hypothesis.gain - c.hypothesis.gain;
             const double by_chance = least_lead / std::min(found->hypothesis.draws, c.hypothesis.draws);
@@ -298,9 +303,9 @@ std::optional<Cause> passing(Candidates& all, std::span<const Place> places, boo
 }
 
 /// A cause for most of a difference that no candidate explains completely, at least twice as much as any other.
-std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
+std::optional<Cause> in_part(Candidates& candidates, std::span<const Place> places) {
     Candidate* best = nullptr;
-    for (Candidate& c : all) {
+    for (Candidate& c : candidates) {
         if (c.in_part > 1 || !c.clear) continue;
         score(c.hypothesis, places);
         if (c.hypothesis.gain > clear_errors * c.hypothesis.error && c.hypothesis.explained > c.in_part &&
@@ -308,7 +313,7 @@ std::optional<Cause> in_part(Candidates& all, std::span<const Place> places) {
             best = &c;
     }
     if (!best) return {};
-    for (const Candidate& c : all) {
+    for (const Candidate& c : candidates) {
         if (&c == best || c.in_part > 1 || c.hypothesis.explained < best->hypothesis.explained / 2) continue;
         if (!are_equivalent(best->hypothesis, c.hypothesis, places)) return {};
     }
@@ -371,7 +376,7 @@ bool unusable_draws_explain(std::span<const Place> places) {
     bool any = false;
     for (const Place& place : places) {
         const DrawChecks& c = place.at->observations.checks;
-        const auto share = [](std::uint64_t a, double of) { return static_cast<double>(a) / std::max(of, 1.0); };
+        const auto share = [](std::uint64_t a, double total) { return static_cast<double>(a) / std::max(total, 1.0); };
         // Unusable draws are counted among all draws. Where p is 0, only a part of the draws that contradict pdf(w) is
         // compared.
         const double unusable =
@@ -379,9 +384,9 @@ bool unusable_draws_explain(std::span<const Place> places) {
                      at_zero = share(c.zero.times, static_cast<double>(c.differing_compared)) *
             share(c.differing, static_cast<double>(c.followed));
         const MassRatio m = mass_ratio(*place.at);
-        const double off = m.claimed - m.drawn - (unusable - at_zero);
+        const double unexplained = m.claimed - m.drawn - (unusable - at_zero);
         any = any || unusable + at_zero > detection_floor;
-        if (std::fabs(off) > 0.2 * (unusable + at_zero) + 4 * m.error * m.drawn + detection_floor) return false;
+        if (std::fabs(unexplained) > 0.2 * (unusable + at_zero) + 4 * m.error * m.drawn + detection_floor) return false;
     }
     return any;
 }

@@ -136,6 +136,9 @@ std::optional<Cause> warp_cause(std::span<const Place> places);
 /// Ratios of the draws to p with a fitted parameter: Smith's G1 of the other direction, and the squared distance or the
 /// cosine at a light in a plane (explain/known_forms.cpp).
 std::optional<Cause> cause_of_known_form(std::span<const KnownRatio> ratios, std::span<const Place> places);
+/// What is missing in p, or too often there, if draws follow p over the cosine at a flat light to this power; empty if
+/// no factor is known (explain/known_forms.cpp).
+std::string plane_words(double power);
 
 // ---- Lobes selected by one random number: each is drawn separately, and p is compared with their sum.
 

@@ -18,28 +18,28 @@ using Coordinates = std::array<double, Domain::most_coordinates>;
 constexpr std::array symbols = {"x", "y", "z"};
 
 /// Sets `out` to the density of points whose images by `move` have the density p. change: of the measure by it.
-void moved_density(const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out,
+void moved_density(const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out,
     const Move& move, double change) {
     const std::shared_ptr<const DomainChart> chart = s.traits().domain;
     const std::size_t count = chart->domain().coordinates();
     constexpr std::array<double, Domain::most_dimensions + 1> middle = {0.5, 0.5, 0.5, 0.5, 0.5};
-    std::vector<Pair> there(at.begin(), at.end());
-    std::vector<double> factor(at.size());
-    for (std::size_t i = 0; i < at.size(); ++i) {
+    std::vector<Pair> images(pairs.begin(), pairs.end());
+    std::vector<double> factor(pairs.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
         Coordinates x{}, again{};
         const std::span<double> point = std::span(x).first(count);
-        factor[i] = change * chart->point(at[i].wi, point);
+        factor[i] = change * chart->point(pairs[i].wi, point);
         move(point);
         if (!chart->domain().fault(point).empty()) {
             factor[i] = 0;
             continue;
         }
-        there[i].wi = chart->direction(point, std::span(middle).first(chart->spreads()));
-        const double image = chart->point(there[i].wi, std::span(again).first(count));
+        images[i].wi = chart->direction(point, std::span(middle).first(chart->spreads()));
+        const double image = chart->point(images[i].wi, std::span(again).first(count));
         factor[i] = image > 0 ? factor[i] / image : 0;
     }
-    s.exact_pdf(technique, there, out);
-    for (std::size_t i = 0; i < at.size(); ++i) out[i] *= factor[i];
+    s.exact_pdf(technique, images, out);
+    for (std::size_t i = 0; i < pairs.size(); ++i) out[i] *= factor[i];
 }
 
 /// The same with 0 where p is 0 and draws there count as no samples.
@@ -47,11 +47,11 @@ Hypothesis by_moving(std::string name, Move move, double change, bool at_zero) {
     Hypothesis h;
     h.name = std::move(name);
     h.density = [move = std::move(move), change, at_zero](
-                    const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out) {
-        moved_density(s, technique, at, out, move, change);
+                    const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out) {
+        moved_density(s, technique, pairs, out, move, change);
         if (at_zero) return;
-        std::vector<double> p(at.size());
-        s.exact_pdf(technique, at, p);
+        std::vector<double> p(pairs.size());
+        s.exact_pdf(technique, pairs, p);
         for (std::size_t i = 0; i < p.size(); ++i)
             if (!(p[i] > 0)) out[i] = 0;
     };
@@ -94,10 +94,10 @@ void add_moves(std::vector<NamedMove>& to, const DomainPart& part, std::size_t c
                 add_reflection(to, "x mirrored", c, std::isfinite(part.to) ? part.from + part.to : 0);
             break;
         case Kind::set:
-            for (const int by : {1, -1})
-                to.push_back({fmt::format("entry i {} 1 taken for entry i (off by one)", by > 0 ? '+' : '-'),
+            for (const int shift : {1, -1})
+                to.push_back({fmt::format("entry i {} 1 taken for entry i (off by one)", shift > 0 ? '+' : '-'),
                     [=, count = static_cast<double>(part.count)](
-                        std::span<double> x) { x[c] = std::fmod(x[c] + by + count, count); }});
+                        std::span<double> x) { x[c] = std::fmod(x[c] + shift + count, count); }});
             add_reflection(to, "the entries in reverse order", c, part.count - 1.0);
             break;
         default: break;
@@ -213,7 +213,7 @@ double mean_log_of(const Hypothesis& h, std::span<const Place> places, std::size
 
 std::optional<FittedMove> fitted_move(const MoveFamily& family, std::span<const Place> places) {
     constexpr int steps = 40;
-    constexpr std::size_t few = 512, all = 1u << 20;
+    constexpr std::size_t few = 512, total = 1u << 20;
     const double step = (family.to - family.from) / steps;
     double best = -1e300, value = 0;
     for (int k = 0; k <= steps; ++k) {
@@ -226,25 +226,25 @@ std::optional<FittedMove> fitted_move(const MoveFamily& family, std::span<const 
     constexpr double golden = 0.6180339887498949;
     double low = value - step, high = value + step;
     double a = high - golden * (high - low), b = low + golden * (high - low);
-    double of_a = mean_log_of(family.at(a), places, all), of_b = mean_log_of(family.at(b), places, all);
+    double of_a = mean_log_of(family.at(a), places, total), of_b = mean_log_of(family.at(b), places, total);
     for (int k = 0; k < 16; ++k) {
         if (of_a > of_b) {
             high = b;
             b = a;
             of_b = of_a;
-            of_a = mean_log_of(family.at(a = high - golden * (high - low)), places, all);
+            of_a = mean_log_of(family.at(a = high - golden * (high - low)), places, total);
         } else {
             low = a;
             a = b;
             of_a = of_b;
-            of_b = mean_log_of(family.at(b = low + golden * (high - low)), places, all);
+            of_b = mean_log_of(family.at(b = low + golden * (high - low)), places, total);
         }
     }
     FittedMove out;
     out.value = (low + high) / 2;
-    const double near = step / 4, here = mean_log_of(family.at(out.value), places, all);
-    const double bend = (2 * here - mean_log_of(family.at(out.value - near), places, all) -
-                            mean_log_of(family.at(out.value + near), places, all)) /
+    const double near = step / 4, here = mean_log_of(family.at(out.value), places, total);
+    const double bend = (2 * here - mean_log_of(family.at(out.value - near), places, total) -
+                            mean_log_of(family.at(out.value + near), places, total)) /
         (near * near);
     double draws = 0;
     for (const Place& place : places) draws += static_cast<double>(place.w.size());

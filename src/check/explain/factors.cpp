@@ -114,10 +114,10 @@ std::vector<Factor> factors_for(const Traits& traits, const CaseLighting& light)
 
 std::string number_name(double value, double known_to, const Traits& traits) {
     constexpr double pi = two_pi / 2;
-    std::vector<std::pair<std::string, double>> known = {
+    std::vector<std::pair<std::string, double>> constants = {
         {"2", 2}, {"4", 4}, {"pi", pi}, {"2 pi", 2 * pi}, {"4 pi", 4 * pi}, {"pi/2", pi / 2}, {"2 pi^2", 2 * pi * pi}};
-    if (traits.eta && traits.eta->x == traits.eta->z) known.push_back({"eta^2", traits.eta->x * traits.eta->x});
-    for (const auto& [name, number] : known) {
+    if (traits.eta && traits.eta->x == traits.eta->z) constants.push_back({"eta^2", traits.eta->x * traits.eta->x});
+    for (const auto& [name, number] : constants) {
         if (std::fabs(number - 1) < 10 * known_to) continue;
         if (std::fabs(value / number - 1) < known_to) return name;
         if (name == "pi/2" && std::fabs(value * number - 1) < known_to) return "2/pi";
@@ -159,8 +159,8 @@ double slope_of(std::vector<std::pair<double, double>> points) {
         }
         if (!(xx > 1e-6 * n)) return 0;
         slope = xy / xx;
-        const auto off = [&](const auto& p) { return std::fabs(p.second - y - slope * (p.first - x)); };
-        std::ranges::sort(points, {}, off);
+        const auto residual = [&](const auto& p) { return std::fabs(p.second - y - slope * (p.first - x)); };
+        std::ranges::sort(points, {}, residual);
         points.resize(points.size() * 9 / 10);
     }
     return slope;

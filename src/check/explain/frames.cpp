@@ -56,9 +56,9 @@ constexpr NamedFrame named_frames[] = {{"the frame mirrored in y", [](Vec3d w) {
 enum Which { of_wo = 1, of_wi = 2, of_both = 3 };
 
 /// Sets the density to 0 where p is 0: the pdf of a draw there is 0, so it counts as no sample.
-void clear_where_zero(const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> density) {
-    std::vector<double> p(at.size());
-    s.exact_pdf(technique, at, p);
+void clear_where_zero(const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> density) {
+    std::vector<double> p(pairs.size());
+    s.exact_pdf(technique, pairs, p);
     for (std::size_t i = 0; i < p.size(); ++i)
         if (!(p[i] > 0)) density[i] = 0;
 }
@@ -68,15 +68,15 @@ Hypothesis in_frame(const NamedFrame& frame, int which, bool at_zero) {
     const char* suffix[] = {"", " for w_o", " for w_i", ""};
     h.name = std::string(frame.name) + suffix[frame.of_lights ? 0 : which];
     h.density = [frame, which, at_zero](
-                    const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out) {
-        std::vector<Pair> there(at.begin(), at.end());
-        for (Pair& pair : there) {
+                    const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out) {
+        std::vector<Pair> images(pairs.begin(), pairs.end());
+        for (Pair& pair : images) {
             if (which & of_wo) pair.wo = frame.of(pair.wo);
             if (which & of_wi) pair.wi = frame.of(pair.wi);
         }
-        s.exact_pdf(technique, there, out);
-        for (std::size_t i = 0; frame.area && i < at.size(); ++i) out[i] *= frame.area(at[i].wi);
-        if (!at_zero) clear_where_zero(s, technique, at, out);
+        s.exact_pdf(technique, images, out);
+        for (std::size_t i = 0; frame.area && i < pairs.size(); ++i) out[i] *= frame.area(pairs[i].wi);
+        if (!at_zero) clear_where_zero(s, technique, pairs, out);
     };
     return h;
 }
@@ -98,10 +98,10 @@ void score_by_tree(const NamedFrame& frame, std::span<const Place> places, Hypot
             const double count = place.at->observations.counts[l];
             if (!(count > 0)) continue;
             const Vec3d w = from_chart(tree.rect(tree.leaves()[l]).at(0.5, 0.5));
-            const double there = tree.leaves()[tree.find(to_chart(frame.of(w)))].q * (frame.area ? frame.area(w) : 1);
-            const double by = place.log_of(there) - place.log_of(tree.leaves()[l].q);
-            gain.sum += count * by;
-            gain.square += count * by * by;
+            const double density = tree.leaves()[tree.find(to_chart(frame.of(w)))].q * (frame.area ? frame.area(w) : 1);
+            const double log_ratio = place.log_of(density) - place.log_of(tree.leaves()[l].q);
+            gain.sum += count * log_ratio;
+            gain.square += count * log_ratio * log_ratio;
             draws += count;
         }
     }
@@ -111,41 +111,43 @@ void score_by_tree(const NamedFrame& frame, std::span<const Place> places, Hypot
     h.error = std::sqrt(std::max(gain.square / draws - h.gain * h.gain, 0.0) / draws);
 }
 
-Vec3d rotated(Vec3d w, Vec3d by) {
-    const double angle = std::sqrt(dot(by, by));
+Vec3d rotated(Vec3d w, Vec3d rotation) {
+    const double angle = std::sqrt(dot(rotation, rotation));
     if (!(angle > 0)) return w;
-    const Vec3d axis = by * (1 / angle);
+    const Vec3d axis = rotation * (1 / angle);
     const math::SinCos r = math::sincos(angle);
     return w * r.cos + cross(axis, w) * r.sin + axis * (dot(axis, w) * (1 - r.cos));
 }
 
-/// Mean log likelihood of the draws if they are those of p rotated by `by`.
+/// Mean log likelihood of the draws if they are those of p rotated by `rotation`.
 class Likelihood {
 public:
-    Likelihood(const Place& place, std::size_t most) : place_(place), count_(std::min(most, place.w.size())) {}
-    double by_tree(Vec3d by) const {
+    Likelihood(const Place& place, std::size_t largest_count)
+        : place_(place), count_(std::min(largest_count, place.w.size())) {}
+    double by_tree(Vec3d rotation) const {
         const Tree& tree = place_.at->plan->tree;
         std::vector<double> q(count_);
-        for (std::size_t i = 0; i < count_; ++i) q[i] = tree.leaves()[tree.find(to_chart(rotated(place_.w[i], -by)))].q;
+        for (std::size_t i = 0; i < count_; ++i)
+            q[i] = tree.leaves()[tree.find(to_chart(rotated(place_.w[i], -rotation)))].q;
         return place_.mean_log(q);
     }
     /// with_wo: w_o is rotated too, as if the frame of the surface is.
-    double by_p(Vec3d by, bool with_wo = false) const {
-        const Vec3d wo = with_wo ? rotated(place_.check_case->wo, -by) : place_.check_case->wo;
-        std::vector<Pair> at;
-        for (std::size_t i = 0; i < count_; ++i) at.push_back({wo, rotated(place_.w[i], -by)});
+    double by_p(Vec3d rotation, bool with_wo = false) const {
+        const Vec3d wo = with_wo ? rotated(place_.check_case->wo, -rotation) : place_.check_case->wo;
+        std::vector<Pair> pairs;
+        for (std::size_t i = 0; i < count_; ++i) pairs.push_back({wo, rotated(place_.w[i], -rotation)});
         std::vector<double> p(count_);
-        place_.adapter().exact_pdf(place_.technique(), at, p);
+        place_.adapter().exact_pdf(place_.technique(), pairs, p);
         for (double& v : p)
             if (!std::isfinite(v)) v = 0;
         return place_.mean_log(p);
     }
     /// Standard error of the angle, from the curvature of the likelihood.
-    double error_of(Vec3d by, double step, bool with_wo = false) const {
-        const double angle = std::sqrt(dot(by, by));
-        const Vec3d axis = angle > 0 ? by * (1 / angle) : Vec3d{0, 0, 1};
-        const double here = by_p(by, with_wo), less = by_p(by - axis * step, with_wo),
-                     more = by_p(by + axis * step, with_wo);
+    double error_of(Vec3d rotation, double step, bool with_wo = false) const {
+        const double angle = std::sqrt(dot(rotation, rotation));
+        const Vec3d axis = angle > 0 ? rotation * (1 / angle) : Vec3d{0, 0, 1};
+        const double here = by_p(rotation, with_wo), less = by_p(rotation - axis * step, with_wo),
+                     more = by_p(rotation + axis * step, with_wo);
         const double bend = (2 * here - less - more) / (step * step);
         return bend > 0 ? 1 / std::sqrt(bend * static_cast<double>(count_)) : step;
     }
@@ -183,25 +185,25 @@ double width_of(const Place& place) { return std::min(1.0, 0.3 * math::exp(-plac
 /// Any rotation of a symmetric lobe about its own axis has the same likelihood. The twist is removed and the rest is
 /// searched again, unless the likelihood of all draws is higher with the twist by two units of log likelihood.
 Vec3d without_twist(
-    Vec3d by, std::span<const Vec3d, 3> axes, double width, const Likelihood& fine, const Likelihood& all) {
+    Vec3d rotation, std::span<const Vec3d, 3> axes, double width, const Likelihood& fine, const Likelihood& whole) {
     const std::span<const Vec3d> across = axes.first(2);
-    Vec3d level = by - axes[2] * dot(by, axes[2]);
+    Vec3d level = rotation - axes[2] * dot(rotation, axes[2]);
     level = climb(level, across, width / 8, width / 256, [&](Vec3d v) { return fine.by_p(v); });
-    level = climb(level, across, width / 256, width / 1024, [&](Vec3d v) { return all.by_p(v); });
-    return all.by_p(level) + 2 / all.count() >= all.by_p(by) ? level : by;
+    level = climb(level, across, width / 256, width / 1024, [&](Vec3d v) { return whole.by_p(v); });
+    return whole.by_p(level) + 2 / whole.count() >= whole.by_p(rotation) ? level : rotation;
 }
 
 /// A nearby whole part of a turn, 2 pi / n, that is as likely: a column of a table.
 template <class L> double whole_columns(double angle, const L& likelihood) {
     constexpr int neighbours = 3;
     const double n = std::round(two_pi / std::fabs(angle));
-    double best = angle, most = likelihood(angle, false);
+    double best = angle, greatest = likelihood(angle, false);
     for (int k = -neighbours; k <= neighbours; ++k) {
         const double to = std::copysign(two_pi / std::max(n + k, 2.0), angle);
         if (std::fabs(to - angle) > 0.1 * std::fabs(angle)) continue;
-        if (const double l = likelihood(to, false); l >= most) {
+        if (const double l = likelihood(to, false); l >= greatest) {
             best = to;
-            most = l;
+            greatest = l;
         }
     }
     return best;
@@ -210,18 +212,19 @@ template <class L> double whole_columns(double angle, const L& likelihood) {
 Hypothesis turned_by(std::span<const Place> places, const std::vector<Turn>& turns, bool with_wo = false) {
     Hypothesis h;
     h.name = "turned";
-    std::vector<std::pair<Vec3d, Vec3d>> by;  // w_o and its rotation
-    for (std::size_t k = 0; k < places.size(); ++k) by.push_back({places[k].check_case->wo, turns[k].by});
-    h.density = [by, with_wo, at_zero = places[0].draws_at_zero()](
-                    const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out) {
-        std::vector<Pair> there(at.begin(), at.end());
-        for (Pair& pair : there) {
-            const auto of = std::ranges::max_element(by, {}, [&](const auto& one) { return dot(one.first, pair.wo); });
-            pair.wi = rotated(pair.wi, -of->second);
-            if (with_wo) pair.wo = rotated(pair.wo, -of->second);
+    std::vector<std::pair<Vec3d, Vec3d>> rotations;  // w_o and its rotation
+    for (std::size_t k = 0; k < places.size(); ++k) rotations.push_back({places[k].check_case->wo, turns[k].by});
+    h.density = [rotations, with_wo, at_zero = places[0].draws_at_zero()](
+                    const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out) {
+        std::vector<Pair> images(pairs.begin(), pairs.end());
+        for (Pair& pair : images) {
+            const auto nearest =
+                std::ranges::max_element(rotations, {}, [&](const auto& one) { return dot(one.first, pair.wo); });
+            pair.wi = rotated(pair.wi, -nearest->second);
+            if (with_wo) pair.wo = rotated(pair.wo, -nearest->second);
         }
-        s.exact_pdf(technique, there, out);
-        if (!at_zero) clear_where_zero(s, technique, at, out);
+        s.exact_pdf(technique, images, out);
+        if (!at_zero) clear_where_zero(s, technique, pairs, out);
     };
     return h;
 }
@@ -254,12 +257,12 @@ std::optional<FoundTurn> turn_hypothesis(std::span<const Place> places) {
         const Frame<double> frame = frame_about(length > 0 ? middle * (1 / length) : Vec3d{0, 0, 1});
         const Vec3d axes[] = {frame.t, frame.b, frame.n};
         const double width = width_of(place);
-        const Likelihood coarse(place, 1024), fine(place, draws_to_climb), all(place, place.w.size());
-        Vec3d by = climb({}, axes, width, width / 16, [&](Vec3d v) { return coarse.by_tree(v); });
-        by = climb(by, axes, width / 8, width / 256, [&](Vec3d v) { return fine.by_p(v); });
-        by = climb(by, axes, width / 256, width / 1024, [&](Vec3d v) { return all.by_p(v); });
-        by = without_twist(by, axes, width, fine, all);
-        out.turns.push_back({by, all.error_of(by, width / 16)});
+        const Likelihood coarse(place, 1024), fine(place, draws_to_climb), whole(place, place.w.size());
+        Vec3d rotation = climb({}, axes, width, width / 16, [&](Vec3d v) { return coarse.by_tree(v); });
+        rotation = climb(rotation, axes, width / 8, width / 256, [&](Vec3d v) { return fine.by_p(v); });
+        rotation = climb(rotation, axes, width / 256, width / 1024, [&](Vec3d v) { return whole.by_p(v); });
+        rotation = without_twist(rotation, axes, width, fine, whole);
+        out.turns.push_back({rotation, whole.error_of(rotation, width / 16)});
     }
     out.hypothesis = turned_by(places, out.turns);
     score(out.hypothesis, places);
@@ -268,7 +271,7 @@ std::optional<FoundTurn> turn_hypothesis(std::span<const Place> places) {
 
 std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places) {
     constexpr int angles = 720;
-    double best = -1e300, at = 0;
+    double best = -1e300, best_angle = 0;
     std::vector<Likelihood> coarse, fine;
     for (const Place& place : places) {
         coarse.emplace_back(place, 1024);
@@ -283,14 +286,17 @@ std::optional<FoundTurn> azimuth_hypothesis(std::span<const Place> places) {
     for (int k = 1; k < angles; ++k)
         if (const double l = sum(k * two_pi / angles, true); l > best) {
             best = l;
-            at = k * two_pi / angles;
+            best_angle = k * two_pi / angles;
         }
     const Vec3d axis[] = {{0, 0, 1}};
-    at = climb({0, 0, at}, axis, two_pi / angles / 2, two_pi / angles / 64, [&](Vec3d v) { return sum(v.z, false); }).z;
-    if (at > two_pi / 2) at -= two_pi;
-    at = whole_columns(at, sum);
+    best_angle = climb({0, 0, best_angle}, axis, two_pi / angles / 2, two_pi / angles / 64, [&](Vec3d v) {
+        return sum(v.z, false);
+    }).z;
+    if (best_angle > two_pi / 2) best_angle -= two_pi;
+    best_angle = whole_columns(best_angle, sum);
     FoundTurn out;
-    for (const Likelihood& l : fine) out.turns.push_back({{0, 0, at}, l.error_of({0, 0, at}, two_pi / angles)});
+    for (const Likelihood& l : fine)
+        out.turns.push_back({{0, 0, best_angle}, l.error_of({0, 0, best_angle}, two_pi / angles)});
     out.hypothesis = turned_by(places, out.turns);
     score(out.hypothesis, places);
     return out.hypothesis.helps() ? std::optional(out) : std::nullopt;
@@ -303,9 +309,9 @@ std::optional<FoundTurn> frame_turn_hypothesis(std::span<const Place> places) {
         coarse.emplace_back(place, draws_to_climb);
         fine.emplace_back(place, place.w.size());
     }
-    const auto sum = [](const std::vector<Likelihood>& all, double angle) {
+    const auto sum = [](const std::vector<Likelihood>& likelihoods, double angle) {
         double out = 0;
-        for (const Likelihood& l : all) out += l.by_p({0, 0, angle}, true);
+        for (const Likelihood& l : likelihoods) out += l.by_p({0, 0, angle}, true);
         return out;
     };
     double best = -1e300, angle = 0;

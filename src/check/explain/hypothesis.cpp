@@ -16,9 +16,9 @@ class Supposed : public ForwardingAdapter {
 public:
     Supposed(std::shared_ptr<const SamplerAdapter> inner, const Hypothesis& h, double constant)
         : ForwardingAdapter(std::move(inner)), h_(h), constant_(constant) {}
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override { exact_pdf(t, at, out); }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        h_.density(inner(), t, at, out);
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override { exact_pdf(t, pairs, out); }
+    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        h_.density(inner(), t, pairs, out);
         for (double& v : out) v *= constant_;
     }
     bool has_f() const override { return false; }
@@ -60,17 +60,17 @@ void draw_at(Place& place, std::uint32_t count) {
     std::vector<Draw> draws(count);
     source.draw(u, draws);
     std::vector<Vec3d> w;
-    std::vector<const Draw*> of;
+    std::vector<const Draw*> usable;
     for (const Draw& d : draws)
         if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z) && dot(d.wi, d.wi) > 0) {
             w.push_back(d.wi);
-            of.push_back(&d);
+            usable.push_back(&d);
         }
     std::vector<double> p(w.size());
     source.density(w, p);
     const CheckAt& c = *place.at;
     for (std::size_t i = 0; i < w.size(); ++i) {
-        if (!is_direction(source.traits, *of[i], p[i])) continue;
+        if (!is_direction(source.traits, *usable[i], p[i])) continue;
         place.w.push_back(w[i]);
         place.p.push_back(p[i]);
         const std::size_t l = c.plan->tree.find(to_chart(w[i]));
@@ -91,7 +91,7 @@ void draw_at(Place& place, std::uint32_t count) {
 MassRatio mass_ratio(const CheckAt& c) {
     const Observations& o = c.observations;
     const double n = std::max(o.independent, 1.0);
-    const auto by = [&](int q) {
+    const auto ratio_of = [&](int q) {
         const Sums& s = o.sums[static_cast<std::size_t>(q)];
         const Estimate& claimed = c.integrals.sums[static_cast<std::size_t>(q)];
         const double drawn = s.sum / n, ratio = drawn > 0 ? claimed.value / drawn : 0;
@@ -99,8 +99,8 @@ MassRatio mass_ratio(const CheckAt& c) {
         const double error = drawn > 0 ? std::sqrt(claimed.variance + ratio * ratio * variance) / drawn : 1;
         return MassRatio{.drawn = drawn, .claimed = claimed.value, .ratio = ratio, .error = error};
     };
-    MassRatio out = by(mass);
-    const MassRatio other = by(bridge);
+    MassRatio out = ratio_of(mass);
+    const MassRatio other = ratio_of(bridge);
     if (other.error < out.error / 2) {
         out.ratio = other.ratio;
         out.error = other.error;
@@ -119,8 +119,8 @@ double Place::mean_log(std::span<const double> density) const {
     return density.empty() ? 0 : sum / static_cast<double>(density.size());
 }
 
-std::vector<Place> places_of(
-    std::span<const CheckCase> check_cases, const CheckOutcome& outcome, std::size_t most, std::uint32_t count) {
+std::vector<Place> places_of(std::span<const CheckCase> check_cases, const CheckOutcome& outcome,
+    std::size_t largest_count, std::uint32_t count) {
     std::vector<Place> wrong;
     for (std::size_t k = 0; k < outcome.at.size(); ++k)
         for (const CheckAt& c : outcome.at[k])
@@ -130,8 +130,8 @@ std::vector<Place> places_of(
             }
     // Selects entries over the whole list, which goes from n to grazing and below.
     std::vector<Place> out;
-    for (std::size_t k = 0; k < std::min(most, wrong.size()); ++k)
-        out.push_back(wrong[(2 * k + 1) * wrong.size() / (2 * std::min(most, wrong.size()))]);
+    for (std::size_t k = 0; k < std::min(largest_count, wrong.size()); ++k)
+        out.push_back(wrong[(2 * k + 1) * wrong.size() / (2 * std::min(largest_count, wrong.size()))]);
     for (Place& p : out) draw_at(p, count);
     std::erase_if(out, [](const Place& p) { return p.w.size() < 64; });
     return out;
@@ -139,21 +139,21 @@ std::vector<Place> places_of(
 
 void score(Hypothesis& h, std::span<const Place> places) {
     Sums gain;
-    double left = 0, before = 0, draws = 0;
+    double after = 0, before = 0, draws = 0;
     for (std::size_t k = 0; k < places.size(); ++k) {
         const Place& place = places[k];
         const MassRatio masses = mass_ratio(*place.at);
         const double more = ((h.masses.empty() ? 1 : h.masses[k]) - 1) * masses.claimed / masses.drawn;
-        std::vector<Pair> at;
-        for (Vec3d w : place.w) at.push_back({place.check_case->wo, w});
-        std::vector<double> p(at.size());
-        h.density(place.adapter(), place.technique(), at, p);
+        std::vector<Pair> pairs;
+        for (Vec3d w : place.w) pairs.push_back({place.check_case->wo, w});
+        std::vector<double> p(pairs.size());
+        h.density(place.adapter(), place.technique(), pairs, p);
         for (std::size_t i = 0; i < p.size(); ++i) {
             const double of_p = place.log_of(place.p[i]), of_h = place.log_of(p[i] * h.constant(k));
             const double of_draws = place.log_of(place.implied[i]);
             gain.add(of_h - of_p - more);
             ++draws;
-            left += of_draws - of_h;
+            after += of_draws - of_h;
             before += of_draws - of_p;
         }
     }
@@ -161,18 +161,18 @@ void score(Hypothesis& h, std::span<const Place> places) {
     h.gain = gain.sum / draws;
     h.draws = draws;
     h.error = std::sqrt(std::max(gain.square / draws - h.gain * h.gain, 0.0) / draws);
-    h.explained = before > 0 ? std::min(1 - left / before, 1.0) : 0;
+    h.explained = before > 0 ? std::min(1 - after / before, 1.0) : 0;
 }
 
 bool is_below_map(const Hypothesis& h, std::span<const Place> places) {
     constexpr double most_below = 0.1;
     double below = 0, points = 0;
     for (std::size_t k = 0; k < places.size(); ++k) {
-        std::vector<Pair> at;
-        for (const MapDensity& m : places[k].map) at.push_back({places[k].check_case->wo, m.draw.wi});
-        std::vector<double> supposed(at.size());
-        h.density(places[k].adapter(), places[k].technique(), at, supposed);
-        for (std::size_t i = 0; i < at.size(); ++i, ++points) {
+        std::vector<Pair> pairs;
+        for (const MapDensity& m : places[k].map) pairs.push_back({places[k].check_case->wo, m.draw.wi});
+        std::vector<double> supposed(pairs.size());
+        h.density(places[k].adapter(), places[k].technique(), pairs, supposed);
+        for (std::size_t i = 0; i < pairs.size(); ++i, ++points) {
             const MapDensity& m = places[k].map[i];
             const double density = supposed[i] * h.constant(k);
             below += density + std::fabs(density - m.p) / 2 + 2 * m.error * m.drawn < m.drawn;
@@ -185,12 +185,12 @@ bool are_equivalent(const Hypothesis& a, const Hypothesis& b, std::span<const Pl
     constexpr double same_density = 1e-3, most_of_draws = 0.9;
     double same = 0, draws = 0;
     for (std::size_t k = 0; k < places.size(); ++k) {
-        std::vector<Pair> at;
-        for (Vec3d w : places[k].w) at.push_back({places[k].check_case->wo, w});
-        std::vector<double> p(at.size()), q(at.size());
-        a.density(places[k].adapter(), places[k].technique(), at, p);
-        b.density(places[k].adapter(), places[k].technique(), at, q);
-        for (std::size_t i = 0; i < at.size(); ++i, ++draws)
+        std::vector<Pair> pairs;
+        for (Vec3d w : places[k].w) pairs.push_back({places[k].check_case->wo, w});
+        std::vector<double> p(pairs.size()), q(pairs.size());
+        a.density(places[k].adapter(), places[k].technique(), pairs, p);
+        b.density(places[k].adapter(), places[k].technique(), pairs, q);
+        for (std::size_t i = 0; i < pairs.size(); ++i, ++draws)
             same += std::fabs(p[i] * a.constant(k) - q[i] * b.constant(k)) <= same_density * p[i] * a.constant(k);
     }
     return same >= most_of_draws * draws;

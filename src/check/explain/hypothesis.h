@@ -42,7 +42,7 @@ Fit fit(std::span<const Row> rows, std::size_t groups, std::vector<std::size_t> 
 double misfit_of(std::span<const Row> rows);
 /// Forward selection: adds the factor with the largest gain in likelihood if that gain exceeds what chance gives to one
 /// of many (BIC and `least_gain`).
-Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, std::size_t most);
+Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, std::size_t largest_count);
 
 /// Masses of draws and p at a place: p over the density of the draws, from the masses or from the bridge, whichever is
 /// more precise, with its standard error.
@@ -83,9 +83,9 @@ struct Place {
     double mean_log(std::span<const double> density) const;
 };
 
-/// Up to `most` places where a test of the density failed, at different w_o.
-std::vector<Place> places_of(
-    std::span<const CheckCase> check_cases, const CheckOutcome& outcome, std::size_t most, std::uint32_t count);
+/// Up to `largest_count` places where a test of the density failed, at different w_o.
+std::vector<Place> places_of(std::span<const CheckCase> check_cases, const CheckOutcome& outcome,
+    std::size_t largest_count, std::uint32_t count);
 
 struct Hypothesis {
     std::string name;    // of the cause

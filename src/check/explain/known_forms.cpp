@@ -120,6 +120,16 @@ constexpr PlanePower plane_powers[] = {{1,
     {-2, "the squared distance to the light, r^2, is once too often in p"},
     {-3, "r^2 / cos at the light is once too often in p"}};
 
+}  // namespace
+
+std::string plane_words(double power) {
+    for (const auto& [known, words] : plane_powers)
+        if (power == known) return words;
+    return "";
+}
+
+namespace {
+
 /// The vector n for which |n.w|^-power is nearest to the ratios: least squares, without the tenth with the largest
 /// errors in a second and third round.
 std::optional<Vec3d> fitted_plane(std::span<const KnownRatio> ratios, int power) {

@@ -39,6 +39,12 @@ TEST(LightsInAPlane, MissingFactorsAreNamed) {
     EXPECT_NE(area.text().find("a density per area"), std::string::npos);
 }
 
+TEST(LightsInAPlane, APowerOfTheCosineIsSaidAsAFactor) {
+    EXPECT_NE(plane_words(3).find("a density per area"), std::string::npos);
+    EXPECT_NE(plane_words(-1).find("once too often"), std::string::npos);
+    EXPECT_EQ(plane_words(0.5), "");
+}
+
 /// Smith's G1 of GGX for one roughness.
 double shadowing(Vec3d w, double alpha) {
     return 2 / (1 + std::sqrt(1 + alpha * alpha * (w.x * w.x + w.y * w.y) / (w.z * w.z)));

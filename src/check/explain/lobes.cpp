@@ -43,17 +43,17 @@ struct NumberStep {
 };
 
 /// Bisects each step towards the larger change, and removes those that are smooth.
-void close_in(Source& source, int number, std::span<const PrimarySample> others, std::vector<NumberStep>& all) {
-    for (int k = 0; k < halvings && !all.empty(); ++k) {
+void close_in(Source& source, int number, std::span<const PrimarySample> others, std::vector<NumberStep>& steps) {
+    for (int k = 0; k < halvings && !steps.empty(); ++k) {
         std::vector<PrimarySample> u;
-        for (const NumberStep& s : all) {
+        for (const NumberStep& s : steps) {
             u.push_back(others[s.of]);
             u.back()[number] = (s.from + s.to) / 2;
         }
         std::vector<Draw> middle(u.size());
         source.draw(u, middle);
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            NumberStep& s = all[i];
+        for (std::size_t i = 0; i < steps.size(); ++i) {
+            NumberStep& s = steps[i];
             if (NumberStep::move(s.a, middle[i]) > NumberStep::move(middle[i], s.b)) {
                 s.to = u[i][number];
                 s.b = middle[i];
@@ -62,7 +62,7 @@ void close_in(Source& source, int number, std::span<const PrimarySample> others,
                 s.a = middle[i];
             }
         }
-        std::erase_if(all, [](const NumberStep& s) { return !s.jumps(); });
+        std::erase_if(steps, [](const NumberStep& s) { return !s.jumps(); });
     }
 }
 
@@ -86,21 +86,21 @@ std::vector<NumberStep> jumps_along(Source& source, int number, std::span<const 
 }
 
 /// The ends that a third of the settings have in common; none if there are many other jumps between two directions.
-std::vector<LobeInterval> intervals(const std::vector<NumberStep>& all, std::size_t tried) {
+std::vector<LobeInterval> intervals(const std::vector<NumberStep>& steps, std::size_t tried) {
     const auto of_two = [](const NumberStep& s) { return has_direction(s.a) && has_direction(s.b); };
     std::vector<LobeInterval> out;
     double from = 0;
     std::ptrdiff_t common = 0;
-    for (auto next = all.begin(); next != all.end();) {
+    for (auto next = steps.begin(); next != steps.end();) {
         const auto first = next;
-        while (next != all.end() && next->from - first->from < one_end) ++next;
+        while (next != steps.end() && next->from - first->from < one_end) ++next;
         if (3 * (next - first) < static_cast<std::ptrdiff_t>(tried)) continue;
         common += std::count_if(first, next, of_two);
         const double end = (first[(next - first) / 2].from + first[(next - first) / 2].to) / 2;
         out.push_back({from, end});
         from = end;
     }
-    if (out.empty() || 10 * common < 9 * std::count_if(all.begin(), all.end(), of_two)) return {};
+    if (out.empty() || 10 * common < 9 * std::count_if(steps.begin(), steps.end(), of_two)) return {};
     out.push_back({from, 1});
     return out.size() <= most_lobes ? out : std::vector<LobeInterval>();
 }
@@ -131,16 +131,16 @@ LobeDraws draws_of(
         std::vector<Draw> draws(u.size());
         source.draw(u, draws);
         std::vector<Vec3d> w;
-        std::vector<const Draw*> of;
+        std::vector<const Draw*> usable;
         for (const Draw& d : draws)
             if (has_direction(d)) {
                 w.push_back(d.wi);
-                of.push_back(&d);
+                usable.push_back(&d);
             }
         std::vector<double> p(w.size());
         source.density(w, p);
         for (std::size_t i = 0; i < w.size(); ++i) {
-            if (!is_direction(source.traits, *of[i], p[i])) continue;
+            if (!is_direction(source.traits, *usable[i], p[i])) continue;
             const std::size_t l = plan.tree.find(to_chart(w[i]));
             const double h = plan.values(plan.tree.leaves()[l], w[i], p[i])[bridge];
             out.sum[l] += h;
@@ -158,26 +158,26 @@ struct LobeCell {
 };
 
 /// Neighbouring leaves in the order of the tree are joined until a cell has enough draws.
-std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& chooser, const std::vector<LobeDraws>& all) {
+std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& chooser, const std::vector<LobeDraws>& lobes) {
     std::vector<LobeCell> out;
     LobeCell cell;
     const auto clear = [&] {
         cell = {};
-        cell.mean.resize(all.size());
-        cell.mean_variance.resize(all.size());
+        cell.mean.resize(lobes.size());
+        cell.mean_variance.resize(lobes.size());
     };
     clear();
     for (std::size_t l = 0; l < place.at->integrals.leaves.size(); ++l) {
         const Estimate& claim = place.at->integrals.leaves[l].bridge;
         cell.claimed += claim.value;
         cell.variance += claim.variance;
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            const double share = chooser.lobes[k].share() / all[k].drawn;
-            cell.mean[k] += share * all[k].sum[l];
-            cell.mean_variance[k] += share * share * all[k].square[l];
-            cell.draws += 2 * all[k].sum[l];
+        for (std::size_t k = 0; k < lobes.size(); ++k) {
+            const double share = chooser.lobes[k].share() / lobes[k].drawn;
+            cell.mean[k] += share * lobes[k].sum[l];
+            cell.mean_variance[k] += share * share * lobes[k].square[l];
+            cell.draws += 2 * lobes[k].sum[l];
         }
-        if (cell.draws + 2 * cell.claimed * all[0].drawn < least_draws) continue;
+        if (cell.draws + 2 * cell.claimed * lobes[0].drawn < least_draws) continue;
         out.push_back(std::move(cell));
         clear();
     }
@@ -249,33 +249,33 @@ bool explains(const Shares& s) {
 
 /// `where`: " at w_o 60 deg", or "".
 std::string lobe_sentence(const LobeChooser& chooser, const Shares& s, const std::string& where) {
-    std::vector<std::size_t> off;
+    std::vector<std::size_t> differing;
     std::vector<std::string> drawn, claimed;
-    bool known = true;  // whether the probabilities of p are known, each in [0, 1] and all together 1
+    bool shares_known = true;  // whether the probabilities of p are known, each in [0, 1] and all together 1
     double sum = 0, sum_half = 0;
     for (std::size_t k = 0; k < s.x.size(); ++k) {
         const double share = chooser.lobes[k].share(), of_p = s.x[k] * share, half = 1.96 * s.errors[k] * share;
-        known = known && of_p - half >= 0 && of_p + half <= 1 && half < known_probability;
+        shares_known = shares_known && of_p - half >= 0 && of_p + half <= 1 && half < known_probability;
         sum += of_p;
         sum_half += half;
         drawn.push_back(fmt::format("{:.3g}", share));
         claimed.push_back(with_error(of_p, half));
-        if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) off.push_back(k);
+        if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) differing.push_back(k);
     }
-    known = known && std::fabs(sum - 1) < sum_half + known_share;
-    for (std::size_t k : off)
+    shares_known = shares_known && std::fabs(sum - 1) < sum_half + known_share;
+    for (std::size_t k : differing)
         if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], known_share) && 3 * s.errors[k] < left_out)
             return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}{}.",
                 chooser.number + 1, chooser.lobes[k].from, chooser.lobes[k].to, where);
-    if (off.size() == 1) {
-        const LobeInterval& lobe = chooser.lobes[off[0]];
-        const double x = s.x[off[0]];
+    if (differing.size() == 1) {
+        const LobeInterval& lobe = chooser.lobes[differing[0]];
+        const double x = s.x[differing[0]];
         const bool no_chooser =
-            std::fabs(x * lobe.share() - 1) < std::max(3 * s.errors[off[0]] * lobe.share(), known_share);
+            std::fabs(x * lobe.share() - 1) < std::max(3 * s.errors[differing[0]] * lobe.share(), known_share);
         return fmt::format(
             "Of the lobes that u{} chooses, the one from {:.4g} to {:.4g} has {:.3g} +- {:.1g} times what "
             "it draws in p{}, the others are right: {}.",
-            chooser.number + 1, lobe.from, lobe.to, x, 1.96 * s.errors[off[0]], where,
+            chooser.number + 1, lobe.from, lobe.to, x, 1.96 * s.errors[differing[0]], where,
             no_chooser ? "the chooser's probability of that one lobe is left out"
                        : "the chooser's probability of that one lobe, or a constant of its own, is off");
     }
@@ -283,7 +283,7 @@ std::string lobe_sentence(const LobeChooser& chooser, const Shares& s, const std
         "The lobes that u{} chooses are drawn with {}{}; p has them with {}: the chooser's probability "
         "differs.",
         chooser.number + 1, fmt::join(drawn, ", "), where,
-        known ? fmt::format("{}", fmt::join(claimed, ", ")) : "other probabilities");
+        shares_known ? fmt::format("{}", fmt::join(claimed, ", ")) : "other probabilities");
 }
 
 }  // namespace

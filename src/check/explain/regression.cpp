@@ -50,21 +50,21 @@ void derivatives(std::span<const Row> rows, std::size_t groups, const Fit& f, co
     std::vector<double>& gradient, Matrix& information) {
     const std::size_t d = f.factors.size();
     Matrix mean(groups, std::vector<double>(d));
-    std::vector<double> all(groups, 1e-300);
+    std::vector<double> totals(groups, 1e-300);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        all[rows[i].group] += m.mu[i];
+        totals[rows[i].group] += m.mu[i];
         for (std::size_t k = 0; k < d; ++k) mean[rows[i].group][k] += m.mu[i] * rows[i].x[f.factors[k]];
     }
     for (std::size_t g = 0; g < groups; ++g)
-        for (double& v : mean[g]) v /= all[g];
+        for (double& v : mean[g]) v /= totals[g];
     gradient.assign(d, 0);
     information.assign(d, std::vector<double>(d));
-    std::vector<double> off(d);
+    std::vector<double> centred(d);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        for (std::size_t k = 0; k < d; ++k) off[k] = rows[i].x[f.factors[k]] - mean[rows[i].group][k];
+        for (std::size_t k = 0; k < d; ++k) centred[k] = rows[i].x[f.factors[k]] - mean[rows[i].group][k];
         for (std::size_t k = 0; k < d; ++k) {
-            gradient[k] += (rows[i].observed - m.mu[i]) * off[k] / rows[i].unit;
-            for (std::size_t j = 0; j < d; ++j) information[k][j] += m.mu[i] * off[k] * off[j] / rows[i].unit;
+            gradient[k] += (rows[i].observed - m.mu[i]) * centred[k] / rows[i].unit;
+            for (std::size_t j = 0; j < d; ++j) information[k][j] += m.mu[i] * centred[k] * centred[j] / rows[i].unit;
         }
     }
     for (std::size_t k = 0; k < d; ++k) information[k][k] += 1e-9;
@@ -97,11 +97,11 @@ Fit fit(std::span<const Row> rows, std::size_t groups, std::vector<std::size_t> 
     Matrix information;
     for (int step = 0; step < most_steps && !f.factors.empty(); ++step) {
         derivatives(rows, groups, f, m, gradient, information);
-        const auto by = solved(information, gradient, 1e-12);
-        if (!by) break;
+        const auto correction = solved(information, gradient, 1e-12);
+        if (!correction) break;
         double size = 0;
-        for (std::size_t k = 0; k < by->size(); ++k) {
-            const double d = std::clamp((*by)[k], -1.0, 1.0);
+        for (std::size_t k = 0; k < correction->size(); ++k) {
+            const double d = std::clamp((*correction)[k], -1.0, 1.0);
             f.exponents[k] += d;
             size += std::fabs(d);
         }
@@ -113,16 +113,16 @@ Fit fit(std::span<const Row> rows, std::size_t groups, std::vector<std::size_t> 
     f.constants = m.constants;
     f.likelihood = m.likelihood;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const double off = rows[i].observed - m.mu[i], by = m.mu[i] / rows[i].expected;
-        f.misfit += off * off / (rows[i].unit * m.mu[i] + rows[i].variance * by * by + 1e-300);
+        const double residual = rows[i].observed - m.mu[i], scale = m.mu[i] / rows[i].expected;
+        f.misfit += residual * residual / (rows[i].unit * m.mu[i] + rows[i].variance * scale * scale + 1e-300);
     }
     f.misfit /= std::max<double>(static_cast<double>(rows.size()) - static_cast<double>(f.factors.size() + groups), 1);
     return f;
 }
 
-Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, std::size_t most) {
+Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, std::size_t largest_count) {
     Fit best = fit(rows, groups, {});
-    while (best.factors.size() < most) {
+    while (best.factors.size() < largest_count) {
         Fit next = best;
         for (std::size_t k = 0; k < factors; ++k) {
             if (std::ranges::find(best.factors, k) != best.factors.end()) continue;
@@ -189,10 +189,10 @@ std::vector<Row> rows_of(std::span<const Place> places, const std::vector<Factor
 
 /// The simple exponent that agrees with a fitted one: 1 or -1 before 1/2, 2 and others; 0 if there is none.
 double simple_of(double b, double error) {
-    const double known = std::max(3 * error, to_simple);
+    const double tolerance = std::max(3 * error, to_simple);
     if (std::fabs(b) < 4 * error) return 0;
     for (double simple : {1.0, 2.0, 0.5, 1.5, 3.0})
-        if (std::fabs(std::fabs(b) - simple) < known) return b > 0 ? simple : -simple;
+        if (std::fabs(std::fabs(b) - simple) < tolerance) return b > 0 ? simple : -simple;
     return 0;
 }
 
@@ -200,8 +200,8 @@ double power_of(double x, double b) { return x > 0 ? math::exp(b * math::log(x))
 
 /// The known number next to a constant: 1, or the usual constant of the factor.
 double known_constant(double constant, double usual, double b) {
-    for (double known : {1.0, power_of(usual, b)})
-        if (std::fabs(constant / known - 1) < 0.02) return known;
+    for (double constant_here : {1.0, power_of(usual, b)})
+        if (std::fabs(constant / constant_here - 1) < 0.02) return constant_here;
     return constant;
 }
 
@@ -225,10 +225,10 @@ Hypothesis times(const Factor& f, double b) {
     Hypothesis h;
     h.name = f.name;
     h.free = true;
-    h.density = [f, b](const SamplerAdapter& s, int technique, std::span<const Pair> at, std::span<double> out) {
-        s.exact_pdf(technique, at, out);
-        for (std::size_t i = 0; i < at.size(); ++i)
-            if (out[i] > 0) out[i] *= power_of(f.value(at[i].wo, at[i].wi), b);
+    h.density = [f, b](const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out) {
+        s.exact_pdf(technique, pairs, out);
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            if (out[i] > 0) out[i] *= power_of(f.value(pairs[i].wo, pairs[i].wi), b);
     };
     return h;
 }
@@ -276,9 +276,9 @@ std::optional<FactorHypothesis> power_hypothesis(std::span<const Place> places) 
     out.hypothesis.name = "p";
     out.hypothesis.free = true;
     out.hypothesis.constants = f.constants;
-    out.hypothesis.density = [b](const SamplerAdapter& s, int technique, std::span<const Pair> at,
+    out.hypothesis.density = [b](const SamplerAdapter& s, int technique, std::span<const Pair> pairs,
                                  std::span<double> to) {
-        s.exact_pdf(technique, at, to);
+        s.exact_pdf(technique, pairs, to);
         for (double& v : to) v = v > 0 ? v * power_of(v, b) : 0;
     };
     set_gain(out.hypothesis, f.likelihood - fit(rows, places.size(), {}).likelihood, places);

@@ -47,10 +47,10 @@ void refine_by_slope(std::span<const Place> places, double even, double& share, 
             mean = sets.mean;
             variance = sets.variance;
         }
-        const double by = of_even - of_p.value;
-        if (!(std::fabs(by) > 0)) return;
-        const double weight = by * by / (variance + of_p.variance + 1e-300);
-        sum += weight * (mean - of_p.value) / by;
+        const double gap = of_even - of_p.value;
+        if (!(std::fabs(gap) > 0)) return;
+        const double weight = gap * gap / (variance + of_p.variance + 1e-300);
+        sum += weight * (mean - of_p.value) / gap;
         weights += weight;
     }
     if (!(weights > 0) || 1 / std::sqrt(weights) > error || std::fabs(sum / weights - share) > 5 * error) return;
@@ -69,7 +69,7 @@ Leak fitted_leak(std::span<const Place> places, bool whole) {
     struct Derivatives {
         double first = 0, second = 0;
     };
-    const auto at = [&](double share) {
+    const auto derivatives = [&](double share) {
         Derivatives d;
         for (const Place& place : places) {
             const Tree& tree = place.at->plan->tree;
@@ -89,19 +89,19 @@ Leak fitted_leak(std::span<const Place> places, bool whole) {
     double low = 0, high = 1;
     for (int step = 0; step < share_halvings; ++step) {
         const double middle = (low + high) / 2;
-        (at(middle).first > 0 ? low : high) = middle;
+        (derivatives(middle).first > 0 ? low : high) = middle;
     }
     double share = low;
-    const double information = -at(share).second;
+    const double information = -derivatives(share).second;
     out.error = information > 0 ? 1 / std::sqrt(information) : 1;
     refine_by_slope(places, even, share, out.error);
     out.share = share;
     out.hypothesis.name = "leak";
     out.hypothesis.density = [share, even, whole, at_zero](const SamplerAdapter& s, int technique,
-                                 std::span<const Pair> at, std::span<double> to) {
-        s.exact_pdf(technique, at, to);
-        for (std::size_t i = 0; i < at.size(); ++i)
-            if (at_zero || to[i] > 0) to[i] = (1 - share) * to[i] + (whole || at[i].wi.z > 0 ? share * even : 0);
+                                 std::span<const Pair> pairs, std::span<double> to) {
+        s.exact_pdf(technique, pairs, to);
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            if (at_zero || to[i] > 0) to[i] = (1 - share) * to[i] + (whole || pairs[i].wi.z > 0 ? share * even : 0);
     };
     return out;
 }
@@ -122,12 +122,12 @@ Reach reach_at(const CheckAt& c) {
             h_claimed += leaf.bridge.value;
         }
     }
-    const double by = out.by = h_claimed > 0 ? h_drawn / h_claimed : 1;
+    const double scale = out.by = h_claimed > 0 ? h_drawn / h_claimed : 1;
     for (std::size_t l = 0; l < c.integrals.leaves.size(); ++l) {
         const LeafIntegral& leaf = c.integrals.leaves[l];
         const Leaf& of_tree = c.plan->tree.leaves()[l];
         const double p = of_tree.met ? of_tree.q * c.plan->tree.rect(of_tree).area() : 0;
-        const double expected = leaf.bridge.value * n * by;
+        const double expected = leaf.bridge.value * n * scale;
         if (!(c.observations.counts[l] > 0)) {
             if (expected > expected_at_least || leaf.bridge.value * n > expected_at_least) out.unreached += p;
             continue;
@@ -136,8 +136,8 @@ Reach reach_at(const CheckAt& c) {
         out.drawn += c.observations.counts[l] / n;
         if (expected < 20) continue;
         const double unit = leaf.second / std::max(leaf.bridge.value, 1e-300);
-        const double off = c.observations.leaves[l] - expected;
-        out.misfit += off * off / (unit * expected + leaf.bridge.variance * n * n * by * by + 1e-300);
+        const double residual = c.observations.leaves[l] - expected;
+        out.misfit += residual * residual / (unit * expected + leaf.bridge.variance * n * n * scale * scale + 1e-300);
         ++out.leaves;
     }
     return out;
@@ -188,15 +188,15 @@ std::optional<Cause> delta_cause(std::span<const Place> places) {
         if (domain && domain->is_line())  // spread over the azimuth
             for (Vec3d& v : w) v = from_chart({to_chart(v).t, 0});
         std::ranges::sort(w, {}, [](Vec3d v) { return std::tuple(v.x, v.y, v.z); });
-        std::size_t most = 0, first = 0;
+        std::size_t longest = 0, first = 0;
         for (std::size_t i = 0, end = 0; i < w.size(); i = end) {
             for (end = i + 1; end < w.size() && length(w[end] - w[i]) < same;) ++end;
-            if (end - i > most) {
-                most = end - i;
+            if (end - i > longest) {
+                longest = end - i;
                 first = i;
             }
         }
-        const double share = static_cast<double>(most) / place.of,
+        const double share = static_cast<double>(longest) / place.of,
                      half = 1.96 * std::sqrt(share * (1 - share) / place.of);
         if (share < least_part) continue;
         return Cause{.factor = "delta",
@@ -226,28 +226,28 @@ std::optional<Cause> curve_cause(std::span<const Place> places) {
 
 std::optional<Cause> unreached_cause(std::span<const Place> places) {
     const Place* worst = nullptr;
-    Reach most;
+    Reach least_reached;
     for (const Place& place : places) {
         const Reach r = reach_at(*place.at);
         if (!(r.unreached > least_unreached * (r.unreached + r.reached)) || std::fabs(r.by - 1) > right_elsewhere)
             continue;
         if (r.leaves > 0 && r.misfit / r.leaves > 1.5 && r.unreached < r.reached)
             continue;  // more than the unreached part is wrong
-        if (!worst || r.unreached > most.unreached) {
+        if (!worst || r.unreached > least_reached.unreached) {
             worst = &place;
-            most = r;
+            least_reached = r;
         }
     }
     if (!worst) return {};
-    const double of = worst->at->integrals.sums[mass].value,
-                 part = of * most.unreached / (most.unreached + most.reached);
+    const double total = worst->at->integrals.sums[mass].value,
+                 part = total * least_reached.unreached / (least_reached.unreached + least_reached.reached);
     return Cause{.factor = "unreached",
         .exponent = part,
         .error = 0,
         .text = fmt::format(
             "p is positive where no draw falls: {:.3g} of the {:.3g} that it integrates to{}. Combined with "
             "another sampler by MIS the image is too dark.",
-            part, of, worst->where())};
+            part, total, worst->where())};
 }
 
 }  // namespace crescent::check

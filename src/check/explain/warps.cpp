@@ -62,9 +62,9 @@ bool explains(const Warp& warp, std::span<const Place> places) {
     double points = 0, agreeing = 0, different = 0;
     for (const Place& place : places)
         for (const MapDensity& m : place.map) {
-            const double off = std::fabs(math::log(m.drawn / m.p / warp.ratio(m.u[warp.number])));
+            const double deviation = std::fabs(math::log(m.drawn / m.p / warp.ratio(m.u[warp.number])));
             ++points;
-            agreeing += off < agreement + 2 * m.error;
+            agreeing += deviation < agreement + 2 * m.error;
             different += std::fabs(math::log(m.drawn / m.p)) > differs;
         }
     return points >= fewest && agreeing >= share_in_agreement * points && different > points / 2;

@@ -42,11 +42,11 @@ std::vector<Compared> compared_at(const CheckCase& check_case, int technique, st
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
     std::vector<Vec3d> w;
-    std::vector<const Draw*> of;
+    std::vector<const Draw*> usable;
     for (const Draw& d : draws)
         if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z)) {
             w.push_back(d.wi);
-            of.push_back(&d);
+            usable.push_back(&d);
         }
     std::vector<double> p(w.size());
     std::vector<Vec3d> f(w.size()), truth(w.size());
@@ -55,7 +55,7 @@ std::vector<Compared> compared_at(const CheckCase& check_case, int technique, st
     if (check_case.adapter->has_true_f()) source.f_cos(w, truth, true);
     std::vector<Compared> out;
     for (std::size_t i = 0; i < w.size(); ++i) {
-        const Draw& d = *of[i];
+        const Draw& d = *usable[i];
         Compared c{.wo = check_case.wo,
             .wi = w[i],
             .pdf = d.pdf,
@@ -95,10 +95,10 @@ constexpr ChannelExchange channel_exchanges[] = {
     {"channels moved by two", [](const ByChannel& c) { return ByChannel{c[2], c[0], c[1]}; }},
     {"luminance in every channel", grey}};
 
-std::optional<Cause> exchanged_channels(const std::vector<Compared>& all) {
+std::optional<Cause> exchanged_channels(const std::vector<Compared>& compared) {
     double with_weight = 0, plain = 0;
     std::array<double, std::size(channel_exchanges)> same{};
-    for (const Compared& c : all) {
+    for (const Compared& c : compared) {
         if (!c.has_weight) continue;
         ++with_weight;
         plain += near(c.weight, c.expected);
@@ -136,19 +136,19 @@ std::vector<KnownRatio> reciprocity_ratios(const CheckCase& check_case) {
     const SamplerAdapter& s = *check_case.adapter;
     const Traits traits = s.traits();
     Stream stream({.seed = 19, .place = 0, .technique = 0, .stage = 8, .purpose = Purpose::pairs, .part = 1});
-    std::vector<Pair> there, back;
+    std::vector<Pair> forth, back;
     for (int i = 0; i < 256; ++i) {
         const auto direction = [&](bool below) { return random_direction(stream, below, 0.05); };
         const bool both = traits.wo == Traits::WoDomain::both;
-        there.push_back({direction(both && i % 2), direction(both && i % 2 == 0)});
-        back.push_back({there.back().wi, there.back().wo});
+        forth.push_back({direction(both && i % 2), direction(both && i % 2 == 0)});
+        back.push_back({forth.back().wi, forth.back().wo});
     }
-    std::vector<double> a(there.size()), b(back.size());
-    s.f(there, a);
+    std::vector<double> a(forth.size()), b(back.size());
+    s.f(forth, a);
     s.f(back, b);
     std::vector<KnownRatio> out;
-    for (std::size_t i = 0; i < there.size(); ++i) {
-        const Pair& p = there[i];
+    for (std::size_t i = 0; i < forth.size(); ++i) {
+        const Pair& p = forth[i];
         add_ratio(out, p.wo, p.wi, a[i] * reciprocal_ratio(traits, p, 0), b[i]);
     }
     return out;
@@ -191,7 +191,7 @@ std::string ratio_sentence(const char* given, const char* expected, const RatioC
 }
 
 std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome) {
-    std::vector<Compared> all;
+    std::vector<Compared> compared;
     const CheckCase* check_case = nullptr;
     std::size_t directions = 0;
     for (std::size_t k = 0; k < outcome.at.size() && directions < most_directions; ++k)
@@ -202,13 +202,13 @@ std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const 
             check_case = &check_cases[outcome.check_cases[k]];
             const std::vector<Compared> here =
                 compared_at(*check_case, c.technique, static_cast<std::uint16_t>(outcome.check_cases[k]));
-            all.insert(all.end(), here.begin(), here.end());
+            compared.insert(compared.end(), here.begin(), here.end());
             ++directions;
         }
     if (check_case) {
-        if (auto c = exchanged_channels(all); c && check_case->adapter->traits().channels == 3) return c;
+        if (auto c = exchanged_channels(compared); c && check_case->adapter->traits().channels == 3) return c;
         std::vector<KnownRatio> pdf, weight, f;
-        for (const Compared& c : all) {
+        for (const Compared& c : compared) {
             add_ratio(pdf, c.wo, c.wi, c.pdf, c.p);
             if (c.has_weight) add_ratio(weight, c.wo, c.wi, c.weight[0], c.expected[0]);
             if (check_case->adapter->has_true_f()) add_ratio(f, c.wo, c.wi, c.f[0], c.reference_f[0]);

@@ -23,10 +23,10 @@ constexpr double normal_95 = 1.959964, one_tail = 0.025;
 constexpr double of_support = 0.95;
 constexpr std::array<double, 3> shares_within = {0.5, 0.9, 0.99};
 
-Interval share_interval(double hits, double of) {
-    if (!(of > 0)) return {};
-    const ShareInterval i = binomial_interval(of, hits, one_tail);
-    return {hits / of, i.low, i.high};
+Interval share_interval(double hits, double trials) {
+    if (!(trials > 0)) return {};
+    const ShareInterval i = binomial_interval(trials, hits, one_tail);
+    return {hits / trials, i.low, i.high};
 }
 
 /// Interval of the mean of n values with this sum and sum of squares.
@@ -38,8 +38,8 @@ Interval mean_interval(double sum, double square, double n) {
 /// Interval of the value below which a share of the draws lies; `sorted` is ascending.
 Interval quantile_interval(const std::vector<double>& sorted, double share) {
     const double n = static_cast<double>(sorted.size()), half = normal_95 * std::sqrt(n * share * (1 - share));
-    const auto at = [&](double rank) { return sorted[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
-    return {at(n * share), at(n * share - half), at(n * share + half)};
+    const auto value_of = [&](double rank) { return sorted[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
+    return {value_of(n * share), value_of(n * share - half), value_of(n * share + half)};
 }
 
 double angle_between(Vec3d a, Vec3d b) {
@@ -90,15 +90,16 @@ void describe_moments(const std::vector<Vec3d>& w, Description& d) {
 class Cells {
 public:
     explicit Cells(std::vector<ChartPoint> shape) { cut({}, std::move(shape), 0); }
-    std::size_t find(ChartPoint at) const {
+    std::size_t find(ChartPoint point) const {
         std::size_t i = 0;
-        while (nodes_[i].child != 0) i = nodes_[i].child + ((nodes_[i].along_phi ? at.phi : at.t) >= nodes_[i].middle);
+        while (nodes_[i].child != 0)
+            i = nodes_[i].child + ((nodes_[i].along_phi ? point.phi : point.t) >= nodes_[i].middle);
         return nodes_[i].cell;
     }
     const std::vector<double>& areas() const { return areas_; }
 
 private:
-    static constexpr std::size_t most = 16;
+    static constexpr std::size_t leaf_points = 16;
     struct Node {
         std::size_t child = 0, cell = 0;
         bool along_phi = false;
@@ -109,7 +110,7 @@ private:
 
     void cut(const ChartRect& rect, std::vector<ChartPoint> inside, std::size_t node) {
         const bool along_phi = rect.phi_width() > rect.theta_width();
-        if (inside.size() <= most || rect.width(along_phi) < least_width) {
+        if (inside.size() <= leaf_points || rect.width(along_phi) < least_width) {
             nodes_[node].cell = areas_.size();
             areas_.push_back(rect.area());
             return;
@@ -183,9 +184,9 @@ void describe_map(const std::vector<Vec3d>& w, Description& d) {
     for (int i = 0; i <= rings; ++i) d.theta_edges.push_back(two_pi / 4 * i / rings_above);
     std::vector<double> hits(static_cast<std::size_t>(rings * d.sectors), 0);
     for (Vec3d v : w) {
-        const ChartPoint at = to_chart(v);
-        const int ring = std::min(static_cast<int>(angle_of(at.t) / (two_pi / 4) * rings_above), rings - 1);
-        const int sector = std::min(static_cast<int>(at.phi / two_pi * d.sectors), d.sectors - 1);
+        const ChartPoint point = to_chart(v);
+        const int ring = std::min(static_cast<int>(angle_of(point.t) / (two_pi / 4) * rings_above), rings - 1);
+        const int sector = std::min(static_cast<int>(point.phi / two_pi * d.sectors), d.sectors - 1);
         ++hits[static_cast<std::size_t>(ring * d.sectors + sector)];
     }
     for (double h : hits) d.map.push_back(share_interval(h, static_cast<double>(d.draws)));
@@ -229,11 +230,11 @@ Description describe_one(
     }
     d.draws = n;
     d.directions = w.size();
-    const double all = static_cast<double>(n);
-    d.above = share_interval(above, all);
-    d.below = share_interval(static_cast<double>(w.size()) - above, all);
-    d.delta = share_interval(delta, all);
-    d.nothing = share_interval(nothing, all);
+    const double total = static_cast<double>(n);
+    d.above = share_interval(above, total);
+    d.below = share_interval(static_cast<double>(w.size()) - above, total);
+    d.delta = share_interval(delta, total);
+    d.nothing = share_interval(nothing, total);
     if (w.size() < 64) return d;
     describe_moments(w, d);
     describe_support(w, d);
@@ -329,28 +330,28 @@ std::string description_text(const Description& d) {
     return out + map_text(d);
 }
 
-nlohmann::ordered_json description_json(std::span<const Description> all) {
+nlohmann::ordered_json description_json(std::span<const Description> descriptions) {
     using Json = nlohmann::ordered_json;
     constexpr double degrees = 360 / two_pi;
-    const auto of = [](const Interval& i, double scale = 1) {
+    const auto json_of = [](const Interval& i, double scale = 1) {
         return Json{{"value", scale * i.value}, {"low", scale * i.low}, {"high", scale * i.high}};
     };
     Json out = Json::array();
-    for (const Description& d : all) {
+    for (const Description& d : descriptions) {
         Json j = {{"arm", d.arm}, {"case", d.check_case}, {"technique", d.technique + 1}, {"draws", d.draws},
-            {"invalid", d.invalid}, {"share_above", of(d.above)}, {"share_below", of(d.below)},
-            {"share_of_delta_parts", of(d.delta)}, {"share_of_nothing", of(d.nothing)}};
+            {"invalid", d.invalid}, {"share_above", json_of(d.above)}, {"share_below", json_of(d.below)},
+            {"share_of_delta_parts", json_of(d.delta)}, {"share_of_nothing", json_of(d.nothing)}};
         if (!d.map.empty()) {
-            j["mean"] = {of(d.mean[0]), of(d.mean[1]), of(d.mean[2])};
-            j["length_of_mean"] = of(d.length);
+            j["mean"] = {json_of(d.mean[0]), json_of(d.mean[1]), json_of(d.mean[2])};
+            j["length_of_mean"] = json_of(d.length);
             j["mean_direction"] = {{"theta_deg", d.theta * degrees}, {"phi_deg", d.phi * degrees},
                 {"within_deg", d.direction_error * degrees}};
-            j["angle_to_mean_deg"] = {
-                {"50", of(d.within[0], degrees)}, {"90", of(d.within[1], degrees)}, {"99", of(d.within[2], degrees)}};
+            j["angle_to_mean_deg"] = {{"50", json_of(d.within[0], degrees)}, {"90", json_of(d.within[1], degrees)},
+                {"99", json_of(d.within[2], degrees)}};
             const char* names[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
-            for (std::size_t k = 0; k < 6; ++k) j["second_moments"][names[k]] = of(d.second[k]);
-            j["solid_angle_of_95_percent_sr"] = of(d.solid_angle);
-            j["effective_solid_angle_sr"] = of(d.effective);
+            for (std::size_t k = 0; k < 6; ++k) j["second_moments"][names[k]] = json_of(d.second[k]);
+            j["solid_angle_of_95_percent_sr"] = json_of(d.solid_angle);
+            j["effective_solid_angle_sr"] = json_of(d.effective);
             Json edges = Json::array(), rows = Json::array();
             for (double e : d.theta_edges) edges.push_back(e * degrees);
             for (const Interval& i : d.map) rows.push_back({i.value, i.low, i.high});

@@ -52,6 +52,6 @@ std::vector<Description> describe(
 
 /// Text for a terminal of 80 columns.
 std::string description_text(const Description& d);
-nlohmann::ordered_json description_json(std::span<const Description> all);
+nlohmann::ordered_json description_json(std::span<const Description> descriptions);
 
 }  // namespace crescent::check

@@ -136,13 +136,13 @@ Json map_of(const BinHistogram& m) {
 
 /// Draws and expectation over a line, or bars of the entries of a set.
 Json line_of(const LineHistogram& h) {
-    std::vector<double> all = h.observed;
-    all.insert(all.end(), h.expected.begin(), h.expected.end());
-    all.push_back(0);
+    std::vector<double> heights = h.observed;
+    heights.insert(heights.end(), h.expected.begin(), h.expected.end());
+    heights.push_back(0);
     Axis x = linear_axis(h.axis, {h.edges.front(), h.edges.back()});
     x.low = h.edges.front();
     x.high = h.edges.back();
-    Chart chart(640, 240, x, linear_axis("draws", all), "Draws over " + h.axis);
+    Chart chart(640, 240, x, linear_axis("draws", heights), "Draws over " + h.axis);
     std::vector<Point> expected;
     for (std::size_t i = 0; i < h.observed.size(); ++i) {
         const double from = h.edges[i], to = h.edges[i + 1];
@@ -205,8 +205,8 @@ Json findings_list(const CheckResult& j) {
     return out;
 }
 
-bool starts_case(const std::vector<Verdict>& all, std::size_t i) {
-    return i == 0 || all[i].check_case != all[i - 1].check_case || all[i].arm != all[i - 1].arm;
+bool starts_case(const std::vector<Verdict>& verdicts, std::size_t i) {
+    return i == 0 || verdicts[i].check_case != verdicts[i - 1].check_case || verdicts[i].arm != verdicts[i - 1].arm;
 }
 
 /// The names of the tests, and the states of each case; the arm is named if there are several.
@@ -232,8 +232,8 @@ Json case_models(const CheckResult& j) {
     std::size_t map = 0, line = 0, weight = 0;
     for (std::size_t i = 0; i < j.verdicts.size();) {
         const std::string arm = j.verdicts[i].arm, check_case = j.verdicts[i].check_case;
-        const auto is_here = [&](const auto& all, std::size_t k) {
-            return k < all.size() && all[k].arm == arm && all[k].check_case == check_case;
+        const auto is_here = [&](const auto& list, std::size_t k) {
+            return k < list.size() && list[k].arm == arm && list[k].check_case == check_case;
         };
         Json verdicts = Json::array(), implied = Json::array(), maps = Json::array(), weights = Json::array(),
              lines = Json::array();

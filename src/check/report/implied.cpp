@@ -19,8 +19,9 @@ constexpr double degrees_per_ring = 5;
 /// A share of the draws over a solid angle, 1/sr.
 struct Implied {
     double p = 0, se = 0;
-    Implied(double seen, double of, double solid_angle)
-        : p(seen / (of * solid_angle)), se(std::sqrt(seen * std::max(1 - seen / of, 0.0)) / (of * solid_angle)) {}
+    Implied(double seen, double draws, double solid_angle)
+        : p(seen / (draws * solid_angle)),
+          se(std::sqrt(seen * std::max(1 - seen / draws, 0.0)) / (draws * solid_angle)) {}
 };
 
 std::vector<double> draws_by_node(const CheckAt& c) {

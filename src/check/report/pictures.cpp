@@ -21,27 +21,27 @@ struct Spread1d {
     double from, to, mass;
 };
 
-double mass_up_to(std::span<const Spread1d> all, double x) {
+double mass_up_to(std::span<const Spread1d> parts, double x) {
     double sum = 0;
-    for (const Spread1d& s : all) sum += s.mass * std::clamp((x - s.from) / (s.to - s.from), 0.0, 1.0);
+    for (const Spread1d& s : parts) sum += s.mass * std::clamp((x - s.from) / (s.to - s.from), 0.0, 1.0);
     return sum;
 }
 
-double quantile_of(std::span<const Spread1d> all, double share, double low, double high) {
-    const double total = mass_up_to(all, high);
+double quantile_of(std::span<const Spread1d> parts, double share, double low, double high) {
+    const double total = mass_up_to(parts, high);
     for (int i = 0; i < 50; ++i) {
         const double middle = (low + high) / 2;
-        (mass_up_to(all, middle) < share * total ? low : high) = middle;
+        (mass_up_to(parts, middle) < share * total ? low : high) = middle;
     }
     return (low + high) / 2;
 }
 
 /// Uniform bins over nearly all of the mass, and a few on either side of it.
-std::vector<double> edges_of(std::span<const Spread1d> all, double low, double high, int bins) {
+std::vector<double> edges_of(std::span<const Spread1d> parts, double low, double high, int bins) {
     constexpr double outside = 1e-3;    // of the mass, on either side
     constexpr double zoom_below = 0.6;  // of the range
     constexpr int margin_bins = 2;      // bins
-    double from = quantile_of(all, outside, low, high), to = quantile_of(all, 1 - outside, low, high);
+    double from = quantile_of(parts, outside, low, high), to = quantile_of(parts, 1 - outside, low, high);
     const double margin = 0.02 * (to - from);
     from = std::max(low, from - margin);
     to = std::min(high, to + margin);

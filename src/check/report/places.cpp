@@ -94,12 +94,12 @@ std::optional<ShareDifference> largest_difference(const CheckAt& c) {
     const NodeShares shares(c);
     if (!shares.known()) return {};
     const Tree& tree = c.plan->tree;
-    double most = 0;
+    double largest = 0;
     std::size_t best = 0;
     for (std::size_t i = 1; i < tree.nodes().size(); ++i) {
         const ShareDifference d = shares.at(i);
-        if (d.errors() > clear_errors && std::fabs(d.difference()) > most) {
-            most = std::fabs(d.difference());
+        if (d.errors() > clear_errors && std::fabs(d.difference()) > largest) {
+            largest = std::fabs(d.difference());
             best = i;
         }
     }
@@ -109,7 +109,7 @@ std::optional<ShareDifference> largest_difference(const CheckAt& c) {
         const TreeNode& x = tree.nodes()[best];
         for (int half = 0; x.child >= 0 && half < 2 && !smaller; ++half) {
             const ShareDifference d = shares.at(static_cast<std::size_t>(x.child + half));
-            smaller = d.errors() > clear_errors && std::fabs(d.difference()) > part_of_largest * most;
+            smaller = d.errors() > clear_errors && std::fabs(d.difference()) > part_of_largest * largest;
             if (smaller) best = static_cast<std::size_t>(x.child + half);
         }
     }

@@ -40,8 +40,8 @@ std::string rows_of(const CheckResult& result) {
     for (const std::string& arm : order) {
         out += fmt::format("{:<18}", arm);
         for (std::string_view name : verdict_names) {
-            const auto at = rows[arm].find(std::string(name));
-            out += fmt::format(" {:<12}", at == rows[arm].end() ? "-" : word(at->second));
+            const auto found = rows[arm].find(std::string(name));
+            out += fmt::format(" {:<12}", found == rows[arm].end() ? "-" : word(found->second));
         }
         end_line(out);
     }
@@ -62,14 +62,14 @@ std::string expected_ones(const CheckResult& result) {
 
 }  // namespace
 
-std::string verdict_table(const CheckResult& result, bool all) {
+std::string verdict_table(const CheckResult& result, bool with_right) {
     const std::string summary = summary_of(result);
     const std::size_t details = std::min(summary.find("\n\n"), summary.size());
     std::string out =
         summary.substr(0, details) + (summary.empty() ? "" : "\n\n") + rows_of(result) + expected_ones(result);
     if (details < summary.size()) out += summary.substr(details + 1);
     for (const Verdict& v : result.verdicts)
-        if (all)
+        if (with_right)
             out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.check_case, v.name, word(v.state), describe(v));
     for (const std::string& last : {implied_text(result), unseen_text(result), nothing_drawn_text(result)})
         if (!last.empty()) out += "\n" + last + "\n";

@@ -267,13 +267,14 @@ std::string valid_sentence(const CheckAt& c) {
 }
 
 std::string albedo_sentence(const CheckAt& c) {
-    double most = 0, half = 0;
+    double largest = 0, half = 0;
     for (const Answer& a : c.answers)
-        if (a.family == Family::albedo && a.difference + a.expected > most) {
-            most = a.difference + a.expected;
+        if (a.family == Family::albedo && a.difference + a.expected > largest) {
+            largest = a.difference + a.expected;
             half = half_width_95 * a.sd;
         }
-    return most > 0 ? fmt::format("{} of a uniform light is reflected or transmitted.", with_error(most, half)) : "";
+    return largest > 0 ? fmt::format("{} of a uniform light is reflected or transmitted.", with_error(largest, half))
+                       : "";
 }
 
 std::string mean_sentence(const CheckAt& c) {

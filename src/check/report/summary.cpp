@@ -66,7 +66,7 @@ std::string wording_of(const std::string& sentence) {
 }
 
 /// Lists the wordings that the worst verdict does not have, each once: that of the largest size, with its cases.
-void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
+void list_sentences(Finding& f, const std::vector<const Verdict*>& verdicts) {
     std::set<std::string> already;
     for (const std::string& sentence : sentences_of(describe(*f.worst))) already.insert(wording_of(sentence));
     struct Wording {
@@ -75,7 +75,7 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
         std::vector<std::string> cases;  // first that of the message
     };
     std::vector<Wording> wordings;
-    for (const Verdict* v : all) {
+    for (const Verdict* v : verdicts) {
         for (const std::string& sentence : sentences_of(v->message)) {
             const std::string key = wording_of(sentence);
             if (already.contains(key) || sentence.starts_with("Expected")) continue;
@@ -94,11 +94,11 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& all) {
 
 /// Where the verdicts are wrong, if not at all w_o: "30 to 60 deg"; what their integrals are; the cause that one of
 /// them has.
-void note_range(Finding& f, const std::vector<const Verdict*>& all) {
+void note_range(Finding& f, const std::vector<const Verdict*>& verdicts) {
     double low = 1e300, high = -1e300;
-    const Verdict *least = nullptr, *most = nullptr;
+    const Verdict *least = nullptr, *greatest = nullptr;
     bool every_wo = true;
-    for (const Verdict* v : all) {
+    for (const Verdict* v : verdicts) {
         if (f.named_cause.empty()) f.named_cause = v->cause;
         every_wo = every_wo && v->wo;
         if (v->wo) {
@@ -107,13 +107,13 @@ void note_range(Finding& f, const std::vector<const Verdict*>& all) {
         }
         if (!v->integral) continue;
         if (!least || *v->integral < *least->integral) least = v;
-        if (!most || *v->integral > *most->integral) most = v;
+        if (!greatest || *v->integral > *greatest->integral) greatest = v;
     }
     if (every_wo && f.count < f.of && high > low) f.range = fmt::format(" ({:g} to {:g} deg)", low, high);
     constexpr double one_value = 1.02, no_value = 0.01;
-    if (least && *most->integral > one_value * *least->integral + no_value && f.named_cause.empty())
+    if (least && *greatest->integral > one_value * *least->integral + no_value && f.named_cause.empty())
         f.named_cause = fmt::format("Over these {} p integrates to {:.4g} ({}) up to {:.4g} ({}).", f.cases,
-            *least->integral, least->check_case, *most->integral, most->check_case);
+            *least->integral, least->check_case, *greatest->integral, greatest->check_case);
 }
 
 /// The cause of the worst verdict or of another wrong verdict of the same arm, preferably with the same name.
@@ -144,10 +144,10 @@ std::string describe(const Verdict& v, FrontEnd front_end) { return described(v,
 std::vector<std::string> sentences_of(const std::string& text) {
     std::vector<std::string> out;
     std::size_t from = 0;
-    for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1)) {
-        if (at + 2 >= text.size() || text[at + 2] < 'A' || text[at + 2] > 'Z') continue;
-        out.push_back(text.substr(from, at + 1 - from));
-        from = at + 2;
+    for (std::size_t end = text.find(". "); end != std::string::npos; end = text.find(". ", end + 1)) {
+        if (end + 2 >= text.size() || text[end + 2] < 'A' || text[end + 2] > 'Z') continue;
+        out.push_back(text.substr(from, end + 1 - from));
+        from = end + 2;
     }
     out.push_back(text.substr(from));
     return out;
@@ -161,8 +161,8 @@ std::vector<Finding> findings_of(const CheckResult& j) {
     std::vector<std::vector<const Verdict*>> members;
     for (const Verdict& v : j.verdicts) {
         if (v.state == State::right || v.state == State::skipped) continue;
-        const auto left = left_out.find({v.arm, v.check_case});
-        if (left != left_out.end() && left->second.count(v.name)) continue;
+        const auto found = left_out.find({v.arm, v.check_case});
+        if (found != left_out.end() && found->second.count(v.name)) continue;
         const bool expected = v.expected && !v.why_expected.empty();
         const auto [at, fresh] =
             place.try_emplace({v.arm, v.state == State::error ? "" : v.name, v.state, expected}, out.size());
@@ -232,9 +232,9 @@ namespace {
 
 /// The first of many cases, and how many follow.
 std::string listed_cases(const std::vector<std::string>& cases) {
-    constexpr std::size_t most = 3;
-    if (cases.size() <= most + 1) return fmt::format("{}", fmt::join(cases, "; "));
-    return fmt::format("{}; {} more", fmt::join(std::span(cases).first(most), "; "), cases.size() - most);
+    constexpr std::size_t shown = 3;
+    if (cases.size() <= shown + 1) return fmt::format("{}", fmt::join(cases, "; "));
+    return fmt::format("{}; {} more", fmt::join(std::span(cases).first(shown), "; "), cases.size() - shown);
 }
 
 }  // namespace
@@ -249,7 +249,7 @@ std::string summary_of(const CheckResult& j) {
         for (const auto& [message, check_cases] : f.sentences)
             details += fmt::format("  [{}] {}\n", listed_cases(check_cases), message);
     }
-    if (const std::string left = skipped_text(j); !left.empty()) out += left + "\n";
+    if (const std::string skipped = skipped_text(j); !skipped.empty()) out += skipped + "\n";
     return out + details;
 }
 
@@ -284,7 +284,7 @@ std::string what_is_wrong(const CheckResult& result, std::size_t most_lines) {
     std::vector<Finding> findings = findings_of(result);
     std::erase_if(findings, [](const Finding& f) { return f.expected; });
     std::vector<std::string> last;
-    if (const std::string left = skipped_text(result); !left.empty()) last.push_back(in_one_line(left));
+    if (const std::string skipped = skipped_text(result); !skipped.empty()) last.push_back(in_one_line(skipped));
     if (!findings.empty())
         if (const std::string next = next_step_of(findings[0]); !next.empty()) last.push_back(next);
     std::vector<std::string> lines;
@@ -306,14 +306,14 @@ std::string what_is_wrong(const CheckResult& result, std::size_t most_lines) {
 
 std::string unseen_text(const CheckResult& result) {
     if (result.state == State::error) return "";  // the right verdicts are incomplete
-    std::map<std::string, double> most;
+    std::map<std::string, double> largest;
     for (const Verdict& v : result.verdicts)
         for (const auto& [kind, size] : v.hidden)
-            if (v.state == State::right) most[kind] = std::max(most[kind], size);
+            if (v.state == State::right) largest[kind] = std::max(largest[kind], size);
     std::vector<std::string> sizes;
     const auto add = [&](const char* kind, const char* words, double unit) {
-        if (const auto at = most.find(kind); at != most.end())
-            sizes.push_back(fmt::format(fmt::runtime(words), std::min(unit * at->second, unit)));
+        if (const auto found = largest.find(kind); found != largest.end())
+            sizes.push_back(fmt::format(fmt::runtime(words), std::min(unit * found->second, unit)));
     };
     add("constant", "a constant factor of {:.2g} %", 100);
     add("leak", "{:.2g} % of the draws uniform", 100);
@@ -330,10 +330,10 @@ std::string nothing_drawn_text(const CheckResult& result) {
     constexpr double least_share = 0.01;
     std::string out;
     const auto add = [&](double Verdict::* share, const char* what) {
-        const auto most = std::ranges::max_element(result.verdicts, {}, share);
-        if (most == result.verdicts.end() || !((*most).*share > least_share)) return;
-        out += fmt::format("{}Up to {:.3g} % of the draws {}: {}{}.", out.empty() ? "" : " ", 100 * (*most).*share,
-            what, most->arm, most->check_case == without_wo ? "" : " at " + most->check_case);
+        const auto largest = std::ranges::max_element(result.verdicts, {}, share);
+        if (largest == result.verdicts.end() || !((*largest).*share > least_share)) return;
+        out += fmt::format("{}Up to {:.3g} % of the draws {}: {}{}.", out.empty() ? "" : " ", 100 * (*largest).*share,
+            what, largest->arm, largest->check_case == without_wo ? "" : " at " + largest->check_case);
     };
     add(&Verdict::nothing, "are no sample (they have pdf 0)");
     add(&Verdict::outside, "have a direction below the surface, where pdf(w) is 0");
@@ -380,21 +380,22 @@ std::string line_of(const ImpliedDensity& d, const std::string& name) {
 }  // namespace
 
 std::string implied_text(const CheckResult& j) {
-    std::vector<const Verdict*> all;
+    std::vector<const Verdict*> verdicts;
     bool one_arm = true;
     for (const Verdict& v : j.verdicts)
         if (v.implied) {
-            all.push_back(&v);
-            one_arm = one_arm && v.arm == all[0]->arm;
+            verdicts.push_back(&v);
+            one_arm = one_arm && v.arm == verdicts[0]->arm;
         }
-    if (all.empty()) return "";
+    if (verdicts.empty()) return "";
     std::string out = fmt::format("{:<20}", "degrees from n");
     for (std::size_t k = 0; k < rings; ++k)
         out += fmt::format(" {:<15}", fmt::format("{:g} to {:g}", edges[k], edges[k + 1]));
     out += " highest\n";
-    for (std::size_t i = 0; i < std::min(all.size(), most_lines); ++i)
-        out += line_of(*all[i]->implied, one_arm ? all[i]->check_case : all[i]->arm + " " + all[i]->check_case);
-    if (all.size() > most_lines) out += fmt::format("and {} more\n", all.size() - most_lines);
+    for (std::size_t i = 0; i < std::min(verdicts.size(), most_lines); ++i)
+        out += line_of(*verdicts[i]->implied,
+            one_arm ? verdicts[i]->check_case : verdicts[i]->arm + " " + verdicts[i]->check_case);
+    if (verdicts.size() > most_lines) out += fmt::format("and {} more\n", verdicts.size() - most_lines);
     return "The density that the draws imply, since there is no pdf(w): 1/sr, the mean over each ring and one standard "
            "error.\n" +
         out + "Finer in the JSON: implied_rings, implied_bins.";

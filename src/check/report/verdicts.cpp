@@ -18,11 +18,11 @@ namespace {
 
 void add_sizes(const Sizes& s, bool of_points, Verdict& v) {
     const auto add = [&](const char* name, const std::optional<double>& size) {
-        constexpr double all = 0.99;  // of the draws or of p: no fault of this kind would be found
-        if (!size || *size > all) return;
-        double& most = v.hidden[name];
-        most = std::max(most, *size);
-        v.evidence["would_have_found"][name] = most;
+        constexpr double whole = 0.99;  // of the draws or of p: no fault of this kind would be found
+        if (!size || *size > whole) return;
+        double& largest = v.hidden[name];
+        largest = std::max(largest, *size);
+        v.evidence["would_have_found"][name] = largest;
     };
     if (v.name == "normalised") add("constant", s.constant);
     if (v.name == "mean") add("bias", s.bias);
@@ -87,9 +87,9 @@ void describe_worst(const CheckAt& c, const Finding& worst, Verdict& v) {
 void decide_at(const CheckAt& c, Verdict& v) {
     const DrawChecks& checks = c.observations.checks;
     if (v.name == verdict_names[0] && checks.tested > 0) {
-        const auto of = static_cast<double>(checks.tested);
-        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing - checks.outside) / of);
-        v.outside = std::max(v.outside, static_cast<double>(checks.outside) / of);
+        const auto tested = static_cast<double>(checks.tested);
+        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing - checks.outside) / tested);
+        v.outside = std::max(v.outside, static_cast<double>(checks.outside) / tested);
     }
     for (const SmallFault& f : c.small)
         if (info(f.family).verdict == v.name) {
@@ -196,13 +196,13 @@ void withhold(const CheckAt& c, Verdict& v) {
 
 /// Adds the cause to one verdict: a constant to `normalised`, another density to `density`, otherwise to the verdict of
 /// the cause, or else to the first wrong verdict.
-void place(const Cause& cause, std::vector<Verdict>& all) {
+void place(const Cause& cause, std::vector<Verdict>& verdicts) {
     std::vector<std::string_view> names = {"density", "normalised"};
     if (!cause.verdict.empty()) names = {cause.verdict};
     else if (cause.factor == "constant") names = {"normalised", "density"};
     names.push_back("");
     for (std::string_view name : names)
-        for (Verdict& v : all) {
+        for (Verdict& v : verdicts) {
             if (v.state != State::wrong || (!name.empty() && v.name != name)) continue;
             v.cause = cause.text;
             v.evidence["diagnosis"] = cause.factor;

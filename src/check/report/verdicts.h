@@ -13,13 +13,13 @@
 
 namespace crescent::check {
 
-std::string sentence_of(const CheckAt& at, const Finding& finding);
+std::string sentence_of(const CheckAt& check, const Finding& finding);
 std::string sentence_of(const SmallFault& fault, const Traits& traits);
 /// The measurement of a right verdict; "" for a verdict without one.
-std::string sentence_of_right(const CheckAt& at, std::string_view verdict);
+std::string sentence_of_right(const CheckAt& check, std::string_view verdict);
 
 /// What a verdict lacks that was not decided: the size, and how small it has to be.
-std::string sentence_of_open(const CheckAt& at, std::string_view verdict);
+std::string sentence_of_open(const CheckAt& check, std::string_view verdict);
 
 // ---- Where draws and p differ (report/places.cpp).
 
@@ -32,7 +32,7 @@ struct ShareDifference {
     double errors() const;
 };
 /// The largest difference that is clear, in the smallest node that has most of it; none if no node differs clearly.
-std::optional<ShareDifference> largest_difference(const CheckAt& at);
+std::optional<ShareDifference> largest_difference(const CheckAt& check);
 /// "Of the draws 12.3 % +- 0.4 % are at polar angles 0 to 30 deg, where p has 6.1 % +- 0.1 %."
 std::string sentence_of(const ShareDifference& difference, const Traits& traits);
 std::string region_text(const ChartRect& rect, const Traits& traits);
@@ -44,7 +44,7 @@ struct Concentration {
     double drawn = 0, claimed = 0;
     double error = 0;  // of ln(drawn / claimed)
 };
-std::optional<Concentration> concentration_of(const CheckAt& at);
+std::optional<Concentration> concentration_of(const CheckAt& check);
 /// "" if unknown.
 std::string sentence_of(const Concentration& concentration, const Traits& traits);
 
@@ -74,7 +74,7 @@ std::vector<Verdict> verdicts_of(
 /// Both sides are sums of h = q / (p + q), in units of draws. Without a density: the density that the draws imply, in
 /// 1/sr. None if there are no draws.
 /// Draws and expectation over a line or a set; none for another domain.
-std::optional<LineHistogram> line_picture(const CheckCase& check_case, const CheckAt& at);
+std::optional<LineHistogram> line_picture(const CheckCase& check_case, const CheckAt& check);
 std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& c);
 /// Histogram of the weights with the fitted tail. x: weights of all techniques.
 WeightHistogram weight_picture(const CheckCase& check_case, std::span<const double> x, const WeightTail& tail);

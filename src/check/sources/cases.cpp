@@ -38,9 +38,9 @@ std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles)
             {-1.2, 0.4, 0.9}, {-0.4, -0.9, 1.6}, {0.9, 0.5, 0.7}}};
         const std::array<std::array<std::size_t, 3>, 5> corners = {
             {{0, 1, 2}, {1, 3, 2}, {4, 5, 0}, {4, 2, 5}, {0, 6, 2}}};
-        std::vector<EmittingTriangle> all;
+        std::vector<EmittingTriangle> emitting;
         for (std::uint32_t k = 0; k < corners.size(); ++k) {
-            EmittingTriangle& t = all.emplace_back();
+            EmittingTriangle& t = emitting.emplace_back();
             for (std::size_t c = 0; c < 3; ++c) t.corner[c] = p[corners[k][c]];
             const Vec3d across = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
             if (dot(across, t.corner[0]) > 0) std::swap(t.corner[1], t.corner[2]);  // its front faces the point
@@ -48,7 +48,7 @@ std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles)
             t.radiance = {radiance, radiance, radiance};
             t.triangle = k;
         }
-        out->triangles.emplace(std::move(all));
+        out->triangles.emplace(std::move(emitting));
     }
     return out;
 }
@@ -81,22 +81,22 @@ using Setups = std::vector<CaseSetup>;
 
 /// The surfaces that an arm declares; without any, every lobe at a medium width, and Lambert.
 Setups setups_of(const SamplerInfo& arm) {
-    Setups all;
+    Setups setups;
     for (const CaseSurface& on : arm.check_cases)
-        all.push_back(case_setup(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
+        setups.push_back(case_setup(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
     // An arm that is checked only under a disk samples lights, so it is also checked under every other kind.
     const auto add = [&](std::string_view light) {
-        all.push_back(case_setup(LobeKind::none, true, std::string(light), 32));
+        setups.push_back(case_setup(LobeKind::none, true, std::string(light), 32));
     };
     if (std::ranges::any_of(arm.check_cases, [](const CaseSurface& on) { return on.light == "disk"; })) {
         for_each_area_light([&]<class Kind>() { add(Kind::name); });
         add("disk + rectangle");
     }
-    if (!all.empty()) return all;
-    all.push_back(case_setup(LobeKind::none, true, "fill", 32));
+    if (!setups.empty()) return setups;
+    setups.push_back(case_setup(LobeKind::none, true, "fill", 32));
     for (const LobeInfo& lobe : lobe_infos())
-        all.push_back(case_setup(lobe.kind, true, "fill", lobe.parameter == LobeParameter::alpha ? 0.3 : 32));
-    return all;
+        setups.push_back(case_setup(lobe.kind, true, "fill", lobe.parameter == LobeParameter::alpha ? 0.3 : 32));
+    return setups;
 }
 
 /// The expected behaviour of an arm on a surface at theta_R = theta.
@@ -114,9 +114,9 @@ ExpectedBehaviour theory_of(const SamplerInfo& arm, const CaseSetup& on, double 
 /// Sets the parameters of this surface and light; removes the keys that it uses from `unused`.
 void apply(const Settings& settings, CaseSetup& setup, Settings& unused) {
     const auto set = [&](const char* key, bool has, double& to) {
-        const auto at = settings.find(key);
-        if (at == settings.end() || !has) return;
-        to = at->second;
+        const auto found = settings.find(key);
+        if (found == settings.end() || !has) return;
+        to = found->second;
         unused.erase(key);
     };
     SurfaceSetup& f = setup.surface;
@@ -213,7 +213,7 @@ CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std
     return t;
 }
 
-std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settings, bool full, const Grid& own) {
+std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settings, bool full, const Grid& given_grid) {
     std::vector<CheckCase> check_cases;
     const std::vector<std::string> names = sampler_names();
     if (!arm.empty() && std::find(names.begin(), names.end(), arm) == names.end()) {
@@ -234,7 +234,7 @@ std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settin
             if (!seen) setups.push_back(s);
         }
         for (const CaseSetup& s : setups)
-            for (const auto& [theta, azimuth] : own.empty() ? wo_grid(full) : own) {
+            for (const auto& [theta, azimuth] : given_grid.empty() ? wo_grid(full) : given_grid) {
                 CheckCase t = make_case_on(s, theta, azimuth, name, make_adapter(name, s, tilt(theta, azimuth)));
                 t.theory = theory_of(*find_arm_info(name), s, theta);
                 check_cases.push_back(std::move(t));
@@ -254,7 +254,7 @@ template <template <class> class A> class ForUserBrdf : public BuiltIn<A> {
 public:
     ForUserBrdf(std::shared_ptr<const SamplerAdapter> owner, Vec3d wo)
         : BuiltIn<A>({}, wo, {}), owner_(std::move(owner)) {}
-    void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
+    void f(std::span<const Pair> pairs, std::span<double> out) const override { owner_->f(pairs, out); }
     bool serial() const override { return owner_->serial(); }
     bool limited() const override { return owner_->limited(); }
 
@@ -289,12 +289,13 @@ Grid grid_for(const Traits& traits, bool full) {
 
 }  // namespace
 
-std::vector<CheckCase> make_user_cases(const std::shared_ptr<const SamplerAdapter>& given, bool full, const Grid& own) {
+std::vector<CheckCase> make_user_cases(
+    const std::shared_ptr<const SamplerAdapter>& given, bool full, const Grid& given_grid) {
     std::vector<CheckCase> check_cases;
     const std::shared_ptr<const SamplerAdapter> adapter =
         given->traits().reciprocal_weight ? with_bounded_weights(given) : given;
     const Traits traits = adapter->traits();
-    const Grid grid = own.empty() ? grid_for(traits, full) : own;
+    const Grid grid = given_grid.empty() ? grid_for(traits, full) : given_grid;
     for (const auto& [theta, azimuth] : grid) {
         check_cases.push_back(make_user_case(adapter, theta, azimuth));
         const bool can_be_ranked =
@@ -325,15 +326,15 @@ public:
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         arm_->sample(t, wo, u, out);
     }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override { arm_->pdf(t, at, out); }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        arm_->exact_pdf(t, at, out);
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override { arm_->pdf(t, pairs, out); }
+    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        arm_->exact_pdf(t, pairs, out);
     }
-    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
-        arm_->mis_weight(t, at, out);
+    void mis_weight(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        arm_->mis_weight(t, pairs, out);
     }
     bool has_f() const override { return owner_->has_f(); }
-    void f(std::span<const Pair> at, std::span<double> out) const override { owner_->f(at, out); }
+    void f(std::span<const Pair> pairs, std::span<double> out) const override { owner_->f(pairs, out); }
     bool serial() const override { return owner_->serial(); }
     bool limited() const override { return owner_->limited(); }
 

@@ -111,28 +111,28 @@ public:
             out[i] = {widen(d.wi), static_cast<double>(d.pdf.v), {}};
         }
     }
-    void pdf(int technique, std::span<const Pair> at, std::span<double> out) const override {
-        for (std::size_t i = 0; i < at.size(); ++i)
-            out[i] = static_cast<double>(density(single_, technique, as<float>(at[i].wo), as<float>(at[i].wi)));
+    void pdf(int technique, std::span<const Pair> pairs, std::span<double> out) const override {
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            out[i] = static_cast<double>(density(single_, technique, as<float>(pairs[i].wo), as<float>(pairs[i].wi)));
     }
-    void exact_pdf(int technique, std::span<const Pair> at, std::span<double> out) const override {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = density(double_, technique, at[i].wo, at[i].wi);
+    void exact_pdf(int technique, std::span<const Pair> pairs, std::span<double> out) const override {
+        for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = density(double_, technique, pairs[i].wo, pairs[i].wi);
     }
-    void mis_weight(int technique, std::span<const Pair> at, std::span<double> out) const override {
-        for (std::size_t i = 0; i < at.size(); ++i) {
+    void mis_weight(int technique, std::span<const Pair> pairs, std::span<double> out) const override {
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
             out[i] = 1;
             if constexpr (paired) {
-                const Vec3<float> o = as<float>(at[i].wo), w = as<float>(at[i].wi);
-                const float own = density(single_, technique, o, w);
-                const Drawn<float> d{w, {own}};
+                const Vec3<float> o = as<float>(pairs[i].wo), w = as<float>(pairs[i].wi);
+                const float p = density(single_, technique, o, w);
+                const Drawn<float> d{w, {p}};
                 out[i] = static_cast<double>(
                     technique == 0 ? single_.template weight<0>(o, d) : single_.template weight<1>(o, d));
             }
         }
     }
     bool has_f() const override { return true; }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = brdf_value(surface_, at[i].wo, at[i].wi);
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
+        for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = brdf_value(surface_, pairs[i].wo, pairs[i].wi);
     }
 
 protected:

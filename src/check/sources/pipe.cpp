@@ -115,7 +115,7 @@ public:
     void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
         const std::size_t lights = batch.lights.size();
-        std::vector<Pair> at;
+        std::vector<Pair> pairs;
         std::vector<double> contexts, context;
         for (std::size_t r = 0; r < batch.runs.size(); ++r) {
             const ExternalRun& run = batch.runs[r];
@@ -123,26 +123,26 @@ public:
             add_context(hello_.uses, run, batch.lights,
                 lights == 0 ? batch.lights_at : batch.lights_at.subspan(r * lights, lights), context);
             for (std::size_t i = 0; i < run.rows; ++i) {
-                at.push_back({run.wo, wi[at.size()]});
+                pairs.push_back({run.wo, wi[pairs.size()]});
                 contexts.insert(contexts.end(), context.begin(), context.end());
             }
         }
-        values("pdf_", "pdf", "one number", at, 1, out, contexts, lights);
+        values("pdf_", "pdf", "one number", pairs, 1, out, contexts, lights);
     }
-    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
-        values("pdf_", "pdf", "one number", at, 1, out, example_, example_lights);
+    void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
+        values("pdf_", "pdf", "one number", pairs, 1, out, example_, example_lights);
     }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
         if (hello_.traits.channels == 1)
-            return values(f_operation(), f_verb(), "one number", at, 1, out, example_, example_lights);
+            return values(f_operation(), f_verb(), "one number", pairs, 1, out, example_, example_lights);
         std::vector<Vec3d> by_channel(out.size());
-        f_channels(at, by_channel);
+        f_channels(pairs, by_channel);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = luminance(by_channel[i]);
     }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        if (hello_.traits.channels == 1) return SamplerAdapter::f_channels(at, out);
+    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
+        if (hello_.traits.channels == 1) return SamplerAdapter::f_channels(pairs, out);
         std::vector<double> answers(3 * out.size());
-        values("f___", "f", "three numbers, one a channel", at, 3, answers, example_, example_lights);
+        values("f___", "f", "three numbers, one a channel", pairs, 3, answers, example_, example_lights);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = {answers[3 * i], answers[3 * i + 1], answers[3 * i + 2]};
     }
 
@@ -315,14 +315,14 @@ private:
 
     /// pdf or f; both are 0, without a request, below the horizon of a sampler of the hemisphere. `context`: the
     /// columns common to all rows, or those of each row.
-    void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> all,
+    void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> pairs,
         std::size_t columns, std::span<double> out, const std::vector<double>& context, std::size_t lights) const {
         const std::size_t columns_of_context = context_columns(hello_.uses, lights),
                           given = columns_of_wo() + columns_of_point() + columns_of_context;
         const bool each = columns_of_context > 0 && context.size() > columns_of_context;  // a context for each row
-        std::vector<double> in, factor(all.size());  // factor: of an answer; 0 without a request
-        for (std::size_t row = 0; row < all.size(); ++row) {
-            const Pair& p = all[row];
+        std::vector<double> in, factor(pairs.size());  // factor: of an answer; 0 without a request
+        for (std::size_t row = 0; row < pairs.size(); ++row) {
+            const Pair& p = pairs[row];
             if (hello_.hemisphere && !(p.wi.z > 0)) continue;
             const std::size_t before = in.size();
             add_wo(wo_to_send(p.wo), in);
@@ -332,8 +332,9 @@ private:
                 in.resize(before);
                 continue;
             }
-            const auto own = std::span(context).subspan(each ? row * columns_of_context : 0, columns_of_context);
-            in.insert(in.end(), own.begin(), own.end());
+            const auto context_row =
+                std::span(context).subspan(each ? row * columns_of_context : 0, columns_of_context);
+            in.insert(in.end(), context_row.begin(), context_row.end());
         }
         const std::size_t count = in.size() / given;
         std::vector<double> answers(count * columns);
@@ -349,7 +350,7 @@ private:
                 return blank(s);
             });
         std::size_t next = 0;
-        for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
             const bool requested = factor[i] > 0;
             for (std::size_t k = 0; k < columns; ++k)
                 out[i * columns + k] = requested ? answers[next * columns + k] * factor[i] : 0;
@@ -495,9 +496,9 @@ struct HandshakeKey {
 
 const std::array<HandshakeKey, 16>& keys() {
     using S = std::string_view;
-    static const std::array<HandshakeKey, 16> all = {{
+    static const std::array<HandshakeKey, 16> handshake_keys = {{
         {"u", "a whole number from 1 to 8",
-            [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most, g.traits.numbers); }},
+            [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most_numbers, g.traits.numbers); }},
         {"domain", number_or_domain.c_str(),
             [](S v, Handshake& g) {
                 g.domain.reset();
@@ -510,12 +511,12 @@ const std::array<HandshakeKey, 16>& keys() {
         {"wo", "upper, both or none",
             [](S v, Handshake& g) {
                 int which = 0;
-                const bool known = one_of(v, {"upper", "both", "none"}, which);
+                const bool is_word = one_of(v, {"upper", "both", "none"}, which);
                 g.states_wo = true;
                 g.traits.wo = which == 1 ? Traits::WoDomain::both
                     : which == 2         ? Traits::WoDomain::none
                                          : Traits::WoDomain::upper;
-                return known;
+                return is_word;
             }},
         {"channels", "1 or 3",
             [](S v, Handshake& g) { return whole_number(v, 1, 3, g.traits.channels) && g.traits.channels != 2; }},
@@ -549,14 +550,14 @@ const std::array<HandshakeKey, 16>& keys() {
         {"uses", "names from s, alpha, rho_d, rho_s, side, eta and lights, separated by commas",
             [](S v, Handshake& g) { return take_context_names(v, g.uses); }},
     }};
-    return all;
+    return handshake_keys;
 }
 
 HandshakeError unknown(std::string_view name) {
-    std::vector<std::string> known;
-    for (const HandshakeKey& k : keys()) known.emplace_back(k.name);
-    return {fmt::format("one of {} before the '='", fmt::join(known, ", ")),
-        fmt::format("got the unknown key {}{}", shown(name), did_you_mean(name, known))};
+    std::vector<std::string> names;
+    for (const HandshakeKey& k : keys()) names.emplace_back(k.name);
+    return {fmt::format("one of {} before the '='", fmt::join(names, ", ")),
+        fmt::format("got the unknown key {}{}", shown(name), did_you_mean(name, names))};
 }
 
 HandshakeError read_key(std::string_view word, Handshake& out) {
@@ -597,8 +598,8 @@ HandshakeError settle_domain(Handshake& out) {
     }
     if (!out.domain) return {};
     const auto chart = std::make_shared<const DomainChart>(*out.domain);
-    if (const int most = most_numbers(*chart); out.traits.numbers > most)
-        return {fmt::format("at most {} random numbers for this domain", most),
+    if (const int limit = most_numbers(*chart); out.traits.numbers > limit)
+        return {fmt::format("at most {} random numbers for this domain", limit),
             fmt::format("got u={}", out.traits.numbers)};
     if (out.delta) return {"no delta=yes for a domain that is not of directions", "got delta=yes"};
     if (!out.uses.empty()) return {"no uses= for a domain that is not of directions", "got uses="};
@@ -708,9 +709,9 @@ bool names_shader(const std::string& word) {
 
 std::shared_ptr<const ProgramSampler> start_shader(
     const std::string& file, const std::vector<std::string>& words, const PipeLimits& limits) {
-    std::vector<std::string> all = words;
-    all.insert(all.end(), {"--", file});
-    return start_python_module("crescent_shader", all, "'crescent-bench[shader]'", limits, file);
+    std::vector<std::string> arguments = words;
+    arguments.insert(arguments.end(), {"--", file});
+    return start_python_module("crescent_shader", arguments, "'crescent-bench[shader]'", limits, file);
 }
 
 }  // namespace crescent

@@ -53,10 +53,10 @@ std::string PipeConnection::end_of_output() const {
 bool PipeConnection::fill() {
     incoming_.erase(0, read_from_);
     read_from_ = 0;
-    constexpr std::size_t most = 1 << 18;
+    constexpr std::size_t chunk = 1 << 18;
     const std::size_t before = incoming_.size();
-    incoming_.resize(before + most);
-    const ssize_t n = program_.read(incoming_.data() + before, most);
+    incoming_.resize(before + chunk);
+    const ssize_t n = program_.read(incoming_.data() + before, chunk);
     const int error = errno;
     incoming_.resize(before + static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
     return n > 0 || (n < 0 && (error == EAGAIN || error == EINTR));
@@ -203,8 +203,8 @@ void PipeConnection::blocks(const Rows& rows) {
 /// Reads the available part of the answer to `n` rows; returns false at the end of the program's output.
 bool PipeConnection::take_block(
     Exchange& x, const Rows& rows, std::size_t n, std::string& head, std::size_t& payload_read) {
-    const auto read = [&](char* to, std::size_t most, std::size_t& got) {
-        const ssize_t count = program_.read(to, most);
+    const auto read = [&](char* to, std::size_t limit, std::size_t& got) {
+        const ssize_t count = program_.read(to, limit);
         const bool open = count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
         got = static_cast<std::size_t>(std::max<ssize_t>(count, 0));
         return open;
@@ -217,9 +217,9 @@ bool PipeConnection::take_block(
         head.resize(before + got);
         return open;
     };
-    const auto number = [&](std::size_t at) {
+    const auto number = [&](std::size_t offset) {
         std::uint32_t value = 0;
-        std::memcpy(&value, head.data() + at, sizeof value);
+        std::memcpy(&value, head.data() + offset, sizeof value);
         return value;
     };
     const auto has = [&](std::size_t size, bool& open) {

@@ -272,11 +272,11 @@ public:
         }
         count(u.size());
     }
-    void pdf(int /*technique*/, std::span<const Pair> at, std::span<double> out) const override {
-        values('p', "crescent_sampler_pdf", at, surface_, out);
+    void pdf(int /*technique*/, std::span<const Pair> pairs, std::span<double> out) const override {
+        values('p', "crescent_sampler_pdf", pairs, surface_, out);
     }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        values('f', "crescent_sampler_f", at, surface_, out);
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
+        values('f', "crescent_sampler_f", pairs, surface_, out);
     }
     bool uses_lights() const override { return std::ranges::find(info_.uses, "lights") != info_.uses.end(); }
     bool has_density() const override { return info_.pdf; }
@@ -298,21 +298,21 @@ private:
     /// Adds the light of a check if the plugin uses lights.
     ExternalBatch with_example_light(std::span<const ExternalRun> runs, std::span<const double> u) const {
         if (!uses_lights()) return {runs, u};
-        static thread_local std::vector<ExternalLightAt> at;
-        at.assign(runs.size(), example_.at);
-        return {.runs = runs, .u = u, .lights = {&example_.light, 1}, .lights_at = at};
+        static thread_local std::vector<ExternalLightAt> seen;
+        seen.assign(runs.size(), example_.at);
+        return {.runs = runs, .u = u, .lights = {&example_.light, 1}, .lights_at = seen};
     }
     static std::span<double> doubles(std::span<Vec3d> v) { return {&v.data()->x, 3 * v.size()}; }
 
-    void values(char operation, const char* function, std::span<const Pair> at, const ExternalSurface& on,
+    void values(char operation, const char* function, std::span<const Pair> pairs, const ExternalSurface& on,
         std::span<double> out) const {
         std::vector<ExternalRun> runs;
         std::vector<Vec3d> wi;
-        for (std::size_t first = 0; first < at.size(); first += plugin_rows) {
-            const std::size_t rows = std::min<std::size_t>(plugin_rows, at.size() - first);
+        for (std::size_t first = 0; first < pairs.size(); first += plugin_rows) {
+            const std::size_t rows = std::min<std::size_t>(plugin_rows, pairs.size() - first);
             runs.clear();
             wi.clear();
-            for (const auto& [wo, direction] : at.subspan(first, rows)) {
+            for (const auto& [wo, direction] : pairs.subspan(first, rows)) {
                 const bool same =
                     !runs.empty() && runs.back().wo.x == wo.x && runs.back().wo.y == wo.y && runs.back().wo.z == wo.z;
                 if (!same) runs.push_back(on_surface(wo, on, 0));
@@ -325,7 +325,7 @@ private:
                 std::copy_n(block.values, rows, out.subspan(first, rows).begin());
             });
         }
-        count(at.size());
+        count(pairs.size());
     }
 
     /// Calls with a host that no other thread uses. After a failure neither the host nor the plugin is used again.

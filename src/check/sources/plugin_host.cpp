@@ -52,21 +52,21 @@ struct Pipes {
 
     /// Returns false at the end of the input.
     bool read(void* to, std::size_t size) const {
-        for (auto* at = static_cast<char*>(to); size > 0;) {
-            const ssize_t n = ::read(in, at, size);
+        for (auto* free_bytes = static_cast<char*>(to); size > 0;) {
+            const ssize_t n = ::read(in, free_bytes, size);
             if (n < 0 && errno == EINTR) continue;
             if (n <= 0) return false;
-            at += n;
+            free_bytes += n;
             size -= static_cast<std::size_t>(n);
         }
         return true;
     }
     void write(const void* from, std::size_t size) const {
-        for (const auto* at = static_cast<const char*>(from); size > 0;) {
-            const ssize_t n = ::write(out, at, size);
+        for (const auto* rest = static_cast<const char*>(from); size > 0;) {
+            const ssize_t n = ::write(out, rest, size);
             if (n < 0 && errno == EINTR) continue;
             if (n <= 0) leave();
-            at += n;
+            rest += n;
             size -= static_cast<std::size_t>(n);
         }
     }
@@ -88,9 +88,9 @@ void reset_signals() {
 }
 
 void start_watching(int& input) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);  // signals are for the plugin's thread
+    sigset_t signals, before;
+    sigfillset(&signals);
+    pthread_sigmask(SIG_SETMASK, &signals, &before);  // signals are for the plugin's thread
     pthread_t thread;
     if (pthread_create(&thread, nullptr, watch, &input) != 0) ::_exit(1);
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
@@ -190,7 +190,8 @@ struct Columns {
         if (!pipes.read(run.data(), run.size() * sizeof(double))) return false;
         std::size_t row = 0;
         for (const double* r = run.data(); r != run.data() + run.size(); r += 4 + columns)
-            for (auto left = static_cast<std::size_t>(r[0]); left > 0 && row < request.rows; --left, ++row) {
+            for (auto remaining = static_cast<std::size_t>(r[0]); remaining > 0 && row < request.rows;
+                --remaining, ++row) {
                 std::copy_n(r + 1, 3, &wo[3 * row]);
                 std::copy_n(r + 4, columns, surface.data() + columns * row);
             }

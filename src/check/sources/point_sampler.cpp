@@ -20,10 +20,10 @@ public:
             throw InputError(
                 {name_, 0, 0}, fmt::format("the domain '{}' is not valid: {}", s_.domain, Domain::refusal(s_.domain)));
         auto chart = std::make_shared<DomainChart>(*domain);
-        if (const int most = most_numbers(*chart); s_.numbers < 1 || s_.numbers > most)
+        if (const int limit = most_numbers(*chart); s_.numbers < 1 || s_.numbers > limit)
             throw InputError({name_, 0, 0},
                 fmt::format(
-                    "takes {} random numbers: expected 1 to {} over the domain {}", s_.numbers, most, s_.domain));
+                    "takes {} random numbers: expected 1 to {} over the domain {}", s_.numbers, limit, s_.domain));
         traits_.numbers = s_.numbers + static_cast<int>(chart->spreads());
         traits_.wo = Traits::WoDomain::none;
         traits_.has_pdf = static_cast<bool>(s_.pdf);
@@ -62,7 +62,7 @@ private:
     std::size_t coordinates() const { return chart().domain().coordinates(); }
 
     double drawn(const PrimarySample& u, Point& x) const {
-        std::array<double, PrimarySample::most> numbers{};
+        std::array<double, PrimarySample::most_numbers> numbers{};
         for (int k = 0; k < s_.numbers; ++k) numbers[static_cast<std::size_t>(k)] = u[k];
         try {
             return s_.sample(

@@ -130,8 +130,8 @@ NumberTable read_npy(FileDiagnostics& in, std::istream& file, const std::vector<
 }  // namespace
 
 int NumberTable::column(std::string_view name) const {
-    const auto at = std::find(columns.begin(), columns.end(), name);
-    return at == columns.end() ? -1 : static_cast<int>(at - columns.begin());
+    const auto found = std::find(columns.begin(), columns.end(), name);
+    return found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
 }
 
 NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<std::string>>& layouts) {
@@ -180,13 +180,14 @@ void SampleFile::read_samples(const std::string& path) {
     has_drawn_f_ = f >= 0;
     lines_ = t.lines;
     for (std::size_t r = 0; r < t.rows(); ++r) {
-        const auto at = [&](const char* name) { return t.at(r, static_cast<std::size_t>(t.column(name))); };
-        u_.push_back({at("u1"), at("u2")});
+        const auto value_of = [&](const char* name) { return t.at(r, static_cast<std::size_t>(t.column(name))); };
+        u_.push_back({value_of("u1"), value_of("u2")});
         for (const char* name : {"u1", "u2"})
-            if (!(at(name) >= 0 && at(name) <= 1))
+            if (!(value_of(name) >= 0 && value_of(name) <= 1))
                 in.add(t.lines.empty() ? 0 : t.lines[r], static_cast<unsigned>(t.column(name)) + 1,
-                    fmt::format("{} is {:g}; expected a number from 0 to 1", name, at(name)));
-        Draw d{.wi = {at("wix"), at("wiy"), at("wiz")}, .pdf = at("pdf"), .weight = {}, .f = {}};
+                    fmt::format("{} is {:g}; expected a number from 0 to 1", name, value_of(name)));
+        Draw d{
+            .wi = {value_of("wix"), value_of("wiy"), value_of("wiz")}, .pdf = value_of("pdf"), .weight = {}, .f = {}};
         if (f >= 0) d.f = t.at(r, static_cast<std::size_t>(f));
         draws_.push_back(d);
     }
@@ -200,9 +201,9 @@ void SampleFile::read_table(const std::string& path) {
     std::vector<double> rows;
     double lowest = 1;
     for (std::size_t r = 0; r < t.rows(); ++r) {
-        const auto at = [&](const char* name) { return t.at(r, static_cast<std::size_t>(t.column(name))); };
-        const double cos = polar ? at("cos_theta") : at("wiz"), p = at("pdf");
-        const double phi = polar ? turned(at("phi")) : turned(Vec3d{at("wix"), at("wiy"), 0});
+        const auto value_of = [&](const char* name) { return t.at(r, static_cast<std::size_t>(t.column(name))); };
+        const double cos = polar ? value_of("cos_theta") : value_of("wiz"), p = value_of("pdf");
+        const double phi = polar ? turned(value_of("phi")) : turned(Vec3d{value_of("wix"), value_of("wiy"), 0});
         rows.insert(rows.end(), {cos, phi, p});
         lowest = std::min(lowest, cos);
         if (!(std::fabs(cos) <= 1 + 1e-6) || !(phi >= 0 && phi <= 2 * pi + 1e-6) || !std::isfinite(p))
@@ -232,14 +233,11 @@ bool SampleFile::agrees_as_cells() const {
     return 10 * alike >= 9 * drawn;
 }
 
-double SampleFile::of_cell(Vec3d w) const {
-    const std::array<double, 2> at = {w.z, turned(w)};
-    return w.z < floor_ ? 0 : grid_.of_cell(at);
-}
+double SampleFile::of_cell(Vec3d w) const { return w.z < floor_ ? 0 : grid_.of_cell(std::array{w.z, turned(w)}); }
 
-void SampleFile::pdf(int, std::span<const Pair> at, std::span<double> out) const {
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        const Vec3d w = at[i].wi;
+void SampleFile::pdf(int, std::span<const Pair> pairs, std::span<double> out) const {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const Vec3d w = pairs[i].wi;
         const std::array<double, 2> place = {w.z, turned(w)};
         out[i] = w.z < floor_ ? 0 : cells_ ? grid_.of_cell(place) : grid_.between(place);
     }

@@ -57,7 +57,7 @@ public:
     SampleFile(const std::string& samples, const std::string& table);
     std::string name() const override { return name_; }
     bool has_drawn_f() const override { return has_drawn_f_; }
-    void pdf(int, std::span<const Pair> at, std::span<double> out) const override;
+    void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override;
     double tabulation_error(Vec3d w) const override;
     std::string place(std::size_t row) const override;
 

@@ -22,8 +22,8 @@ namespace crescent {
 std::optional<double> CaseDiskLight::distance(Vec3d wi) const {
     const double c = dot(center, normal), v = dot(wi, normal);
     if (!(v < 0 && c < 0)) return {};
-    const Vec3d off = wi * c - center * v;
-    if (!(dot(off, off) <= sqr(radius * v))) return {};
+    const Vec3d offset = wi * c - center * v;
+    if (!(dot(offset, offset) <= sqr(radius * v))) return {};
     return c / v;
 }
 
@@ -94,7 +94,7 @@ Draw draw_of_point(
         domain.note_outside(point);
         return {{none, none, none}, pdf};
     }
-    std::array<double, PrimarySample::most> spread{};
+    std::array<double, PrimarySample::most_numbers> spread{};
     const std::size_t count = domain.spreads();
     for (std::size_t k = 0; k < count; ++k) spread[k] = u[numbers + static_cast<int>(k)];
     const Vec3d w = domain.direction(point, std::span(spread).first(count));
@@ -120,7 +120,7 @@ PrimarySample drawn_numbers(
     for (int k = 0; k < count; k += 2) {
         const Vec2<float> u = draw(seed, pixel, i, technique + 16 * static_cast<std::uint32_t>(k) / 2);
         out[k] = u.x;
-        if (k + 1 < PrimarySample::most) out[k + 1] = u.y;
+        if (k + 1 < PrimarySample::most_numbers) out[k + 1] = u.y;
     }
     return out;
 }
@@ -151,9 +151,9 @@ template <class Value> using Cache = std::unordered_map<Key, Value, KeyHash>;
 
 /// Returns cached answers; `forward` is called once with the new pairs, in their order.
 template <class Value, class Forward>
-void answer(Cache<Value>& cache, std::span<const Pair> at, std::span<Value> out, const Forward& forward) {
+void answer(Cache<Value>& cache, std::span<const Pair> pairs, std::span<Value> out, const Forward& forward) {
     std::vector<Pair> fresh;
-    for (const Pair& p : at)
+    for (const Pair& p : pairs)
         if (cache.try_emplace(Key(p)).second) fresh.push_back(p);
     std::vector<Value> values(fresh.size());
     try {
@@ -163,7 +163,7 @@ void answer(Cache<Value>& cache, std::span<const Pair> at, std::span<Value> out,
         throw;
     }
     for (std::size_t i = 0; i < fresh.size(); ++i) cache[Key(fresh[i])] = values[i];
-    for (std::size_t i = 0; i < at.size(); ++i) out[i] = cache[Key(at[i])];
+    for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = cache[Key(pairs[i])];
 }
 
 bool same(const PrimarySample& a, const PrimarySample& b) { return a.x == b.x && a.y == b.y && a.more == b.more; }
@@ -176,21 +176,21 @@ public:
         answers_ += u.size();
         inner().sample(t, wo, u, out);
     }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        answers_ += at.size();
-        inner().pdf(t, at, out);
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        answers_ += pairs.size();
+        inner().pdf(t, pairs, out);
     }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        answers_ += at.size();
-        inner().exact_pdf(t, at, out);
+    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        answers_ += pairs.size();
+        inner().exact_pdf(t, pairs, out);
     }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        answers_ += at.size();
-        inner().f(at, out);
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
+        answers_ += pairs.size();
+        inner().f(pairs, out);
     }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        answers_ += at.size();
-        inner().f_channels(at, out);
+    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
+        answers_ += pairs.size();
+        inner().f_channels(pairs, out);
     }
     QueryUsage spending() const override {
         const QueryUsage of_all = inner().spending();
@@ -215,29 +215,29 @@ public:
         inner().sample(t, wo, u, out);
         drawn_.push_back({t, wo, {u.begin(), u.end()}, {out.begin(), out.end()}});
     }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        if (!caches_draws_ || t > 1) return inner().pdf(t, at, out);
-        answer<double>(plain_pdf_[static_cast<std::size_t>(t)], at, out,
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        if (!caches_draws_ || t > 1) return inner().pdf(t, pairs, out);
+        answer<double>(plain_pdf_[static_cast<std::size_t>(t)], pairs, out,
             [&](std::span<const Pair> a, std::span<double> o) { inner().pdf(t, a, o); });
     }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        if (t > 1) return inner().exact_pdf(t, at, out);
-        answer<double>(pdf_[static_cast<std::size_t>(t)], at, out,
+    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        if (t > 1) return inner().exact_pdf(t, pairs, out);
+        answer<double>(pdf_[static_cast<std::size_t>(t)], pairs, out,
             [&](std::span<const Pair> a, std::span<double> o) { inner().exact_pdf(t, a, o); });
     }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
         if (inner().traits().channels == 1)
-            return answer<double>(f_, at, out, [&](auto a, auto o) { inner().f(a, o); });
-        std::vector<Vec3d> by_channel(at.size());
-        f_channels(at, by_channel);
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = luminance(by_channel[i]);
+            return answer<double>(f_, pairs, out, [&](auto a, auto o) { inner().f(a, o); });
+        std::vector<Vec3d> by_channel(pairs.size());
+        f_channels(pairs, by_channel);
+        for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = luminance(by_channel[i]);
     }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        answer<Vec3d>(channels_, at, out, [&](auto a, auto o) { inner().f_channels(a, o); });
+    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
+        answer<Vec3d>(channels_, pairs, out, [&](auto a, auto o) { inner().f_channels(a, o); });
     }
-    void reference_f(std::span<const Pair> at, std::span<double> out) const override {
-        if (has_true_f()) inner().reference_f(at, out);
-        else f(at, out);
+    void reference_f(std::span<const Pair> pairs, std::span<double> out) const override {
+        if (has_true_f()) inner().reference_f(pairs, out);
+        else f(pairs, out);
     }
     const SamplerAdapter& uncached_sampler() const { return inner(); }
 
@@ -298,21 +298,21 @@ public:
         allow();
         inner().sample(t, wo, u, out);
     }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
         allow();
-        inner().pdf(t, at, out);
+        inner().pdf(t, pairs, out);
     }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
         allow();
-        inner().exact_pdf(t, at, out);
+        inner().exact_pdf(t, pairs, out);
     }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
         allow();
-        inner().f(at, out);
+        inner().f(pairs, out);
     }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
         allow();
-        inner().f_channels(at, out);
+        inner().f_channels(pairs, out);
     }
 
 private:
@@ -345,23 +345,23 @@ public:
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         forward([&] { inner().sample(t, wo, u, out); });
     }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        forward([&] { inner().pdf(t, at, out); });
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        forward([&] { inner().pdf(t, pairs, out); });
     }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        forward([&] { inner().exact_pdf(t, at, out); });
+    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        forward([&] { inner().exact_pdf(t, pairs, out); });
     }
-    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
-        forward([&] { inner().mis_weight(t, at, out); });
+    void mis_weight(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        forward([&] { inner().mis_weight(t, pairs, out); });
     }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        forward([&] { inner().f(at, out); });
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
+        forward([&] { inner().f(pairs, out); });
     }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        forward([&] { inner().f_channels(at, out); });
+    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
+        forward([&] { inner().f_channels(pairs, out); });
     }
-    void reference_f(std::span<const Pair> at, std::span<double> out) const override {
-        forward([&] { inner().reference_f(at, out); });
+    void reference_f(std::span<const Pair> pairs, std::span<double> out) const override {
+        forward([&] { inner().reference_f(pairs, out); });
     }
 
 private:

@@ -45,9 +45,9 @@ struct SamplerTimeout : SamplerError {
 
 /// The random numbers of one sample, each in [0, 1): radius and angle first, then as many more as the sampler takes.
 struct PrimarySample {
-    static constexpr int most = 8;
+    static constexpr int most_numbers = 8;
     double x = 0, y = 0;
-    std::array<double, most - 2> more{};
+    std::array<double, most_numbers - 2> more{};
     PrimarySample() = default;
     PrimarySample(double u1, double u2) : x(u1), y(u2) {}
     PrimarySample(Vec2d u) : x(u.x), y(u.y) {}
@@ -113,7 +113,9 @@ Draw draw_of_point(
     const DomainChart& domain, std::span<const double> point, double pdf, const PrimarySample& u, int numbers);
 
 /// Random numbers that a sampler of points may take, besides those that spread a point.
-inline int most_numbers(const DomainChart& domain) { return PrimarySample::most - static_cast<int>(domain.spreads()); }
+inline int most_numbers(const DomainChart& domain) {
+    return PrimarySample::most_numbers - static_cast<int>(domain.spreads());
+}
 
 /// Draws to which the chart of an infinite line is fitted, and their random numbers, `count` each.
 inline constexpr std::uint32_t draws_of_chart = 4096;
@@ -143,28 +145,28 @@ public:
     /// The name of one of several techniques; "" if it has none.
     virtual std::string technique_name(int /*technique*/) const { return ""; }
     virtual void sample(int technique, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const = 0;
-    virtual void pdf(int technique, std::span<const Pair> at, std::span<double> out) const = 0;
+    virtual void pdf(int technique, std::span<const Pair> pairs, std::span<double> out) const = 0;
     /// The same density in double if the sampler has one, for quadrature.
-    virtual void exact_pdf(int technique, std::span<const Pair> at, std::span<double> out) const {
-        pdf(technique, at, out);
+    virtual void exact_pdf(int technique, std::span<const Pair> pairs, std::span<double> out) const {
+        pdf(technique, pairs, out);
     }
     /// MIS weight of a direction drawn by `technique`.
-    virtual void mis_weight(int /*technique*/, std::span<const Pair> at, std::span<double> out) const {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = 1;
+    virtual void mis_weight(int /*technique*/, std::span<const Pair> pairs, std::span<double> out) const {
+        for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = 1;
     }
     virtual bool has_f() const { return false; }
     virtual void f(std::span<const Pair> /*at*/, std::span<double> out) const {
         for (double& v : out) v = 0;
     }
     /// f by channel if there are three; f is their luminance.
-    virtual void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const {
+    virtual void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const {
         std::vector<double> y(out.size());
-        f(at, y);
+        f(pairs, y);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = {y[i], y[i], y[i]};
     }
     /// Whether a reference value of f is known independently of f; reference_f() is f otherwise.
     virtual bool has_true_f() const { return false; }
-    virtual void reference_f(std::span<const Pair> at, std::span<double> out) const { f(at, out); }
+    virtual void reference_f(std::span<const Pair> pairs, std::span<double> out) const { f(pairs, out); }
     /// Whether f is known at the draws: if only there, their weights are available, but not their integral.
     virtual bool has_drawn_f() const { return has_f(); }
     /// The error of a tabulated p, 1/sr.
@@ -271,18 +273,22 @@ public:
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         inner_->sample(t, wo, u, out);
     }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override { inner_->pdf(t, at, out); }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        inner_->exact_pdf(t, at, out);
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override { inner_->pdf(t, pairs, out); }
+    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        inner_->exact_pdf(t, pairs, out);
     }
-    void mis_weight(int t, std::span<const Pair> at, std::span<double> out) const override {
-        inner_->mis_weight(t, at, out);
+    void mis_weight(int t, std::span<const Pair> pairs, std::span<double> out) const override {
+        inner_->mis_weight(t, pairs, out);
     }
     bool has_f() const override { return inner_->has_f(); }
-    void f(std::span<const Pair> at, std::span<double> out) const override { inner_->f(at, out); }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override { inner_->f_channels(at, out); }
+    void f(std::span<const Pair> pairs, std::span<double> out) const override { inner_->f(pairs, out); }
+    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
+        inner_->f_channels(pairs, out);
+    }
     bool has_true_f() const override { return inner_->has_true_f(); }
-    void reference_f(std::span<const Pair> at, std::span<double> out) const override { inner_->reference_f(at, out); }
+    void reference_f(std::span<const Pair> pairs, std::span<double> out) const override {
+        inner_->reference_f(pairs, out);
+    }
     bool has_drawn_f() const override { return inner_->has_drawn_f(); }
     double tabulation_error(Vec3d w) const override { return inner_->tabulation_error(w); }
     bool can_draw() const override { return inner_->can_draw(); }
@@ -319,30 +325,30 @@ protected:
 
 // ---- A sampler with a limited number of queries.
 
-/// Throws SamplerTimeout for a query that would raise the answers of `inner` above `most`.
+/// Throws SamplerTimeout for a query that would raise the answers of `inner` above `limit`.
 class LimitedAdapter : public ForwardingAdapter {
 public:
-    LimitedAdapter(std::shared_ptr<const SamplerAdapter> inner, std::uint64_t most)
-        : ForwardingAdapter(std::move(inner)), most_(most) {}
+    LimitedAdapter(std::shared_ptr<const SamplerAdapter> inner, std::uint64_t limit)
+        : ForwardingAdapter(std::move(inner)), most_(limit) {}
     void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         allow(out.size());
         inner().sample(t, wo, u, out);
     }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
         allow(out.size());
-        inner().pdf(t, at, out);
+        inner().pdf(t, pairs, out);
     }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
+    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
         allow(out.size());
-        inner().exact_pdf(t, at, out);
+        inner().exact_pdf(t, pairs, out);
     }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
         allow(out.size());
-        inner().f(at, out);
+        inner().f(pairs, out);
     }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
+    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
         allow(out.size());
-        inner().f_channels(at, out);
+        inner().f_channels(pairs, out);
     }
 
 private:

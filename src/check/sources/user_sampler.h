@@ -127,7 +127,7 @@ template <Number C> struct Filled<C> {
     Bare<C> get() const { return value; }
 };
 template <class T> struct Stored {
-    std::array<T, PrimarySample::most> value{};
+    std::array<T, PrimarySample::most_numbers> value{};
     explicit Stored(std::span<const double> v) {
         for (std::size_t i = 0; i < v.size() && i < value.size(); ++i) value[i] = static_cast<T>(v[i]);
     }
@@ -298,7 +298,7 @@ template <class S, class C, std::size_t i> Filled<C> filled(Vec3d wo, const Prim
     const std::array<double, 4> w = {wo.x, wo.y, wo.z, 0};
     if constexpr (i == 0 && !without_wo<S>())
         return Filled<C>(std::span<const double>(w).first(size_of<C>() == 4 ? 4 : 3));
-    std::array<double, PrimarySample::most> v{};
+    std::array<double, PrimarySample::most_numbers> v{};
     for (int k = 0; k < share.count; ++k) v[static_cast<std::size_t>(k)] = u[share.first + k];
     return Filled<C>(std::span<const double>(v).first(static_cast<std::size_t>(share.count)));
 }

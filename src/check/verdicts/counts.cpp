@@ -14,14 +14,15 @@ namespace {
 
 /// Fails for more than a share of the draws, and more than a few. per: number of draws that each counted one
 /// represents.
-void test_share(Family family, const Count& count, double of, double tolerated, const Visit& visit, double per = 1) {
+void test_share(
+    Family family, const Count& count, double trials, double tolerated, const Visit& visit, double per = 1) {
     const double times = per * static_cast<double>(count.times);
     visit({.family = family,
         .member = 0,
-        .difference = of > 0 ? times / of : 0,
+        .difference = trials > 0 ? times / trials : 0,
         .sd = 0,
         .floor = tolerated,
-        .p = times > tolerated * of + tolerated_breaks ? 0.0 : 1.0,
+        .p = times > tolerated * trials + tolerated_breaks ? 0.0 : 1.0,
         .expected = 0});
 }
 

@@ -64,19 +64,20 @@ NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::si
 }
 
 NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double floor) {
-    NodeSums all = a;
-    all += b;
+    NodeSums both = a;
+    both += b;
     NodeSplit out;
-    const double r = out.share = a.claimed / all.claimed, less = std::min(r, 1 - r);
-    out.difference = a.drawn - r * all.drawn;
-    out.floor = all.drawn * (floor + ((1 - r) * a.known_to + r * b.known_to) / all.claimed);
-    const double c2 = all.claimed * all.claimed, to_variance = all.drawn * all.drawn / (c2 * c2);
+    const double r = out.share = a.claimed / both.claimed, less = std::min(r, 1 - r);
+    out.difference = a.drawn - r * both.drawn;
+    out.floor = both.drawn * (floor + ((1 - r) * a.known_to + r * b.known_to) / both.claimed);
+    const double c2 = both.claimed * both.claimed, to_variance = both.drawn * both.drawn / (c2 * c2);
     out.claim_variance = to_variance * (b.claimed * b.claimed * a.variance + a.claimed * a.claimed * b.variance);
     const auto fourth = [](double v) { return v * v * v * v; };
     out.doubt = to_variance * to_variance * (fourth(b.claimed) * a.doubt + fourth(a.claimed) * b.doubt);
-    out.variance = all.drawn / all.claimed * ((1 - r) * (1 - r) * a.second + r * r * b.second) / n + out.claim_variance;
-    out.one_draw = all.second / all.claimed;
-    out.smaller_half = less * n * c2 / (all.second + 1e-300);
+    out.variance =
+        both.drawn / both.claimed * ((1 - r) * (1 - r) * a.second + r * r * b.second) / n + out.claim_variance;
+    out.one_draw = both.second / both.claimed;
+    out.smaller_half = less * n * c2 / (both.second + 1e-300);
     return out;
 }
 
@@ -174,7 +175,7 @@ struct Band {
 /// leaf, and rounding may move their draws across its edges.
 void add_leaves(const Evidence& e, ByBand<Band>& to) {
     const Tree& tree = e.plan.tree;
-    const double all = e.integrals.sums[bridge].value;
+    const double total = e.integrals.sums[bridge].value;
     for (std::size_t l = 0; l < tree.leaves().size(); ++l) {
         const ChartRect& r = tree.rect(tree.leaves()[l]);
         const TreeNode& node = tree.nodes()[static_cast<std::size_t>(tree.leaves()[l].node)];
@@ -191,7 +192,7 @@ void add_leaves(const Evidence& e, ByBand<Band>& to) {
                 band.sums.known_to += known_to(e, l);
                 band.sums.largest =
                     std::max({band.sums.largest, 1 / e.observations.independent, leaf.per_point * tree.leaves()[l].q});
-                if (from <= k || past >= k + 1) band.moved += moved * leaf.bridge.value / all;
+                if (from <= k || past >= k + 1) band.moved += moved * leaf.bridge.value / total;
             }
         }
     }

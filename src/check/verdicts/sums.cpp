@@ -20,8 +20,8 @@ constexpr Kind sum_kinds[integrands] = {{Family::mass, Family::mass_sets}, {Fami
 /// The integrands in the middle of a leaf, whose mean of h is given.
 Values values_in(const Evidence& e, std::size_t l, double h) {
     const Leaf& leaf = e.plan.tree.leaves()[l];
-    const Vec3d off = from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5)) - e.plan.middle;
-    return {1, h, h * (Plan::log_of(leaf.q) - e.plan.median_log_p), h * off.x, h * off.y, h * off.z};
+    const Vec3d offset = from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5)) - e.plan.middle;
+    return {1, h, h * (Plan::log_of(leaf.q) - e.plan.median_log_p), h * offset.x, h * offset.y, h * offset.z};
 }
 
 /// The effect of rounding of p on a whole sum, for all leaves in which p is not known better.
@@ -44,8 +44,8 @@ Values unmet_variance(const Evidence& e) {
         const LeafIntegral& leaf = e.integrals.leaves[l];
         if (e.observations.counts[l] > 0 || !(leaf.second > 0)) continue;
         const double h = leaf.second / leaf.bridge.value, share = leaf.bridge.value / h;
-        const Values there = values_in(e, l, h);
-        for (std::size_t q = 0; q < integrands; ++q) out[q] += share * sqr(there[q] - e.integrals.sums[q].value);
+        const Values values = values_in(e, l, h);
+        for (std::size_t q = 0; q < integrands; ++q) out[q] += share * sqr(values[q] - e.integrals.sums[q].value);
     }
     return out;
 }
@@ -85,9 +85,9 @@ void test_sums(const Evidence& e, const Visit& visit) {
     const double n = o.independent;
     const Values unmet = unmet_variance(e);
     for (int q = 0; q < integrands; ++q) {
-        const auto at = static_cast<std::size_t>(q);
-        const Estimate& claimed = e.integrals.sums[at];
-        const double mean = o.sums[at].sum / n;
+        const auto index = static_cast<std::size_t>(q);
+        const Estimate& claimed = e.integrals.sums[index];
+        const double mean = o.sums[index].sum / n;
         const double floor = floor_of_sum(e, q);
         Answer a{.family = sum_kinds[q].family,
             .member = q >= centre_x ? q - centre_x : 0,
@@ -107,7 +107,7 @@ void test_sums(const Evidence& e, const Visit& visit) {
         const ReplicateMean<Replicates> sets = replicate_mean(e, q);
         a.family = sum_kinds[q].by_sets;
         a.difference = sets.mean - claimed.value;
-        const double w = sets.variance + claimed.variance + unmet[at] / o.scrambled;
+        const double w = sets.variance + claimed.variance + unmet[index] / o.scrambled;
         a.sd = std::sqrt(w);
         a.claimed = claimed.variance / (w + 1e-300);
         a.p = student_p_of(std::fabs(a.difference) - floor, w,

@@ -92,22 +92,22 @@ ComparePlan plan_of_candidate(const Suite& suite, const SuiteView& view, const s
     return plan;
 }
 
-Json statistics_of(const RenderStats& all) {
-    const ArmStats& arm = all.arms[0];
-    Json out = {{"width", all.width}, {"height", all.height}, {"regions", Json::object()}};
+Json statistics_of(const RenderStats& stats) {
+    const ArmStats& arm = stats.arms[0];
+    Json out = {{"width", stats.width}, {"height", stats.height}, {"regions", Json::object()}};
     const double k = static_cast<double>(arm.files.size());
-    for (std::size_t r = 0; r < all.regions.size(); ++r) {
+    for (std::size_t r = 0; r < stats.regions.size(); ++r) {
         std::vector<double> means, spreads;
         for (const auto& render : arm.regions) {
             means.push_back(render[r].y);
             spreads.push_back(k > 1 ? render[r].spread * k / (k - 1) : std::nan(""));
         }
         const MeanInterval m = mean_interval(means, confidence);
-        Json& at = out["regions"][all.regions[r].name];
-        at = {{"mean_y", crescent::number(m.mean)}};
+        Json& entry = out["regions"][stats.regions[r].name];
+        entry = {{"mean_y", crescent::number(m.mean)}};
         if (k < 2) continue;
-        at["standard_deviation_of_render_mean"] = crescent::number(m.se * std::sqrt(k));
-        at["variance_of_pixel"] = crescent::number(mean_interval(spreads, confidence).mean);
+        entry["standard_deviation_of_render_mean"] = crescent::number(m.se * std::sqrt(k));
+        entry["variance_of_pixel"] = crescent::number(mean_interval(spreads, confidence).mean);
     }
     return out;
 }
@@ -204,15 +204,15 @@ std::size_t former_renders(const Suite& suite, const SuiteView& view) {
 /// Returns what a reader must know about a new baseline: fewer renders than before, pixels that are not finite; "" if
 /// there is nothing. Throws InputError if no reason is given for it.
 std::string check_reason(
-    const Suite& suite, const SuiteView& view, const RenderStats& all, const Acceptance& acceptance) {
+    const Suite& suite, const SuiteView& view, const RenderStats& stats, const Acceptance& acceptance) {
     std::vector<std::string> found;
     if (const std::size_t before = former_renders(suite, view); view.candidate.size() < before)
         found.push_back(fmt::format("fewer renders than the {} of the former baseline", before));
-    if (all.bad_pixels > 0) {
-        const std::vector<std::string>& lines = all.warnings;
+    if (stats.bad_pixels > 0) {
+        const std::vector<std::string>& lines = stats.warnings;
         const auto where = std::find_if(lines.begin(), lines.end(),
             [](const std::string& line) { return line.find("not finite") != std::string::npos; });
-        found.push_back(fmt::format("{} not finite in some render{}", plural(all.bad_pixels, "pixel"),
+        found.push_back(fmt::format("{} not finite in some render{}", plural(stats.bad_pixels, "pixel"),
             where == lines.end() ? "" : " (" + *where + ")"));
     }
     const std::string text = fmt::format("{}", fmt::join(found, "; "));
@@ -255,16 +255,16 @@ public:
         const RenderSource source = source_of(files, suite_.options.reading());
         const auto [different, constant] = different_files(suite_, files, source);
         ProgressMonitor quiet;
-        const RenderStats all = read_all(plan_of_candidate(suite_, view, different), quiet, source);
-        const std::string note = check_reason(suite_, view, all, acceptance_);
+        const RenderStats stats = read_all(plan_of_candidate(suite_, view, different), quiet, source);
+        const std::string note = check_reason(suite_, view, stats, acceptance_);
         std::vector<std::string> names;
         if (moments) {
             names.push_back(moments_name(suite_, view, folder_));
-            write_moments(staging_.path(names.back()), all, 0, constant);
+            write_moments(staging_.path(names.back()), stats, 0, constant);
             for (const Accepted& file : files) fs::remove(file.copy);
         } else
             for (const Accepted& file : files) names.push_back(file.name);
-        put_entry(view.name, names, files.size(), note, statistics_of(all));
+        put_entry(view.name, names, files.size(), note, statistics_of(stats));
         lines_.push_back(fmt::format("{}: {} replaced by {} ({}){}", view.name, plural(view.baseline.size(), "file"),
             plural(names.size(), "file"), plural(files.size(), "render"), note.empty() ? "" : "; " + note));
     }

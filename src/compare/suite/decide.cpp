@@ -139,10 +139,10 @@ std::string samples_sentence(const ViewResult& view) {
     return fmt::format("Candidate states {:g} spp, baseline {:g}.", *view.spp_candidate, *view.spp_baseline);
 }
 
-std::string outlier_place(const ViewOutliers::Place& at) {
-    return fmt::format("({}, {}) of {} is {}{} where the other renders have {}", at.x, at.y, at.file,
-        at.quantity == 0 ? "" : fmt::format("{} ", quantity_names[at.quantity]), figures(at.value, 3),
-        figures(at.others, 3));
+std::string outlier_place(const ViewOutliers::Place& outlier) {
+    return fmt::format("({}, {}) of {} is {}{} where the other renders have {}", outlier.x, outlier.y, outlier.file,
+        outlier.quantity == 0 ? "" : fmt::format("{} ", quantity_names[outlier.quantity]), figures(outlier.value, 3),
+        figures(outlier.others, 3));
 }
 
 /// Returns the smallest number of outlier pixels of the candidate, against none of the baseline, that is a change.
@@ -158,7 +158,7 @@ std::string outliers_sentence(const ViewResult& view, bool differ) {
     const ViewOutliers& o = view.outliers;
     if (o.baseline + o.candidate == 0) return "";
     std::vector<std::string> places;
-    for (const ViewOutliers::Place& at : o.first) places.push_back(outlier_place(at));
+    for (const ViewOutliers::Place& outlier : o.first) places.push_back(outlier_place(outlier));
     std::string out = fmt::format("{} in {} of the candidate and {} in {} of the baseline ({}): {}{}.",
         plural(o.candidate, "outlier pixel"), plural(view.candidate_renders, "render"), o.baseline,
         view.baseline_renders, std::isnan(o.p) ? "too few to differ" : fmt::format("p = {:.2g}", o.p),

@@ -73,30 +73,30 @@ std::optional<Tolerance> parse_tolerance(std::string_view text) {
     return Tolerance{Tolerance::Unit::share, *part / *whole};
 }
 
-ExactDifference exact_difference(const RenderStats& all, const std::optional<Tolerance>& tolerance) {
-    const MeanFilm &baseline = all.arms[0].film, &candidate = all.arms[1].film;
+ExactDifference exact_difference(const RenderStats& stats, const std::optional<Tolerance>& tolerance) {
+    const MeanFilm &baseline = stats.arms[0].film, &candidate = stats.arms[1].film;
     const Steps steps(baseline, candidate);
     ExactDifference out;
     if (steps.whole()) out.step_name = fmt::format("{:g}", steps.levels() - 1);
-    const std::size_t first = all.quantities > 1 ? 1 : 0;  // Y follows from the channels
-    constexpr double slack = 1 + 1e-9;                     // "2/255" of values that are themselves rounded
-    for (std::size_t i = 0; i < all.bad.size(); ++i) {
-        if (all.bad[i]) continue;
+    const std::size_t first = stats.quantities > 1 ? 1 : 0;  // Y follows from the channels
+    constexpr double slack = 1 + 1e-9;                       // "2/255" of values that are themselves rounded
+    for (std::size_t i = 0; i < stats.bad.size(); ++i) {
+        if (stats.bad[i]) continue;
         ++out.pixels;
         bool differs = false, beyond = false;
-        for (std::size_t q = first; q < all.quantities; ++q) {
-            const double b = baseline.of(q).mean[i], c = candidate.of(q).mean[i], off = std::fabs(c - b);
-            if (off == 0) continue;
+        for (std::size_t q = first; q < stats.quantities; ++q) {
+            const double b = baseline.of(q).mean[i], c = candidate.of(q).mean[i], difference = std::fabs(c - b);
+            if (difference == 0) continue;
             differs = true;
             const bool is_alpha = q == most_quantities - 1;
-            const double count = steps.between(b, c, is_alpha), share = b == 0 ? HUGE_VAL : off / std::fabs(b);
-            const double of_largest = steps.whole() ? count / (steps.levels() - 1) : off;
+            const double count = steps.between(b, c, is_alpha), share = b == 0 ? HUGE_VAL : difference / std::fabs(b);
+            const double of_largest = steps.whole() ? count / (steps.levels() - 1) : difference;
             out.share = std::max(out.share, share);
-            out.absolute = std::max(out.absolute, off);
+            out.absolute = std::max(out.absolute, difference);
             if (count > out.steps) {
                 out.steps = count;
-                out.x = static_cast<int>(i) % all.width;
-                out.y = static_cast<int>(i) / all.width;
+                out.x = static_cast<int>(i) % stats.width;
+                out.y = static_cast<int>(i) / stats.width;
             }
             if (!tolerance) continue;
             const double size = tolerance->unit == Tolerance::Unit::ulp ? count

@@ -28,6 +28,6 @@ struct ExactDifference {
     std::string step_name;                                // "255" for 8 bits; "" for floating point
 };
 /// Compares the first arm, the baseline, with the second; each is one render.
-ExactDifference exact_difference(const RenderStats& all, const std::optional<Tolerance>& tolerance);
+ExactDifference exact_difference(const RenderStats& stats, const std::optional<Tolerance>& tolerance);
 
 }  // namespace crescent

@@ -143,15 +143,15 @@ std::vector<double> spreads_of(const ArmStats& arm, std::size_t region) {
     return out;
 }
 
-VarianceTest test_variance(const RenderStats& all, const CompareResult& measured, std::size_t region) {
+VarianceTest test_variance(const RenderStats& stats, const CompareResult& measured, std::size_t region) {
     VarianceTest out;
-    out.region = all.regions[region].name;
-    if (all.arms[0].files.size() < 3 || all.arms[1].files.size() < 3) {
+    out.region = stats.regions[region].name;
+    if (stats.arms[0].files.size() < 3 || stats.arms[1].files.size() < 3) {
         out.why = "three renders or more of each side are needed";
         return out;
     }
-    const MeanInterval b = mean_interval(spreads_of(all.arms[0], region), confidence),
-                       c = mean_interval(spreads_of(all.arms[1], region), confidence);
+    const MeanInterval b = mean_interval(spreads_of(stats.arms[0], region), confidence),
+                       c = mean_interval(spreads_of(stats.arms[1], region), confidence);
     out.baseline = b.mean;
     out.candidate = c.mean;
     for (const ArmResult& arm : measured.arms)
@@ -163,14 +163,14 @@ VarianceTest test_variance(const RenderStats& all, const CompareResult& measured
 
 /// `level`: of the view.
 void test_variances(
-    const RenderStats& all, const CompareResult& measured, double level, unsigned look, ViewResult& out) {
+    const RenderStats& stats, const CompareResult& measured, double level, unsigned look, ViewResult& out) {
     double tested = 0;
-    for (std::size_t r = 0; r < all.regions.size(); ++r) {
-        VarianceTest& test = out.variances.emplace_back(test_variance(all, measured, r));
+    for (std::size_t r = 0; r < stats.regions.size(); ++r) {
+        VarianceTest& test = out.variances.emplace_back(test_variance(stats, measured, r));
         if (!test.why.empty()) continue;
         if (look > 0 && test.welch.se > 0) {
-            const double n = static_cast<double>(all.arms[0].files.size()),
-                         m = static_cast<double>(all.arms[1].files.size());
+            const double n = static_cast<double>(stats.arms[0].files.size()),
+                         m = static_cast<double>(stats.arms[1].files.size());
             test.welch.p = anytime_p(test.welch.difference / test.welch.se, test.welch.df, n * m / (n + m));
         }
         ++tested;
@@ -191,23 +191,23 @@ std::optional<double> stated_spp(const ArmStats& arm) {
 
 /// Returns the tile in which the variance of the candidate is largest relative to that of the baseline, of those in
 /// which they differ significantly; "" if there is none.
-std::string noisiest_place(const ComparePlan& plan, const RenderStats& all, double alpha) {
-    const NoiseResult noise = compare_noise(plan, all, 1, 0, alpha);
-    std::size_t found = all.tiles.count();
-    for (std::size_t t = 0; t < all.tiles.count(); ++t)
+std::string noisiest_place(const ComparePlan& plan, const RenderStats& stats, double alpha) {
+    const NoiseResult noise = compare_noise(plan, stats, 1, 0, alpha);
+    std::size_t found = stats.tiles.count();
+    for (std::size_t t = 0; t < stats.tiles.count(); ++t)
         if (noise.distinguished[t] && noise.log2_ratio[t] > 0 &&
-            (found == all.tiles.count() || noise.log2_ratio[t] > noise.log2_ratio[found]))
+            (found == stats.tiles.count() || noise.log2_ratio[t] > noise.log2_ratio[found]))
             found = t;
-    if (found == all.tiles.count()) return "";
-    const Box box = all.tiles.box(found, all.width, all.height);
+    if (found == stats.tiles.count()) return "";
+    const Box box = stats.tiles.box(found, stats.width, stats.height);
     return fmt::format(
         "x {}–{} y {}–{} ({} times)", box.x0, box.x1, box.y0, box.y1, figures(math::exp2(noise.log2_ratio[found]), 3));
 }
 
 /// Describes the channels that are not tested and differ between renders with the same pixels.
-std::string other_channels(const Suite& suite, const RenderStats& all) {
-    for (const RenderFile& candidate : all.arms[1].files)
-        for (const RenderFile& baseline : all.arms[0].files) {
+std::string other_channels(const Suite& suite, const RenderStats& stats) {
+    for (const RenderFile& candidate : stats.arms[1].files)
+        for (const RenderFile& baseline : stats.arms[0].files) {
             const bool are_files =
                 std::filesystem::is_regular_file(candidate.path) && std::filesystem::is_regular_file(baseline.path);
             if (candidate.hash != baseline.hash || !are_files) continue;
@@ -220,15 +220,16 @@ std::string other_channels(const Suite& suite, const RenderStats& all) {
 /// Returns the degrees of freedom of the standard error of a test. Those of Welch's test are themselves estimated, and
 /// too many if the noise of the side with fewer renders is underestimated: they are limited to those of two sides of
 /// equal noise.
-double known_df(const RenderStats& all, const MeanTest& test) {
+double known_df(const RenderStats& stats, const MeanTest& test) {
     if (test.paired || test.pooled) return test.welch.df;
-    const double a = static_cast<double>(all.arms[0].files.size()), b = static_cast<double>(all.arms[1].files.size());
+    const double a = static_cast<double>(stats.arms[0].files.size()),
+                 b = static_cast<double>(stats.arms[1].files.size());
     const double equal = (1 / a + 1 / b) * (1 / a + 1 / b) / (1 / (a * a * (a - 1)) + 1 / (b * b * (b - 1)));
     return std::min(test.welch.df, equal);
 }
 
 /// Returns the renders of each side that the region needs; nothing if the number is unknown.
-std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult& means, const MeanTest& test,
+std::optional<std::size_t> renders_for(const RenderStats& stats, const BiasResult& means, const MeanTest& test,
     const std::vector<ArmResult>& arms, std::size_t region, double smallest, double level) {
     if (!test.why.empty()) {
         std::optional<double> needed;
@@ -236,13 +237,13 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
             if (const auto n = arm.regions[region].renders_needed; n && arm.regions[region].mean_heavy())
                 needed = std::max(needed.value_or(0), *n);
         if (needed) return static_cast<std::size_t>(*needed);
-        if (all.arms[0].files.size() < 2 || all.arms[1].files.size() < 2) return 3;
+        if (stats.arms[0].files.size() < 2 || stats.arms[1].files.size() < 2) return 3;
         return {};
     }
     RegionPower power;
     power.mean = std::fabs(test.b);
     power.paired = test.paired;
-    power.estimate_df = known_df(all, test);
+    power.estimate_df = known_df(stats, test);
     if (test.paired) power.variance_a = test.welch.se * test.welch.se * (test.welch.df + 1);
     else {
         const auto variance = [&](const ArmStats& arm) {
@@ -251,30 +252,31 @@ std::optional<std::size_t> renders_for(const RenderStats& all, const BiasResult&
             const MeanInterval m = mean_interval(values, confidence);
             return m.se * m.se * static_cast<double>(m.n);
         };
-        power.variance_a = variance(all.arms[means.arm_a]);
-        power.variance_b = variance(all.arms[means.arm_b]);
+        power.variance_a = variance(stats.arms[means.arm_a]);
+        power.variance_b = variance(stats.arms[means.arm_b]);
         if (std::isnan(power.variance_a)) power.variance_a = power.variance_b;  // one render
         if (std::isnan(power.variance_b)) power.variance_b = power.variance_a;
     }
-    Welch known = test.welch;
-    known.df = power.estimate_df;
+    Welch planned = test.welch;
+    planned.df = power.estimate_df;
     power.anytime = test.information > 0;
-    const double seen = found_difference(known, known.df, level, test.information), stated = test.smallest * power.mean;
+    const double seen = found_difference(planned, planned.df, level, test.information),
+                 stated = test.smallest * power.mean;
     if (stated > seen * (1 + 1e-9))
-        power.missed = stated * static_cast<double>(std::min(all.arms[0].files.size(), all.arms[1].files.size()));
+        power.missed = stated * static_cast<double>(std::min(stats.arms[0].files.size(), stats.arms[1].files.size()));
     return renders_needed(power, smallest, level);
 }
 
 /// Increases the stated differences that a test finds by the uncertainty of the noise; those that rare events could
 /// explain are unchanged.
-void restate_power(const RenderStats& all, double level, BiasResult& means) {
+void restate_power(const RenderStats& stats, double level, BiasResult& means) {
     const double of_region = level / 2 / static_cast<double>(means.regions.size());
     const auto restate = [&](MeanTest& t, std::size_t quantity) {
         if (!t.why.empty()) return;
-        Welch known = t.welch;
-        known.df = known_df(all, t);
+        Welch planned = t.welch;
+        planned.df = known_df(stats, t);
         const double found =
-            found_difference(known, known.df, of_region * level_share(quantity, all.quantities), t.information);
+            found_difference(planned, planned.df, of_region * level_share(quantity, stats.quantities), t.information);
         t.smallest = std::max(t.smallest, found / std::max(std::fabs(t.b), 1e-300));
     };
     for (MeanTest& t : means.regions) {
@@ -284,9 +286,9 @@ void restate_power(const RenderStats& all, double level, BiasResult& means) {
 }
 
 /// States why equality of the means cannot be stated, and how many renders would be needed.
-void state_power(const RenderStats& all, const CompareResult& measured, double level, ViewResult& out) {
+void state_power(const RenderStats& stats, const CompareResult& measured, double level, ViewResult& out) {
     const BiasResult& means = *out.means;
-    bool known = true;
+    bool is_known = true;
     std::size_t needed = 0;
     for (std::size_t r = 0; r < means.regions.size(); ++r) {
         const MeanTest& t = means.regions[r];
@@ -299,9 +301,10 @@ void state_power(const RenderStats& all, const CompareResult& measured, double l
                                             : "no difference of mean Y would be found";
         if (why.empty()) continue;
         if (out.too_few.empty()) out.too_few = fmt::format("in {} {}", t.region, why);
-        const double of_region = level / 2 / static_cast<double>(means.regions.size()) * level_share(0, all.quantities);
-        const auto n = renders_for(all, means, t, measured.arms, r, out.smallest, of_region);
-        known &= n.has_value();
+        const double of_region =
+            level / 2 / static_cast<double>(means.regions.size()) * level_share(0, stats.quantities);
+        const auto n = renders_for(stats, means, t, measured.arms, r, out.smallest, of_region);
+        is_known &= n.has_value();
         needed = std::max(needed, n.value_or(0));
     }
     if (means.non_finite.undecided && out.too_few.empty()) {
@@ -309,10 +312,10 @@ void state_power(const RenderStats& all, const CompareResult& measured, double l
             "{} pixels are not finite in half of the renders of one side or more and in none of "
             "the other",
             means.non_finite.undecided);
-        known = false;
+        is_known = false;
     }
-    const std::size_t present = std::min(all.arms[0].files.size(), all.arms[1].files.size());
-    if (!out.too_few.empty() && known && needed > present) out.renders_needed = needed;
+    const std::size_t present = std::min(stats.arms[0].files.size(), stats.arms[1].files.size());
+    if (!out.too_few.empty() && is_known && needed > present) out.renders_needed = needed;
 }
 
 /// Removes the results per pixel and tile, so that the memory of a suite does not grow with the pixels of its views.
@@ -338,11 +341,11 @@ std::uint64_t failing_pixels(const ArmStats& arm) {
 
 /// Describes the pixels that are not finite on one side only; "" if there are none. A single one is a difference: a
 /// sampler that gives NaN is wrong, however rarely.
-std::string one_sided_failures(const RenderStats& all) {
-    const std::array<std::uint64_t, 2> pixels{failing_pixels(all.arms[0]), failing_pixels(all.arms[1])};
+std::string one_sided_failures(const RenderStats& stats) {
+    const std::array<std::uint64_t, 2> pixels{failing_pixels(stats.arms[0]), failing_pixels(stats.arms[1])};
     if ((pixels[0] > 0) == (pixels[1] > 0)) return "";
     const std::size_t side = pixels[0] > 0 ? 0 : 1;
-    const ArmStats& arm = all.arms[side];
+    const ArmStats& arm = stats.arms[side];
     std::vector<std::string> files;
     for (std::size_t k = 0; k < arm.failed_groups.size(); ++k)
         if (arm.failed_groups[k].back() > 0) files.push_back(arm.files[k].path);
@@ -352,28 +355,28 @@ std::string one_sided_failures(const RenderStats& all) {
     constexpr std::array<const char*, 2> names{"baseline", "candidate"};
     return fmt::format("{} not finite in {} of {} of the {} (first at ({}, {}) of {}), and none of the {}.",
         pixels[side] == 1 ? "1 pixel is" : fmt::format("{} pixels are", pixels[side]), files.size(),
-        plural(arm.files.size(), "render"), names[side], index % all.width, index / all.width,
+        plural(arm.files.size(), "render"), names[side], index % stats.width, index / stats.width,
         files.empty() ? "unknown" : files.front(), names[1 - side]);
 }
 
 /// Returns the outlier pixels with the test of their numbers. A test that cannot find a change at `alpha` is not made,
 /// so that it takes no share of the level; whether it can depends on the sum over both sides alone.
-ViewOutliers view_outliers(const RenderStats& all, double alpha) {
+ViewOutliers view_outliers(const RenderStats& stats, double alpha) {
     constexpr std::size_t named = 3;
     ViewOutliers out;
-    const OutlierPixels& found = all.outliers;
+    const OutlierPixels& found = stats.outliers;
     out.baseline = found.groups[0];
     out.candidate = found.groups[1];
     out.set_apart = found.set_apart;
-    const double baseline = static_cast<double>(all.arms[0].files.size()),
-                 candidate = static_cast<double>(all.arms[1].files.size());
+    const double baseline = static_cast<double>(stats.arms[0].files.size()),
+                 candidate = static_cast<double>(stats.arms[1].files.size());
     const std::size_t more =
         static_cast<double>(out.candidate) * baseline >= static_cast<double>(out.baseline) * candidate ? 1 : 0;
     for (const OutlierPixel& p : found.pixels) {
         if (p.side != more || out.first.size() == named) continue;
         const int i = static_cast<int>(p.pixel);
         out.first.push_back(
-            {all.arms[p.side].files[p.render].path, i % all.width, i / all.width, p.quantity, p.value, p.others});
+            {stats.arms[p.side].files[p.render].path, i % stats.width, i / stats.width, p.quantity, p.value, p.others});
     }
     const std::uint64_t total = found.total();
     const double share = candidate / (baseline + candidate);
@@ -382,11 +385,11 @@ ViewOutliers view_outliers(const RenderStats& all, double alpha) {
     return out;
 }
 
-ViewOutlierRender view_outlier_render(const RenderStats& all) {
-    const auto found = outlier_render(all);
+ViewOutlierRender view_outlier_render(const RenderStats& stats) {
+    const auto found = outlier_render(stats);
     if (!found) return {};
-    return {all.arms[found->side].files[found->render].path, found->side == 1, found->ratio, found->deviation, found->p,
-        found->pixels};
+    return {stats.arms[found->side].files[found->render].path, found->side == 1, found->ratio, found->deviation,
+        found->p, found->pixels};
 }
 
 /// Returns a view whose files cannot be compared.
@@ -443,42 +446,42 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     out.exact = out.baseline_renders == 1 && candidate.size() == 1 && (constant_baseline || constant_candidate);
     const ComparePlan plan = plan_for(suite, view, baseline, candidate);
     ProgressMonitor quiet;
-    const RenderStats all = read_all(plan, quiet, files.reader());
+    const RenderStats stats = read_all(plan, quiet, files.reader());
     monitor.check();
     CompareResult measured;
-    for (std::size_t a = 0; a < all.arms.size(); ++a) measured.arms.push_back(measure_arm(plan, all, a, quiet));
+    for (std::size_t a = 0; a < stats.arms.size(); ++a) measured.arms.push_back(measure_arm(plan, stats, a, quiet));
     const double alpha = suite.options.alpha * share_of_means;
     const BiasLevel level{alpha / static_cast<double>(compared), alpha};
-    out.means = test_bias(plan, all, measured, 1, 0, level, quiet);
+    out.means = test_bias(plan, stats, measured, 1, 0, level, quiet);
     out.mean_p = out.means->p;
-    out.non_finite = one_sided_failures(all);
-    out.width = all.width;
-    out.height = all.height;
-    out.notes.insert(out.notes.end(), all.warnings.begin(), all.warnings.end());
+    out.non_finite = one_sided_failures(stats);
+    out.width = stats.width;
+    out.height = stats.height;
+    out.notes.insert(out.notes.end(), stats.warnings.begin(), stats.warnings.end());
     out.noise = suite.noise(view);
-    out.spp_baseline = stated_spp(all.arms[0]);
-    out.spp_candidate = stated_spp(all.arms[1]);
-    if (out.means->identical) out.other_channels = other_channels(suite, all);
+    out.spp_baseline = stated_spp(stats.arms[0]);
+    out.spp_candidate = stated_spp(stats.arms[1]);
+    if (out.means->identical) out.other_channels = other_channels(suite, stats);
     if (out.exact) {
-        if (!out.means->identical) out.exact_difference = exact_difference(all, view.tolerance);
+        if (!out.means->identical) out.exact_difference = exact_difference(stats, view.tolerance);
         out.tolerated = view.tolerance && out.exact_difference && out.exact_difference->beyond == 0;
         out.mean_p = out.means->identical || out.tolerated ? 1 : 0;
     } else {
         if (!out.means->identical && out.noise != NoiseDemand::ignore) {
-            out.outliers = view_outliers(all, suite.options.alpha);
+            out.outliers = view_outliers(stats, suite.options.alpha);
             if (suite.outliers(view) == OutlierDemand::ignore) out.outliers.p = std::nan("");
-            out.outlier_render = view_outlier_render(all);
+            out.outlier_render = view_outlier_render(stats);
             if (suite.look > 0) {  // these tests do not hold at any time
                 out.outliers.p = out.outliers.p * look_factor(suite.look);
                 out.outlier_render.p = out.outlier_render.p * look_factor(suite.look);
             }
         }
-        test_variances(all, measured, level.each / share_of_means, suite.look, out);
+        test_variances(stats, measured, level.each / share_of_means, suite.look, out);
         if (out.noise == NoiseDemand::ignore) out.variance_p = std::nan("");
-        else { out.noisiest = noisiest_place(plan, all, suite.options.alpha); }
+        else { out.noisiest = noisiest_place(plan, stats, suite.options.alpha); }
         if (!out.means->identical) {
-            restate_power(all, level.each, *out.means);
-            state_power(all, measured, level.each, out);
+            restate_power(stats, level.each, *out.means);
+            state_power(stats, measured, level.each, out);
         }
         const auto side = constant_baseline ? "baseline" : "candidate";
         if (constant_baseline || constant_candidate) {
@@ -489,7 +492,7 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
             out.renders_needed = 3;
         }
     }
-    picture_both_sides(suite, all, *out.means, out);
+    picture_both_sides(suite, stats, *out.means, out);
     drop_places(*out.means);
     return out;
 }

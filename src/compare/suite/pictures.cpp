@@ -40,22 +40,22 @@ plates::Block photograph(const Render& r, int width, double exposure) {
 }
 
 /// Returns the cell of a picture, row by row from the top, in which a pixel of the render is.
-std::size_t cell_of(const RenderStats& all, std::size_t pixel, int width, int height) {
-    const auto across = static_cast<std::size_t>(all.width), down = static_cast<std::size_t>(all.height);
+std::size_t cell_of(const RenderStats& stats, std::size_t pixel, int width, int height) {
+    const auto across = static_cast<std::size_t>(stats.width), down = static_cast<std::size_t>(stats.height);
     const std::size_t x = pixel % across, y = pixel / across;
     return (down - 1 - y) * static_cast<std::size_t>(height) / down * static_cast<std::size_t>(width) +
         x * static_cast<std::size_t>(width) / across;
 }
 
 /// Returns means of d / brightness over cells of the picture, row by row from the top.
-std::vector<double> relative_differences(const RenderStats& all, const BiasResult& means, int width, int height) {
+std::vector<double> relative_differences(const RenderStats& stats, const BiasResult& means, int width, int height) {
     const std::size_t q = means.shown();
-    const MeanPlane &a = all.arms[means.arm_a].film.of(q), &b = all.arms[means.arm_b].film.of(q);
+    const MeanPlane &a = stats.arms[means.arm_a].film.of(q), &b = stats.arms[means.arm_b].film.of(q);
     const auto cells = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     std::vector<double> difference(cells), brightness(cells), count(cells);
-    for (std::size_t i = 0; i < all.bad.size(); ++i) {
-        if (all.bad[i]) continue;
-        const std::size_t c = cell_of(all, i, width, height);
+    for (std::size_t i = 0; i < stats.bad.size(); ++i) {
+        if (stats.bad[i]) continue;
+        const std::size_t c = cell_of(stats, i, width, height);
         difference[c] += a.mean[i] - b.mean[i];
         brightness[c] += (std::fabs(a.mean[i]) + std::fabs(b.mean[i])) / 2;
         count[c] += 1;
@@ -84,23 +84,23 @@ plates::Block difference_block(const std::vector<double>& values, int width, int
 }
 
 /// The tiles that differ by more than noise, by their p, and the pixels; NaN, the colour of no value, where no test is.
-plates::Block significance_block(const RenderStats& all, const BiasResult& means, int width, int height) {
+plates::Block significance_block(const RenderStats& stats, const BiasResult& means, int width, int height) {
     const PlaceTests& tiles = means.tiles;
-    std::vector<double> of_pixel(all.bad.size());
+    std::vector<double> of_pixel(stats.bad.size());
     for (std::size_t i = 0; i < of_pixel.size(); ++i) {
-        const auto across = static_cast<std::size_t>(all.width);
-        const std::size_t t = all.tiles.of(static_cast<int>(i % across), static_cast<int>(i / across));
+        const auto across = static_cast<std::size_t>(stats.width);
+        const std::size_t t = stats.tiles.of(static_cast<int>(i % across), static_cast<int>(i / across));
         if (std::isnan(tiles.p[t])) of_pixel[i] = std::nan("");
         if (!tiles.differs[t]) continue;
         const double share = math::log(std::max(tiles.p[t], full_p)) / math::log(full_p);
         of_pixel[i] = std::copysign(std::max(share, least_colour), tiles.difference[tiles.quantity[t]][t]);
     }
     const std::size_t q = means.shown();
-    const MeanPlane &a = all.arms[means.arm_a].film.of(q), &b = all.arms[means.arm_b].film.of(q);
+    const MeanPlane &a = stats.arms[means.arm_a].film.of(q), &b = stats.arms[means.arm_b].film.of(q);
     for (const std::uint32_t i : means.different_pixels) of_pixel[i] = std::copysign(1, a.mean[i] - b.mean[i]);
     std::vector<double> cells(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), std::nan(""));
     for (std::size_t i = 0; i < of_pixel.size(); ++i) {  // of the pixels of a cell the most significant one
-        double& cell = cells[cell_of(all, i, width, height)];
+        double& cell = cells[cell_of(stats, i, width, height)];
         if (std::isnan(cell) || std::fabs(of_pixel[i]) > std::fabs(cell)) cell = of_pixel[i];
     }
     return difference_block(cells, width, height, 1);
@@ -134,10 +134,10 @@ void within_budget(const Suite& suite, int width, std::size_t bytes_of_one, View
 
 void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSource& source, ViewResult& out) {
     const bool added = view.baseline.empty();
-    RenderStats all;
+    RenderStats stats;
     const Render read = source.read((added ? view.candidate : view.baseline).front(), suite.options.layer);
-    all.primaries = read.primaries;
-    const Render first = in_rec709(all, read);
+    stats.primaries = read.primaries;
+    const Render first = in_rec709(stats, read);
     out.width = first.width;
     out.height = first.height;
     ViewPictures& to = out.pictures;
@@ -150,12 +150,12 @@ void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSou
     });
 }
 
-void picture_both_sides(const Suite& suite, const RenderStats& all, const BiasResult& means, ViewResult& out) {
-    const Render baseline = in_rec709(all, all.arms[0].film), candidate = in_rec709(all, all.arms[1].film);
+void picture_both_sides(const Suite& suite, const RenderStats& stats, const BiasResult& means, ViewResult& out) {
+    const Render baseline = in_rec709(stats, stats.arms[0].film), candidate = in_rec709(stats, stats.arms[1].film);
     ViewPictures& to = out.pictures;
     const plates::Block largest = photograph(candidate, largest_width, suite.options.exposure);
     const std::vector<unsigned char> largest_png = png_of(largest);
-    within_budget(suite, all.width, largest_png.size(), to, [&](int width) {
+    within_budget(suite, stats.width, largest_png.size(), to, [&](int width) {
         const plates::Block first = photograph(baseline, width, suite.options.exposure);
         to.width = first.width;
         to.height = first.height;
@@ -163,11 +163,11 @@ void picture_both_sides(const Suite& suite, const RenderStats& all, const BiasRe
         to.candidate = to.width == largest.width && to.height == largest.height
             ? largest_png
             : png_of(photograph(candidate, width, suite.options.exposure));
-        const std::vector<double> values = relative_differences(all, means, to.width, to.height);
+        const std::vector<double> values = relative_differences(stats, means, to.width, to.height);
         to.scale = scale_of(values, out.smallest);
         to.difference = png_of(difference_block(values, to.width, to.height, to.scale));
         if (means.tiles.different > 0 || means.pixels_different > 0)
-            to.significance = png_of(significance_block(all, means, to.width, to.height));
+            to.significance = png_of(significance_block(stats, means, to.width, to.height));
     });
 }
 

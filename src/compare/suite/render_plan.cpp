@@ -84,8 +84,8 @@ ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compar
     plan.regions = view.regions;
     plan.flip = false;
     ProgressMonitor quiet;
-    const RenderStats all = read_all(plan, quiet, source);
-    const ArmStats& baseline = all.arms[0];
+    const RenderStats stats = read_all(plan, quiet, source);
+    const ArmStats& baseline = stats.arms[0];
     out.renders = baseline.files.size();
     out.spp = baseline.files[0].spp;
     if (out.renders < 2) {
@@ -94,8 +94,8 @@ ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compar
         return out;
     }
     const double level = suite.options.alpha * share_of_means / static_cast<double>(compared) / 2 /
-        static_cast<double>(all.regions.size()) * level_share(0, all.quantities);
-    for (std::size_t r = 0; r < all.regions.size(); ++r) {
+        static_cast<double>(stats.regions.size()) * level_share(0, stats.quantities);
+    for (std::size_t r = 0; r < stats.regions.size(); ++r) {
         std::vector<double> means;
         for (const auto& render : baseline.regions) means.push_back(render[r].y);
         const MeanInterval m = mean_interval(means, confidence);
@@ -109,9 +109,9 @@ ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compar
             needed[s] = renders_needed(power, out.smallest, level);
         }
         constexpr std::size_t as_rendered = 1;
-        const auto& most = out.needed[as_rendered];
-        if (!out.region.empty() && needed[as_rendered] && (!most || *needed[as_rendered] <= *most)) continue;
-        out.region = all.regions[r].name;
+        const auto& largest = out.needed[as_rendered];
+        if (!out.region.empty() && needed[as_rendered] && (!largest || *needed[as_rendered] <= *largest)) continue;
+        out.region = stats.regions[r].name;
         out.needed = needed;
         out.mean = m.mean;
         out.deviation = std::sqrt(variance);

@@ -266,7 +266,7 @@ std::vector<const ViewResult*> by_state(const SuiteResult& result);
 /// For a view with renders of one side only.
 void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSource& source, ViewResult& out);
 /// For a view with both. The size follows from the number of views, larger if the view may have changed.
-void picture_both_sides(const Suite& suite, const RenderStats& all, const BiasResult& means, ViewResult& out);
+void picture_both_sides(const Suite& suite, const RenderStats& stats, const BiasResult& means, ViewResult& out);
 
 // ---- --plan: how many renders of each side, with how many samples, a view needs, from the variance of the baseline
 // only.

@@ -178,7 +178,7 @@ std::map<std::string, std::vector<std::string>> files_by_view(const std::vector<
 }
 
 /// Throws InputError if a file is on both sides.
-void check_sides(const Suite& suite, const SourceLocation& at) {
+void check_sides(const Suite& suite, const SourceLocation& place) {
     const auto name = [](const std::string& path) {
         std::error_code ignored;
         const fs::path folder = fs::path(path).parent_path();
@@ -189,8 +189,8 @@ void check_sides(const Suite& suite, const SourceLocation& at) {
         for (const std::string& path : view.baseline) baseline.insert(name(path));
         for (const std::string& path : view.candidate)
             if (baseline.contains(name(path)))
-                throw InputError(
-                    at, fmt::format("expected other files than those of the baseline, found {} on both sides", path));
+                throw InputError(place,
+                    fmt::format("expected other files than those of the baseline, found {} on both sides", path));
     }
 }
 

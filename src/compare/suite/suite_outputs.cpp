@@ -46,9 +46,10 @@ Json places_json(const std::vector<Found>& found) {
 
 Json outliers_json(const ViewOutliers& o) {
     Json first = Json::array();
-    for (const ViewOutliers::Place& at : o.first)
-        first.push_back({{"file", at.file}, {"pixel", {at.x, at.y}}, {"channel", quantity_names[at.quantity]},
-            {"value", crescent::number(at.value)}, {"others", crescent::number(at.others)}});
+    for (const ViewOutliers::Place& outlier : o.first)
+        first.push_back(
+            {{"file", outlier.file}, {"pixel", {outlier.x, outlier.y}}, {"channel", quantity_names[outlier.quantity]},
+                {"value", crescent::number(outlier.value)}, {"others", crescent::number(outlier.others)}});
     return {{"baseline", o.baseline}, {"candidate", o.candidate}, {"p", p_json(o.p)}, {"left_out", o.set_apart},
         {"first", first}};
 }
@@ -175,7 +176,7 @@ std::string failure_junit(const std::string& file, const std::string& message) {
 }
 
 std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance) {
-    constexpr std::size_t most = 60'000;
+    constexpr std::size_t limit = 60'000;
     std::string out = fmt::format("### {}\n\n{}\n", cell(suite.options.title), cell(result.sentence));
     const std::string end = fmt::format("\ncrescent {}\n", provenance.version);
     bool begun = false;
@@ -185,7 +186,7 @@ std::string suite_markdown(const Suite& suite, const SuiteResult& result, const 
         const std::string row = fmt::format("| {} {} | {} | {} |\n", mark_of(view->state), name_of(view->state),
             cell(view->name), cell(view->headline));
         constexpr std::size_t reserve = 200;  // for the lines below the table
-        if (out.size() + row.size() + end.size() + reserve > most) {
+        if (out.size() + row.size() + end.size() + reserve > limit) {
             ++left_out;
             continue;
         }

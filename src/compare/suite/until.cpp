@@ -278,9 +278,9 @@ Suite suite_of_commands(const RenderSides& sides, const std::vector<std::string>
     out.options = options;
     for (const char* side : {"a", "b"}) {
         const std::string pattern = escape_pattern(folder) + "/" + side + "/{view}-*." + sides.extension;
-        const SourceLocation at{fmt::format("--{}", side), 0, 0};
+        const SourceLocation place{fmt::format("--{}", side), 0, 0};
         (*side == 'a' ? out.options.baseline : out.options.candidate) = {pattern};
-        (*side == 'a' ? out.baseline : out.candidate).emplace_back(pattern, at, true);
+        (*side == 'a' ? out.baseline : out.candidate).emplace_back(pattern, place, true);
     }
     for (const std::string& name : views.empty() ? std::vector<std::string>{"render"} : views) {
         if (name.empty() || name.find('/') != std::string::npos || name.front() == '.')

@@ -24,8 +24,8 @@ bool hides_all(const Blocker& blocker, Vec3d x, const Figure& figure) {
         const Interval part = hidden(blocker.body, x, from, to, blocker.between)[0];
         return part.lo <= 0 && part.hi >= 1;
     };
-    const std::array<Vec3d, 4> at = corners_about(figure);
-    return whole(at[0], at[1]) && whole(at[3], at[2]);
+    const std::array<Vec3d, 4> corners = corners_about(figure);
+    return whole(corners[0], corners[1]) && whole(corners[3], corners[2]);
 }
 
 /// Returns whether the lobe is wide compared with the disk as seen from the point, so that rules that do not know its
@@ -106,13 +106,13 @@ DiskIntegral operator-(const DiskIntegral& a, const DiskIntegral& b) {
 }
 /// Returns an estimate of a value between a and b.
 DiskIntegral enclosed(const DiskIntegral& a, const DiskIntegral& b) {
-    const auto off = [](double p, double q, double error, double other) {
+    const auto estimate = [](double p, double q, double error, double other) {
         return 0.5 * std::fabs(p - q) + std::max(error, other);
     };
     return {.diffuse = 0.5 * (a.diffuse + b.diffuse),
         .lobe = 0.5 * (a.lobe + b.lobe),
-        .diffuse_error = off(a.diffuse, b.diffuse, a.diffuse_error, b.diffuse_error),
-        .lobe_error = off(a.lobe, b.lobe, a.lobe_error, b.lobe_error)};
+        .diffuse_error = estimate(a.diffuse, b.diffuse, a.diffuse_error, b.diffuse_error),
+        .lobe_error = estimate(a.lobe, b.lobe, a.lobe_error, b.lobe_error)};
 }
 
 /// Returns the distance of the ball's nearest point, as a fraction of the distance to the middle of its figure.
@@ -130,22 +130,23 @@ DiskIntegral ring_by_ring(
     const shapes::Disk whole = std::get<shapes::Disk>(ball.seen_from(point.x));
     const Vec3d d = whole.center - point.x, c = ball.center - point.x;
     const double plane = std::sqrt(dot(d, d)), far = std::sqrt(dot(c, c));
-    // The fraction of the way at which the ball is met, on the way to a point of the figure at `off` from its middle.
-    const auto met_at = [&](double off) {
-        const double way = std::sqrt(sqr(plane) + sqr(off)), along = far * plane / way;
-        const double half2 = sqr(ball.radius) - sqr(far * off / way);
+    // The fraction of the way at which the ball is met, on the way to a point of the figure at `offset` from its
+    // middle.
+    const auto met_at = [&](double offset) {
+        const double way = std::sqrt(sqr(plane) + sqr(offset)), along = far * plane / way;
+        const double half2 = sqr(ball.radius) - sqr(far * offset / way);
         return std::min(1.0, (along - std::sqrt(std::max(half2, 0.0))) / way);
     };
     constexpr int rings = 8;
     DiskIntegral sum;
     for (int k = 0; k < rings; ++k) {
         // About evenly spaced in the distance between surface and figure, which falls like a root at the edge.
-        const auto edge = [&](int at) {
-            return whole.radius * std::sqrt(1 - sqr(1 - static_cast<double>(at) / rings));
+        const auto edge = [&](int number) {
+            return whole.radius * std::sqrt(1 - sqr(1 - static_cast<double>(number) / rings));
         };
-        const auto up_to = [&](double off, double way) {
-            const Figure part = moved(shapes::Disk{whole.center, whole.normal, off}, point.x, way);
-            return off > 0 ? FigureSeen(point, part, normal, near)(point) : DiskIntegral{};
+        const auto up_to = [&](double radius, double way) {
+            const Figure part = moved(shapes::Disk{whole.center, whole.normal, radius}, point.x, way);
+            return radius > 0 ? FigureSeen(point, part, normal, near)(point) : DiskIntegral{};
         };
         const double from = edge(k), to = edge(k + 1);
         const auto ring = [&](double way) { return up_to(to, way) - up_to(from, way); };
@@ -180,10 +181,10 @@ DiskQuadrature::DiskQuadrature(const Scene& scene, std::size_t k) : light_(scene
 std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit, const Figure& figure) const {
     std::vector<const Blocker*> out;
     const Bodies::Any light = body_of(figure);
-    const Ball all = {middle_of(figure), radius_of(figure)};
+    const Ball ball = {middle_of(figure), radius_of(figure)};
     for (const Blocker& b : blockers_) {
         if (b.body.shape == hit.shape || (b.light && !b.light->shines_on(hit.x))) continue;
-        if (passes_by(b.around, hit.x, all)) continue;
+        if (passes_by(b.around, hit.x, ball)) continue;
         // A light in the plane of this one lies before it at the end of the way, or not at all.
         const bool apart = b.light ? is_separated(b.body, {hit.x}, body_of(moved(figure, hit.x, b.between.to)))
                                    : is_separated(b.body, {hit.x}, light);

@@ -133,20 +133,20 @@ struct Panel {
     FanSum fine, off, spread;
     std::optional<Interval> kink;  // in u: the edges differ between its two ends
 
-    Panel(const FansUnderLobe& all, const Span& whole, double u0, double u1) : span(whole), lo(u0), hi(u1) {
+    Panel(const FansUnderLobe& fans, const Span& whole, double u0, double u1) : span(whole), lo(u0), hi(u1) {
         std::array<std::pair<double, FanEdges>, 9> nodes;
         std::size_t count = 0;
         const auto f = [&](double u) {
-            const OpenFan& fan = all.fans(span.tau(u));
+            const OpenFan& fan = fans.fans(span.tau(u));
             nodes[count++] = {u, fan.edges};
-            return span.slope(u) * all(fan);
+            return span.slope(u) * fans(fan);
         };
         const TwoRules<FanSum> both = by_two_rules(kronrod_7, f, lo, hi);
         fine = both.fine;
         off = both.off;
         spread = both.spread;
         for (const double u : {1e-3, 1 - 1e-3})  // between an end of the span and the nearest node
-            if (u > lo && u < hi) nodes[count++] = {u, all.fans.edges_at(span.tau(u))};
+            if (u > lo && u < hi) nodes[count++] = {u, fans.fans.edges_at(span.tau(u))};
         std::sort(nodes.begin(), nodes.begin() + count);
         for (std::size_t k = 0; k + 1 < count && !kink; ++k)
             if (nodes[k].second != nodes[k + 1].second) kink = Interval{nodes[k].first, nodes[k + 1].first};
@@ -155,22 +155,22 @@ struct Panel {
     /// Returns the expected error of the larger rule: smaller than that of the smaller rule by the factor by which the
     /// smaller one improves on the middle point.
     FanSum expected_off() const {
-        const auto of = [](double error, double coarser) {
+        const auto error_of = [](double error, double coarser) {
             return std::fabs(error) * std::min(1.0, 4 * std::fabs(error) / std::max(std::fabs(coarser), 1e-300));
         };
-        return {of(off.diffuse, spread.diffuse), of(off.lobe, spread.lobe), 0};
+        return {error_of(off.diffuse, spread.diffuse), error_of(off.lobe, spread.lobe), 0};
     }
 
     /// Returns where to cut it: at the first kink, else in the middle.
     double cut(AllFans& fans) const {
         if (!kink) return 0.5 * (lo + hi);
-        Interval at = *kink;
-        const FanEdges before = fans.edges_at(span.tau(at.lo));
+        Interval interval = *kink;
+        const FanEdges before = fans.edges_at(span.tau(interval.lo));
         for (int k = 0; k < 9; ++k) {  // the effect of the remainder is quadratic
-            const double middle = 0.5 * (at.lo + at.hi);
-            (fans.edges_at(span.tau(middle)) == before ? at.lo : at.hi) = middle;
+            const double middle = 0.5 * (interval.lo + interval.hi);
+            (fans.edges_at(span.tau(middle)) == before ? interval.lo : interval.hi) = middle;
         }
-        return at.hi;
+        return interval.hi;
     }
 };
 
@@ -184,8 +184,8 @@ struct Adaptive {
     DiskIntegral sum{};
 
     void add(const Panel& panel, int depth = 0) {
-        const FanSum off = panel.expected_off();
-        const bool good = all.point.weigh({off.diffuse, off.lobe}) <= tolerance;
+        const FanSum error = panel.expected_off();
+        const bool good = all.point.weigh({error.diffuse, error.lobe}) <= tolerance;
         if (depth == halvings || (good && !(panel.kink && depth < first_halvings))) {
             sum.diffuse += panel.fine.diffuse;
             sum.lobe += panel.fine.lobe;
@@ -209,14 +209,14 @@ DiskIntegral fan_by_fan(const DiskPoint& point, AllFans& fans) {
     const FansUnderLobe under_lobe{fans, point};
     const std::vector<FanCut>& cuts = fans.cuts();
     std::vector<Panel> panels;
-    double all = 0.01 * point.weigh({std::min(open, 1.0), 0});
+    double total = 0.01 * point.weigh({std::min(open, 1.0), 0});
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
         fans.look_between(cuts[k].tau, cuts[k + 1].tau);
         panels.emplace_back(under_lobe, Span{cuts[k], cuts[k + 1]}, 0, 1);
-        all += point.weigh({panels.back().fine.diffuse, panels.back().fine.lobe});
+        total += point.weigh({panels.back().fine.diffuse, panels.back().fine.lobe});
     }
     constexpr double tolerance = 4e-5;
-    Adaptive sum{under_lobe, tolerance * all};
+    Adaptive sum{under_lobe, tolerance * total};
     for (const Panel& panel : panels) {
         fans.look_between(panel.span.from.tau, panel.span.to.tau);
         sum.add(panel);
@@ -276,8 +276,9 @@ AllFans::Turn AllFans::turn(double tau) const {
 }
 
 void AllFans::cut(double phi, bool root) {
-    const double off = std::remainder(phi - light_.middle, 2 * pi);
-    if (std::fabs(off) < light_.half) cuts_.push_back({light_.whole() ? off : math::asin(off / light_.half), root});
+    const double distance = std::remainder(phi - light_.middle, 2 * pi);
+    if (std::fabs(distance) < light_.half)
+        cuts_.push_back({light_.whole() ? distance : math::asin(distance / light_.half), root});
 }
 
 /// For a body with corners, cuts where one lies before the light; for others, where they begin and end.
@@ -307,9 +308,9 @@ void AllFans::add_all_cuts() {
     if (about_lobe_)
         for (const double middle : {0.0, pi}) {
             cut(middle, false);
-            for (double off = lobe_stretch(point_); off < pi / 2; off *= 3) {
-                cut(middle - off, false);
-                cut(middle + off, false);
+            for (double distance = lobe_stretch(point_); distance < pi / 2; distance *= 3) {
+                cut(middle - distance, false);
+                cut(middle + distance, false);
             }
         }
     std::ranges::sort(cuts_, {}, &FanCut::tau);
@@ -343,13 +344,13 @@ template <class F> FanEdges AllFans::each_open(const Fan& fan, F&& f) {
 }
 
 OpenFan AllFans::look_at(double tau) {
-    const Turn at = turn(tau);
-    const math::SinCos azimuth = math::sincos(at.azimuth);
+    const Turn turned = turn(tau);
+    const math::SinCos azimuth = math::sincos(turned.azimuth);
     const Fan fan(point_, figure_, about_, azimuth);
     OpenFan out = {.axis = point_.frame.to_local(fan.axis),
         .aside = point_.frame.to_local(fan.aside),
         .cos_azimuth = azimuth.cos,
-        .slope = at.slope};
+        .slope = turned.slope};
     out.first_part = parts_.size();
     out.edges = each_open(fan, [&](Interval open) {
         Direction from = fan.at(open.lo), to = fan.at(open.hi);

@@ -86,15 +86,15 @@ double half_vector_albedo(const L& lobe, double cos_o, const Normals& normals, c
     const auto ring = [&](double u) {
         if (yield_to_host) yield_to_host(ring_steps);
         const double c = normals.height(u), sin = std::sqrt(std::max(0.0, 1 - c * c));
-        const double cut = (0.5 / c - c) * cos_o, all = sin_o * sin;
-        const double last = cut <= -all ? pi : cut >= all ? 0 : math::acos(cut / all);
-        const auto at = [&](double phi) {
+        const double cut = (0.5 / c - c) * cos_o, amplitude = sin_o * sin;
+        const double last = cut <= -amplitude ? pi : cut >= amplitude ? 0 : math::acos(cut / amplitude);
+        const auto value = [&](double phi) {
             const Vec3<double> m = math::spherical(sin, c, phi);
             const double d = dot(wo, m);
             const Vec3<double> wi = 2 * d * m - wo;
             return d > 0 && wi.z > 0 ? lobe(wo, wi) * wi.z * 4 * d / normals.density(c) : 0.0;
         };
-        return last > 0 ? Rule::integrate(at, 0.0, last) / pi : 0.0;  // even in phi
+        return last > 0 ? Rule::integrate(value, 0.0, last) / pi : 0.0;  // even in phi
     };
     const auto piece = [&](double a, double b) {  // stretched at both ends, where u has roots
         const auto f = [&](double t) { return ring(a + (b - a) * t * t * (3 - 2 * t)) * (b - a) * 6 * t * (1 - t); };
@@ -142,7 +142,7 @@ LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha, const YieldToHost&
     const auto exact = [&](double theta) { return lobe_albedo(kind, s, alpha, math::cos(theta), yield_to_host); };
     const bool about_mirror = lobe_info(kind).about_mirror;
     const double good = about_mirror ? 1e-7 : 1e-6;  // half vectors take forty times as long
-    const double own = about_mirror ? 1e-10 : 1e-6;
+    const double rounding = about_mirror ? 1e-10 : 1e-6;
     constexpr int even = 8, halvings = 12;
     std::vector<Cell> open(even), next;
     std::vector<std::array<double, 4>> between;
@@ -164,7 +164,7 @@ LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha, const YieldToHost&
             for (std::size_t i = 0; i < 4; ++i)
                 c.error = std::max(c.error, std::fabs(through_five(v, static_cast<double>(i) + 0.5) - m[i]));
             if (c.error < good || depth == halvings) {
-                c.error = 2 * c.error + own;  // midpoints are not exactly where the interpolation error is largest
+                c.error = 2 * c.error + rounding;  // midpoints are not exactly where the interpolation error is largest
                 cells_.push_back(c);
                 continue;
             }

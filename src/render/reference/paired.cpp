@@ -21,9 +21,9 @@ Combination combination_for(const ShadingPoints& points) {
     if (points.light_count() > 0) plan.of.emplace_back("light-solid-angle");
     if (points.around && points.around->sky) plan.of.emplace_back("sky");
     if (points.around && points.around->triangles) plan.of.emplace_back("light-triangle");
-    Techniques of;
-    for (const std::string& name : plan.of) of.push_back(built_in_technique(name));
-    return {"paired", plan, std::move(of), nullptr, {}, {}};
+    Techniques techniques;
+    for (const std::string& name : plan.of) techniques.push_back(built_in_technique(name));
+    return {"paired", plan, std::move(techniques), nullptr, {}, {}};
 }
 
 /// Estimates every point of a group once.

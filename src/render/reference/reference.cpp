@@ -51,11 +51,12 @@ public:
                 const auto hit = scenes_[0].primary(i, j);
                 if (!hit) continue;
                 look_at(*hit, pixel);
-                const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(films[0].width) +
+                const std::size_t index = static_cast<std::size_t>(j) * static_cast<std::size_t>(films[0].width) +
                     static_cast<std::size_t>(i);
                 for (std::size_t e = 0; e < films.size(); ++e)
-                    if (e < pixel.sums.size()) store_pixel(films[e], at, pixel.sums[e].radiance, pixel.sums[e].error);
-                    else copy_pixel(films[0], films[e], at);
+                    if (e < pixel.sums.size())
+                        store_pixel(films[e], index, pixel.sums[e].radiance, pixel.sums[e].error);
+                    else copy_pixel(films[0], films[e], index);
             }
     }
 
@@ -104,13 +105,13 @@ private:
 
     /// Adds a light, which replaces the fill behind it.
     void add(const DiskIntegral& d, const Light& light, const Surface& surface, Sum& sum) const {
-        Rgb off{};
+        Rgb error{};
         for (std::size_t c = 0; c < 3; ++c) {
             const double step = light.radiance[c] - scenes_[0].fill()[c], lobe = surface.rho_s * surface.tint[c];
             sum.radiance[c] += step * (surface.rho_d[c] * d.diffuse + lobe * d.lobe);
-            off[c] = std::fabs(step) * (surface.rho_d[c] * d.diffuse_error + lobe * d.lobe_error);
+            error[c] = std::fabs(step) * (surface.rho_d[c] * d.diffuse_error + lobe * d.lobe_error);
         }
-        sum.error += luminance(off);
+        sum.error += luminance(error);
     }
 
     std::vector<Scene> scenes_;  // one per exponent
@@ -127,12 +128,12 @@ PixelQuadrature& PixelQuadrature::operator=(PixelQuadrature&&) noexcept = defaul
 
 void PixelQuadrature::write(const TileBox& box, std::span<ReferenceFilm> films) const { made_->write(box, films); }
 
-void store_pixel(ReferenceFilm& film, std::size_t at, const Rgb& radiance, double error) {
-    film.r[at] = static_cast<float>(radiance[0]);
-    film.g[at] = static_cast<float>(radiance[1]);
-    film.b[at] = static_cast<float>(radiance[2]);
-    film.y[at] = static_cast<float>(luminance(radiance));
-    film.error[at] = static_cast<float>(error);
+void store_pixel(ReferenceFilm& film, std::size_t index, const Rgb& radiance, double error) {
+    film.r[index] = static_cast<float>(radiance[0]);
+    film.g[index] = static_cast<float>(radiance[1]);
+    film.b[index] = static_cast<float>(radiance[2]);
+    film.y[index] = static_cast<float>(luminance(radiance));
+    film.error[index] = static_cast<float>(error);
 }
 
 std::vector<ReferenceFilm> quadrature_reference(

@@ -45,7 +45,7 @@ private:
 };
 
 /// Stores one pixel of a reference.
-void store_pixel(ReferenceFilm& film, std::size_t at, const Rgb& radiance, double error);
+void store_pixel(ReferenceFilm& film, std::size_t index, const Rgb& radiance, double error);
 
 // ---- A reference for every exponent of a run, tile by tile.
 
@@ -71,12 +71,12 @@ template <class Work> std::vector<ReferenceFilm> by_tiles(
 }
 
 /// Copies a pixel that is the same at both exponents.
-inline void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t at) {
-    to.r[at] = from.r[at];
-    to.g[at] = from.g[at];
-    to.b[at] = from.b[at];
-    to.y[at] = from.y[at];
-    to.error[at] = from.error[at];
+inline void copy_pixel(const ReferenceFilm& from, ReferenceFilm& to, std::size_t index) {
+    to.r[index] = from.r[index];
+    to.g[index] = from.g[index];
+    to.b[index] = from.b[index];
+    to.y[index] = from.y[index];
+    to.error[index] = from.error[index];
 }
 
 // ---- A cache of values by number, in the order of first use, because later passes mostly repeat that order.
@@ -92,14 +92,14 @@ public:
     /// Returns the value for x, valid until the next call; calls make() if x was not used before the last rewind.
     template <class Make> const V& operator()(double x, Make&& make) {
         const auto last = asked_.begin() + static_cast<std::ptrdiff_t>(known_);
-        auto at = std::find(asked_.begin() + static_cast<std::ptrdiff_t>(next_), last, x);
-        if (at == last) at = std::find(asked_.begin(), last, x);
-        if (at == last) {
+        auto found = std::find(asked_.begin() + static_cast<std::ptrdiff_t>(next_), last, x);
+        if (found == last) found = std::find(asked_.begin(), last, x);
+        if (found == last) {
             asked_.push_back(x);
             values_.push_back(make());
             return values_.back();
         }
-        next_ = static_cast<std::size_t>(at - asked_.begin()) + 1;
+        next_ = static_cast<std::size_t>(found - asked_.begin()) + 1;
         return values_[next_ - 1];
     }
     void rewind() {

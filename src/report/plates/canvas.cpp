@@ -134,8 +134,8 @@ std::string Canvas::svg() {
     cairo_surface_finish(surface_->image);
     std::string out = std::move(surface_->document);
     const std::string counted = "id=\"surface";  // and how many surfaces the process has made
-    if (const auto at = out.find(counted); at != std::string::npos) {
-        const auto from = at + counted.size();
+    if (const auto found = out.find(counted); found != std::string::npos) {
+        const auto from = found + counted.size();
         out.erase(from, out.find_first_not_of("0123456789", from) - from);
     }
     return out;
@@ -273,24 +273,24 @@ Cover cover(int pixel, double origin, double size, int cells) {
 }
 
 std::vector<Cover> covers(int begin, int end, double origin, double size, int cells) {
-    std::vector<Cover> all;
-    for (int i = begin; i < end; ++i) all.push_back(cover(i, origin, size, cells));
-    return all;
+    std::vector<Cover> list;
+    for (int i = begin; i < end; ++i) list.push_back(cover(i, origin, size, cells));
+    return list;
 }
 
 }  // namespace
 
 void Canvas::paint(const Block& block, double x, double y, int times, double alpha) {
     if (alpha <= 0 || block.width == 0) return;
-    const double s = surface_->scale, size = times * s, left = std::round(x * s), top = std::round(y * s);
-    const int x0 = std::max(0, static_cast<int>(left)),
-              x1 = std::min(width_, static_cast<int>(std::lround(left + block.width * size)));
+    const double s = surface_->scale, size = times * s, left_edge = std::round(x * s), top = std::round(y * s);
+    const int x0 = std::max(0, static_cast<int>(left_edge)),
+              x1 = std::min(width_, static_cast<int>(std::lround(left_edge + block.width * size)));
     const int y0 = std::max(0, static_cast<int>(top)),
               y1 = std::min(height_, static_cast<int>(std::lround(top + block.height * size)));
     cairo_surface_flush(surface_->image);
     unsigned char* data = cairo_image_surface_get_data(surface_->image);
     const int stride = cairo_image_surface_get_stride(surface_->image);
-    const std::vector<Cover> across = covers(x0, x1, left, size, block.width);
+    const std::vector<Cover> across = covers(x0, x1, left_edge, size, block.width);
     for (int j = y0; j < y1; ++j) {
         const Cover down = cover(j, top, size, block.height);
         unsigned char* to = data + std::ptrdiff_t(j) * stride + std::ptrdiff_t(4) * x0;
@@ -353,9 +353,10 @@ void require_font(PangoFontMap* map) {
     }
 }
 
-void replace_all(std::string& text, std::string_view what, const std::string& by) {
-    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-        text.replace(at, what.size(), by);
+void replace_all(std::string& text, std::string_view what, const std::string& replacement) {
+    for (auto found = text.find(what); found != std::string::npos;
+        found = text.find(what, found + replacement.size())) {
+        text.replace(found, what.size(), replacement);
     }
 }
 

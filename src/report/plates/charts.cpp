@@ -116,7 +116,7 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot) {
 // nearest to the tilt and whose light is nearest to R's plane; its peak is that of 1024 draws.
 
 std::optional<std::size_t> surface_of_densities(const Experiment& e) {
-    if (const auto own = e.surface_of_s()) return own;
+    if (const auto surface = e.surface_of_s()) return surface;
     for (std::size_t k = 0; k < e.surface_count(); ++k)
         if (e.material(k).rho_s > 0) return k;
     return {};
@@ -192,9 +192,9 @@ std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, const SamplerInf
             const auto hit = scene.primary(i, j);
             if (!hit || (wanted >= 0 && hit->shape != wanted)) continue;
             auto pixel = std::make_shared<const OpenPixel>(scene, i, j);
-            const double off = off_the_plane(*pixel, sampler, tilt);
-            if (off < least) {
-                least = off;
+            const double distance = off_the_plane(*pixel, sampler, tilt);
+            if (distance < least) {
+                least = distance;
                 best = std::move(pixel);
             }
         }

@@ -37,11 +37,11 @@ std::vector<double> values(const Residual& r, const Box& box) {
 
 Box shown_box(const Sheet& sheet) {
     const Experiment& e = sheet.experiment();
-    View all;
-    all.width = e.image.width;
-    all.height = e.image.height;
-    if (sheet.plan.crop) return inside(*sheet.plan.crop, all);
-    return e.regions.empty() ? whole(all) : inside(e.regions[0].box, all);
+    View view;
+    view.width = e.image.width;
+    view.height = e.image.height;
+    if (sheet.plan.crop) return inside(*sheet.plan.crop, view);
+    return e.regions.empty() ? whole(view) : inside(e.regions[0].box, view);
 }
 
 bool within(const Box& b, const Box& box) {
@@ -96,11 +96,11 @@ void draw_run(Sheet& sheet, const Residual& r, const Box& box, const Fit& f, dou
 }
 
 std::vector<Residual> residuals(const Sheet& sheet) {
-    std::vector<Residual> all;
+    std::vector<Residual> list;
     for (const RunKey& k : keys_of(sheet.plan, sheet.experiment())) {
-        all.push_back({k, sheet.in.film(k), sheet.in.reference(k.s)});
+        list.push_back({k, sheet.in.film(k), sheet.in.reference(k.s)});
     }
-    return all;
+    return list;
 }
 
 }  // namespace

@@ -87,16 +87,16 @@ void rulers(Sheet& sheet, const Rect& picture, const View& v) {
     const Text under = with(with_px(small_text, 14), Align::centre),
                beside = with(with_px(small_text, 14), Align::right);
     for (double x = 0; x < v.width; x += step) {
-        const double at = picture.x + (x + 0.5) / v.width * picture.w;
-        sheet.canvas.line(at, picture.y, at, picture.bottom(), grid, 1);
-        sheet.canvas.line(at, picture.bottom(), at, picture.bottom() + 5, muted, 1);
-        sheet.canvas.text({at - 24, picture.bottom() + 7, 48, 20}, fmt::format("{:.0f}", x), under);
+        const double tick = picture.x + (x + 0.5) / v.width * picture.w;
+        sheet.canvas.line(tick, picture.y, tick, picture.bottom(), grid, 1);
+        sheet.canvas.line(tick, picture.bottom(), tick, picture.bottom() + 5, muted, 1);
+        sheet.canvas.text({tick - 24, picture.bottom() + 7, 48, 20}, fmt::format("{:.0f}", x), under);
     }
     for (double y = 0; y < v.height; y += step) {
-        const double at = picture.bottom() - (y + 0.5) / v.height * picture.h;
-        sheet.canvas.line(picture.x, at, picture.right(), at, grid, 1);
-        sheet.canvas.line(picture.x - 5, at, picture.x, at, muted, 1);
-        sheet.canvas.text({picture.x - ruler_w, at - 10, ruler_w - 8, 20}, fmt::format("{:.0f}", y), beside);
+        const double tick = picture.bottom() - (y + 0.5) / v.height * picture.h;
+        sheet.canvas.line(picture.x, tick, picture.right(), tick, grid, 1);
+        sheet.canvas.line(picture.x - 5, tick, picture.x, tick, muted, 1);
+        sheet.canvas.text({picture.x - ruler_w, tick - 10, ruler_w - 8, 20}, fmt::format("{:.0f}", y), beside);
     }
 }
 
@@ -106,15 +106,15 @@ void outline(Sheet& sheet, const Rect& r, const Marked& m) {
 }
 
 /// Lists crops by the number that they have on the picture.
-void list_boxes(Sheet& sheet, const std::vector<Marked>& all, double y) {
+void list_boxes(Sheet& sheet, const std::vector<Marked>& boxes, double y) {
     const Text inside = with(with(with_px(small_text, 14), Align::centre), Vertical::middle);
     Rect line{facts_slot.x, y + 14, facts_slot.w, 24};
-    for (std::size_t i = 0; i < all.size(); ++i, line.y += 50) {
+    for (std::size_t i = 0; i < boxes.size(); ++i, line.y += 50) {
         if (line.y + 46 > facts_slot.bottom()) {
-            sheet.notes.push_back(fmt::format("{} of {} boxes listed", i, all.size()));
+            sheet.notes.push_back(fmt::format("{} of {} boxes listed", i, boxes.size()));
             break;
         }
-        const Marked& m = all[i];
+        const Marked& m = boxes[i];
         const Rect swatch{line.x, line.y + 2, 20, 20};
         sheet.canvas.fill(swatch, m.colour);
         if (m.crop) sheet.canvas.text(swatch, m.tag, with(with(inside, ground), Weight::semibold));

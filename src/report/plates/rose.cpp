@@ -140,8 +140,8 @@ std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
     }
     std::vector<Part> parts;
     for (const RunKey& k : keys) {
-        const ExternalSampler* own = from_external(sheet, k.arm);
-        parts.push_back({k, own ? Density(e, *own, k.s, tilt) : Density(e, sampler_of(k.arm, e), k.s, tilt)});
+        const ExternalSampler* external = from_external(sheet, k.arm);
+        parts.push_back({k, external ? Density(e, *external, k.s, tilt) : Density(e, sampler_of(k.arm, e), k.s, tilt)});
     }
     return parts;
 }
@@ -177,15 +177,15 @@ double peak_in_plane(const Part& part) {
 std::string why_no_density(const Sheet& sheet, const std::string& arm) {
     const Experiment& e = sheet.experiment();
     const SamplerInfo* info = find_arm_info(sampler_of(arm, e));
-    const ExternalSampler* own = from_external(sheet, arm);
+    const ExternalSampler* external = from_external(sheet, arm);
     return arm_name(arm, e) +
-        (own && own->as_combination()       ? " joins several densities, each with its own weight"
-                : own && own->uses_lights() ? " uses lights, and there are none here"
-                : own && own->has_density() ? " says that its density is 0 in the plane of incidence"
-                : own                       ? " is a library without crescent_sampler_pdf: its density is not known"
-                : !info                     ? " is external, and its density cannot be evaluated"
-                : info->combines            ? " joins several densities, each with its own weight"
-                                            : " aims at lights: none reaches what the camera sees");
+        (external && external->as_combination()       ? " joins several densities, each with its own weight"
+                : external && external->uses_lights() ? " uses lights, and there are none here"
+                : external && external->has_density() ? " says that its density is 0 in the plane of incidence"
+                : external       ? " is a library without crescent_sampler_pdf: its density is not known"
+                : !info          ? " is external, and its density cannot be evaluated"
+                : info->combines ? " joins several densities, each with its own weight"
+                                 : " aims at lights: none reaches what the camera sees");
 }
 
 void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i) {

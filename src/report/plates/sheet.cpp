@@ -55,12 +55,12 @@ std::string typeset(std::string text) {
 }  // namespace
 
 std::string joined(const std::vector<std::string>& parts, std::string_view between) {
-    std::string all;
+    std::string text;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (i > 0) all += between;
-        all += parts[i];
+        if (i > 0) text += between;
+        text += parts[i];
     }
-    return all;
+    return text;
 }
 
 RunKey key_of(const PlateRun& run, const Experiment& e) {
@@ -254,8 +254,8 @@ Rect paint_photograph(Sheet& sheet, const View& v, const Box& box, const Rect& s
 }
 
 Colour arm_colour(const std::string& arm, const Experiment& e) {
-    auto at = std::find_if(e.arms.begin(), e.arms.end(), [&](const ArmPlan& a) { return a.name == arm; });
-    return series[std::size_t(at - e.arms.begin()) % series_count];
+    auto found = std::find_if(e.arms.begin(), e.arms.end(), [&](const ArmPlan& a) { return a.name == arm; });
+    return series[std::size_t(found - e.arms.begin()) % series_count];
 }
 
 void outline_over(Canvas& canvas, const Rect& r, const Colour& ink) {
@@ -276,9 +276,10 @@ void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std:
     Text how = with(with(with(with(body_text, ground), Weight::semibold), Align::centre), Vertical::middle);
     std::string text = escaped(name);
     double w = std::min(sheet.canvas.measure(text, how).w + 16, picture.w);
-    double left = outline.x - 1.25, right = outline.right() + 1.25 - w, above = outline.y - h - 1,
+    double left_edge = outline.x - 1.25, right = outline.right() + 1.25 - w, above = outline.y - h - 1,
            below = outline.bottom() + 1;
-    for (auto [x, y] : {std::pair{left, above}, {right, above}, {left, below}, {right, below}, {left, outline.y}}) {
+    for (auto [x, y] :
+        {std::pair{left_edge, above}, {right, above}, {left_edge, below}, {right, below}, {left_edge, outline.y}}) {
         Rect tag{std::clamp(x, picture.x, picture.right() - w), y, w, h};
         bool clear = std::none_of(sheet.tags.begin(), sheet.tags.end(), [&](const Rect& t) { return t.meets(tag); });
         if (!clear || tag.y < picture.y || tag.bottom() > picture.bottom()) continue;

@@ -67,8 +67,8 @@ Layout lay_out(const Sheet& sheet, std::size_t runs, const Varies& varies, const
         l.frame_h = l.frame.out_h;
     }
     if (l.crops) {
-        double left = room - (l.frames ? l.frame_h + between : 0);
-        l.crop = fit(crop->width(), crop->height(), std::floor(w), std::floor(left));
+        double height_left = room - (l.frames ? l.frame_h + between : 0);
+        l.crop = fit(crop->width(), crop->height(), std::floor(w), std::floor(height_left));
         l.crop_h = l.crop.out_h;
     }
     double used = l.frame_h + l.crop_h + (l.frames && l.crops ? between : 0) + l.words_h;
@@ -79,10 +79,10 @@ Layout lay_out(const Sheet& sheet, std::size_t runs, const Varies& varies, const
 void draw_pictures(Sheet& sheet, const View& v, const Rect& col, const Layout& l, const std::optional<Box>& crop) {
     const double exposure = sheet.experiment().exposure;
     Rect slot{col.x, col.y + l.top, col.w, l.frame_h};
-    Box all = whole(v);
+    Box frame = whole(v);
     if (l.frames) {
-        Rect r = paint_framed(sheet, photograph_block(v, all, l.frame, exposure), slot);
-        if (l.crops) outline_over(sheet.canvas, on_picture(r, all, *crop).inset(-1), photograph_accent);
+        Rect r = paint_framed(sheet, photograph_block(v, frame, l.frame, exposure), slot);
+        if (l.crops) outline_over(sheet.canvas, on_picture(r, frame, *crop).inset(-1), photograph_accent);
         slot.y += l.frame_h + between;
     }
     if (l.crops) {
@@ -90,7 +90,7 @@ void draw_pictures(Sheet& sheet, const View& v, const Rect& col, const Layout& l
         Rect r = paint_framed(sheet, photograph_block(v, *crop, l.crop, exposure), slot);
         if (l.frames) sheet.canvas.outline(r.inset(-1), photograph_accent, 1.5);
     }
-    sheet.not_finite += not_finite(v, l.frames ? all : *crop);
+    sheet.not_finite += not_finite(v, l.frames ? frame : *crop);
 }
 
 void draw_words(Sheet& sheet, const RunKey& run, const Varies& varies, const Layout& l, const Rect& col) {

@@ -54,13 +54,15 @@ struct Rectangle {
         const double z2 = sqr(dot(d, cross(b, c))), across = dot(d, b), up = dot(d, c);
         const auto slope = [&](double from) { return from / std::sqrt(z2 + from * from); };
         const double b0 = -slope(up - v / 2), b1 = slope(up + v / 2);
-        const auto before = [&](double at) { return math::asin(b0 * slope(at)) + math::asin(b1 * slope(at)); };
+        const auto before = [&](double height) {
+            return math::asin(b0 * slope(height)) + math::asin(b1 * slope(height));
+        };
         const bool shines = shines_on(x);
-        const double from = shines ? before(across - u / 2) : 0, all = shines ? before(across + u / 2) - from : 0;
+        const double from = shines ? before(across - u / 2) : 0, whole = shines ? before(across + u / 2) - from : 0;
         return {.a = frame.to_local(d),
             .b = frame.to_local(b),
             .c = frame.to_local(c),
-            .number = {u / 2, v / 2, all > 1e-4 ? all : 0, from, b0, b0 + b1, shines ? 1.0 : 0.0}};
+            .number = {u / 2, v / 2, whole > 1e-4 ? whole : 0, from, b0, b0 + b1, shines ? 1.0 : 0.0}};
     }
     template <class F> static MaskOf<F> shines(const LocalLight<F>& l) { return l.number[6] > number<F>(0); }
     /// From the centre to the middle of an edge, along edge_u and edge_v.
@@ -74,9 +76,9 @@ struct Rectangle {
         const F height = dot(l.a, n), v = dot(w, n);
         const auto ahead = height * v > number<F>(0);
         t = height / select(ahead, v, number<F>(1));
-        const Vec3<F> off = w * height - l.a * v;
-        return (abs(dot(off, l.b)) <= l.number[0] * abs(v)) & (abs(dot(off, l.c)) <= l.number[1] * abs(v)) & ahead &
-            shines(l);
+        const Vec3<F> offset = w * height - l.a * v;
+        return (abs(dot(offset, l.b)) <= l.number[0] * abs(v)) & (abs(dot(offset, l.c)) <= l.number[1] * abs(v)) &
+            ahead & shines(l);
     }
     template <class F> static F radius2(const LocalLight<F>& l) { return sqr(l.number[0]) + sqr(l.number[1]); }
 

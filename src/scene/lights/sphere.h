@@ -50,8 +50,8 @@ struct Sphere {
     /// Where w meets it: a distance; that of the nearest point if w misses.
     template <class F> static MaskOf<F> meets(const LocalLight<F>& l, Vec3<F> w, F& t) {
         const F along = dot(l.a, w);
-        const Vec3<F> off = l.a - w * along;
-        const F rest = sqr(l.number[0]) - dot(off, off);
+        const Vec3<F> offset = l.a - w * along;
+        const F rest = sqr(l.number[0]) - dot(offset, offset);
         t = l.number[5] * (l.number[4] + l.number[0]) / (along + sqrt(larger(rest, number<F>(0))));
         return (rest >= number<F>(0)) & (along > number<F>(0)) & shines(l);
     }

@@ -18,13 +18,13 @@ template <template <class> class L> LobeInfo info_of(LobeKind kind) {
 }  // namespace
 
 const std::vector<LobeInfo>& lobe_infos() {
-    static const std::vector<LobeInfo> all = [] {
+    static const std::vector<LobeInfo> list = [] {
         std::vector<LobeInfo> infos;
         for_each_lobe(Lobes{},
             [&]<template <class> class L>() { infos.push_back(info_of<L>(static_cast<LobeKind>(infos.size()))); });
         return infos;
     }();
-    return all;
+    return list;
 }
 
 std::vector<std::string> lobe_names() {

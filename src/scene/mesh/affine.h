@@ -37,13 +37,15 @@ struct Affine {
 /// Returns the translation by `to`.
 inline Affine translation(Vec3d to) { return {.x = {1, 0, 0}, .y = {0, 1, 0}, .z = {0, 0, 1}, .at = to}; }
 /// Returns the scaling of each axis.
-inline Affine scaling(Vec3d by) { return {.x = {by.x, 0, 0}, .y = {0, by.y, 0}, .z = {0, 0, by.z}, .at = {}}; }
+inline Affine scaling(Vec3d factors) {
+    return {.x = {factors.x, 0, 0}, .y = {0, factors.y, 0}, .z = {0, 0, factors.z}, .at = {}};
+}
 /// Returns the rotation about the x axis, then the y axis, then the z axis, counterclockwise seen from each axis' end.
 inline Affine rotation(Vec3d degrees) {
-    const auto of = [](double angle) { return math::sincos(angle * (3.14159265358979323846 / 180)); };
-    const auto [sx, cx] = of(degrees.x);
-    const auto [sy, cy] = of(degrees.y);
-    const auto [sz, cz] = of(degrees.z);
+    const auto sin_cos = [](double angle) { return math::sincos(angle * (3.14159265358979323846 / 180)); };
+    const auto [sx, cx] = sin_cos(degrees.x);
+    const auto [sy, cy] = sin_cos(degrees.y);
+    const auto [sz, cz] = sin_cos(degrees.z);
     const Affine about_x = {.x = {1, 0, 0}, .y = {0, cx, sx}, .z = {0, -sx, cx}, .at = {}},
                  about_y = {.x = {cy, 0, -sy}, .y = {0, 1, 0}, .z = {sy, 0, cy}, .at = {}},
                  about_z = {.x = {cz, sz, 0}, .y = {-sz, cz, 0}, .z = {0, 0, 1}, .at = {}};

@@ -85,8 +85,8 @@ struct TriangleRay {
 /// t_max.
 [[gnu::always_inline]] inline float t_in_box(
     const Block& block, std::size_t lane, float t, const BoxRay& boxes, float t_max) {
-    const float at = std::fmax(t, boxes.enters(box_of(block, lane), t_max));
-    return at < t_max ? at : infinity;
+    const float entry = std::fmax(t, boxes.enters(box_of(block, lane), t_max));
+    return entry < t_max ? entry : infinity;
 }
 
 /// Takes a triangle of a block that is nearer, or as near with a lower index.
@@ -108,8 +108,8 @@ struct Bvh::Made {
     HugeVector<Block> blocks;
 
     void fetch(std::size_t block) const {
-        const char* at = reinterpret_cast<const char*>(&blocks[block]);
-        for (const std::size_t line : {0, 64, 128}) __builtin_prefetch(at + line);
+        const char* address = reinterpret_cast<const char*>(&blocks[block]);
+        for (const std::size_t line : {0, 64, 128}) __builtin_prefetch(address + line);
     }
 };
 

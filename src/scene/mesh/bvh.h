@@ -34,9 +34,9 @@ struct Bounds {
     /// An empty box adds nothing.
     void add(const Bounds& b) {
         const auto least = [](float x, float y) { return y < x ? y : x; };
-        const auto most = [](float x, float y) { return y > x ? y : x; };
+        const auto larger = [](float x, float y) { return y > x ? y : x; };
         low = {least(low.x, b.low.x), least(low.y, b.low.y), least(low.z, b.low.z)};
-        high = {most(high.x, b.high.x), most(high.y, b.high.y), most(high.z, b.high.z)};
+        high = {larger(high.x, b.high.x), larger(high.y, b.high.y), larger(high.z, b.high.z)};
     }
 };
 

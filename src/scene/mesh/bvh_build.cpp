@@ -71,37 +71,37 @@ private:
     }
 
     /// Fills splits_[at] with the items order_[begin, end); its subtree is in splits_[at, at + 2 (end - begin)).
-    void split(std::size_t at, std::size_t begin, std::size_t end, int depth) {
+    void split(std::size_t index, std::size_t begin, std::size_t end, int depth) {
         struct Boxes {
             Bounds items, centers;
         };
-        Boxes all;
+        Boxes boxes;
         for (const Boxes& part : in_chunks<Boxes>(begin, end, [&](Boxes& b, std::size_t from, std::size_t to) {
                  for (std::size_t i = from; i < to; ++i) {
                      b.items.add(items_[order_[i]]);
                      b.centers.add(centers_[order_[i]]);
                  }
              })) {
-            all.items.add(part.items);
-            all.centers.add(part.centers);
+            boxes.items.add(part.items);
+            boxes.centers.add(part.centers);
         }
-        Split& node = splits_[at];
-        node.box = all.items;
+        Split& node = splits_[index];
+        node.box = boxes.items;
         node.begin = static_cast<std::uint32_t>(begin);
         node.count = static_cast<std::uint32_t>(end - begin);
         if (end - begin <= group) return;
-        const std::size_t middle = depth < deepest_by_cost ? partition(begin, end, all.centers) : (begin + end) / 2;
-        const std::size_t left = at + 1, right = at + 2 * (middle - begin);
-        node.left = static_cast<std::uint32_t>(left);
+        const std::size_t middle = depth < deepest_by_cost ? partition(begin, end, boxes.centers) : (begin + end) / 2;
+        const std::size_t left_child = index + 1, right = index + 2 * (middle - begin);
+        node.left = static_cast<std::uint32_t>(left_child);
         node.right = static_cast<std::uint32_t>(right);
-        const auto first = [&] { split(left, begin, middle, depth + 1); };
+        const auto first = [&] { split(left_child, begin, middle, depth + 1); };
         const auto second = [&] { split(right, middle, end, depth + 1); };
         if (end - begin >= parallel_from) side_by_side(first, second);
         else {
             first();
             second();
         }
-        node.leaves = splits_[left].leaves + splits_[right].leaves;
+        node.leaves = splits_[left_child].leaves + splits_[right].leaves;
     }
 
     /// Orders a range by the cheapest split between bins and returns where its second part begins; halves the range if
@@ -190,8 +190,8 @@ private:
     }
 
     /// Writes splits_[at], and all below it, into nodes[to] and new nodes.
-    void emit(BvhTree& tree, std::size_t at, std::size_t to) const {
-        std::array<std::uint32_t, children> opened{static_cast<std::uint32_t>(at)};
+    void emit(BvhTree& tree, std::size_t index, std::size_t to) const {
+        std::array<std::uint32_t, children> opened{static_cast<std::uint32_t>(index)};
         std::size_t count = 1;
         while (count < children) {
             const std::size_t c = to_open(opened, count);

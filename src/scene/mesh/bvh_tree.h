@@ -37,14 +37,14 @@ template <class T> struct HugePages {
     T* allocate(std::size_t count) {
         const bool large = count * sizeof(T) >= page;
         const std::size_t unit = large ? page : line, bytes = (count * sizeof(T) + unit - 1) / unit * unit;
-        void* at = std::aligned_alloc(unit, bytes);
-        if (!at) throw std::bad_alloc();
+        void* memory = std::aligned_alloc(unit, bytes);
+        if (!memory) throw std::bad_alloc();
 #ifdef __linux__
-        if (large) static_cast<void>(madvise(at, bytes, MADV_HUGEPAGE));  // a hint
+        if (large) static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));  // a hint
 #endif
-        return static_cast<T*>(at);
+        return static_cast<T*>(memory);
     }
-    void deallocate(T* at, std::size_t) { std::free(at); }
+    void deallocate(T* memory, std::size_t) { std::free(memory); }
     bool operator==(const HugePages&) const { return true; }
 };
 
@@ -127,10 +127,11 @@ public:
     }
 
     /// Returns which boxes of a node are met at t <= t_max (a bit for each), and stores where they are entered.
-    [[gnu::always_inline]] unsigned meets(const BvhNode& node, float t_max, std::array<float, children>& at) const {
+    [[gnu::always_inline]] unsigned meets(
+        const BvhNode& node, float t_max, std::array<float, children>& entries) const {
         F8 near = {}, far = near + t_max;
         cut(node.side, near, far);
-        at = std::bit_cast<std::array<float, children>>(near);
+        entries = std::bit_cast<std::array<float, children>>(near);
         return bits_of(near <= far * far_factor);
     }
 
@@ -180,8 +181,8 @@ template <class Test, class Fetch> [[gnu::always_inline]] inline bool visit_leav
     std::size_t size = 0;
     Entry next = 0;
     for (;;) {
-        if (const auto at = static_cast<std::int32_t>(static_cast<std::uint32_t>(next)); at >= 0) {
-            const BvhNode& node = nodes[static_cast<std::size_t>(at)];
+        if (const auto index = static_cast<std::int32_t>(static_cast<std::uint32_t>(next)); index >= 0) {
+            const BvhNode& node = nodes[static_cast<std::size_t>(index)];
             std::array<float, children> entry;
             const std::size_t begin = size;
             unsigned met = ray.meets(node, nearest, entry);
@@ -204,7 +205,7 @@ template <class Test, class Fetch> [[gnu::always_inline]] inline bool visit_leav
                 }
                 continue;
             }
-        } else if (test(static_cast<std::size_t>(~at))) {
+        } else if (test(static_cast<std::size_t>(~index))) {
             return true;
         }
         do {

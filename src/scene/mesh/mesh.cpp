@@ -31,8 +31,8 @@ struct Header {
 };
 static_assert(sizeof(Header) == mesh_header_size);
 
-template <class T> void append(std::string& to, const std::vector<T>& all) {
-    if (!all.empty()) to.append(reinterpret_cast<const char*>(all.data()), all.size() * sizeof(T));
+template <class T> void append(std::string& to, const std::vector<T>& values) {
+    if (!values.empty()) to.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
 /// Reads the header of a file of `size` bytes and checks all of it but the hash.
@@ -171,10 +171,10 @@ std::shared_ptr<const MeshPack> read_mesh(std::string_view bytes, const std::str
     Reader reader(bytes, name);
     std::uint64_t hash = 0;
     Mesh mesh = reader(hash);
-    const std::size_t all = mesh.triangles.size();
+    const std::size_t triangles_read = mesh.triangles.size();
     const std::shared_ptr<MeshPack> pack = make_pack(std::move(mesh));
     if (pack->mesh.triangles.empty())
-        reader.fail(fmt::format("expected a triangle with an area, found {} without", all));
+        reader.fail(fmt::format("expected a triangle with an area, found {} without", triangles_read));
     pack->hash = hash;
     return pack;
 }
@@ -240,11 +240,11 @@ Removed remove_useless(Mesh& mesh) {
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
         while (end < order.size() && order[end].first == order[begin].first) ++end;
         for (std::size_t i = begin + 1; i < end; ++i) {
-            const bool known = std::any_of(order.begin() + static_cast<std::ptrdiff_t>(begin),
+            const bool listed = std::any_of(order.begin() + static_cast<std::ptrdiff_t>(begin),
                 order.begin() + static_cast<std::ptrdiff_t>(i),
                 [&, own = key_of(mesh, order[i].second)](
                     const auto& other) { return !useless[other.second] && key_of(mesh, other.second) == own; });
-            if (known) {
+            if (listed) {
                 useless[order[i].second] = true;
                 ++removed.duplicate;
             }

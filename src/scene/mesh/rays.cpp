@@ -36,13 +36,13 @@ struct Rays::Made {
     BoxRay box_ray(Vec3d x, Vec3d d) const { return {as<float>(x), as<float>(d), error(x)}; }
 
     /// Moves the nearest hit of one instance into `best` if it is nearer there.
-    void take(const Bvh& bvh, std::uint32_t index, const BoxRay& boxes, Vec3d x, Vec3d d, float t_max, bool all,
-        MeshHit& best) const {
+    void take(const Bvh& bvh, std::uint32_t index, const BoxRay& boxes, Vec3d x, Vec3d d, float t_max,
+        bool any_hit_only, MeshHit& best) const {
         const float entry = boxes.enters(placed[index].box, t_max);
         if (!(entry < t_max) || entry > best.t) return;
         const Vec3f o = as<float>(placed[index].to_mesh.point(x)), to = as<float>(placed[index].to_mesh.vector(d));
         TriangleHit hit{best.t};
-        if (all) hit = bvh.closest_of_all(o, to, t_max);
+        if (any_hit_only) hit = bvh.closest_of_all(o, to, t_max);
         else bvh.closest(o, to, t_max, hit);
         if (hit.triangle == no_item) return;
         const float t = std::fmax(hit.t, entry);
@@ -63,9 +63,9 @@ Rays::Rays(std::vector<MeshInstance> instances, Vec3d origin) : instances_(std::
             const auto side = [&](unsigned k, float low, float high) {
                 return static_cast<double>(corner >> k & 1 ? high : low);
             };
-            const Bounds& own = bvh.bounds();
-            box.add(as<float>(whole.point(
-                {side(0, own.low.x, own.high.x), side(1, own.low.y, own.high.y), side(2, own.low.z, own.high.z)})));
+            const Bounds& bounds = bvh.bounds();
+            box.add(as<float>(whole.point({side(0, bounds.low.x, bounds.high.x), side(1, bounds.low.y, bounds.high.y),
+                side(2, bounds.low.z, bounds.high.z)})));
         }
         made->reach = std::fmax(made->reach, std::fmax(largest(widen(box.low)), largest(widen(box.high))));
         made->condition = std::fmax(made->condition, whole.stretch() * back.stretch());

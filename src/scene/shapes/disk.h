@@ -39,8 +39,8 @@ struct Disk {
     double half_extent(Vec3d axis) const { return radius * disk_reach(axis, normal); }
     std::array<Vec3d, 1> faces() const { return {normal}; }
     Azimuths azimuths(Vec3d x, const Frame<double>& frame) const {
-        const Frame<double> own = frame_about(normal);
-        return azimuths_of_ellipse(center - x, radius * own.t, radius * own.b, frame);
+        const Frame<double> frame_of_disk = frame_about(normal);
+        return azimuths_of_ellipse(center - x, radius * frame_of_disk.t, radius * frame_of_disk.b, frame);
     }
 
     /// Large: a is the point of the edge nearest to the origin, c the unit direction there from the centre, radius

@@ -80,8 +80,8 @@ struct Quad {
         const Vec3<F> n = cross(body.b, body.c);
         const F t = plane_at(n, body.offset, o, d);
         if (any(body.radius > zero)) {
-            const Vec3<F> at = o + d * t;
-            const F across = body.a.x + dot(body.b, at), along = body.a.y + dot(body.c, at), one = number<F>(1);
+            const Vec3<F> point = o + d * t;
+            const F across = body.a.x + dot(body.b, point), along = body.a.y + dot(body.c, point), one = number<F>(1);
             return (t > lo) & (t < hi) & (across >= zero) & (across <= one) & (along >= zero) & (along <= one);
         }
         const Vec3<F> p = o + d * t - body.a;

@@ -21,8 +21,8 @@ struct Sphere {
     Intersection intersect(Vec3d x, Vec3d d) const {
         const Vec3d o = x - center;
         const double a = dot(d, d), b = dot(o, d), oo = dot(o, o), c = oo - radius * radius;
-        const Vec3d off = o - (b / a) * d;  // for a small sphere far away b^2 and a c agree in all digits
-        const double discriminant = oo > 1e6 * sqr(radius) ? a * (sqr(radius) - dot(off, off)) : b * b - a * c;
+        const Vec3d offset = o - (b / a) * d;  // for a small sphere far away b^2 and a c agree in all digits
+        const double discriminant = oo > 1e6 * sqr(radius) ? a * (sqr(radius) - dot(offset, offset)) : b * b - a * c;
         if (discriminant < 0) return {};
         const double root = std::sqrt(discriminant);
         for (double t : {(-b - root) / a, (-b + root) / a})
