@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "check/constants.h"
+#include "check/decide/check_at.h"
 #include "check/verdicts/questions.h"
 #include "check/verdicts/statistics.h"
 #include "math/statistics.h"
@@ -103,11 +104,8 @@ bool tail_may_be_heavy(std::span<const double> weights) {
         largest = std::max(largest, x);
     }
     if (largest <= bounded_weight * mean) return false;
-    std::vector<double> w(weights.begin(), weights.end());
-    const std::size_t m = std::min(tail_length(w.size()) + 1, w.size());
-    std::partial_sort(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(m), w.end(), std::greater<>());
-    const std::optional<Tail> tail = fit_tail(std::span<const double>(w).first(m));
-    return tail && tail->k + 2 * tail->se >= heavy_index;
+    const WeightTail tail = tail_of_weights(weights);
+    return tail.heavy() || tail.open();
 }
 
 bool mean_can_be_tested(const Evidence& e) {

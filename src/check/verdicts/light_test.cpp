@@ -94,5 +94,12 @@ TEST(TailsOfWeights, MayBeHeavyFromIndexOneHalfOn) {
     EXPECT_FALSE(tail_may_be_heavy(std::vector<double>{1, 2, 3.9, 1}));  // at most four means
 }
 
+TEST(TailsOfWeights, OfARareLobeAreAStep) {
+    std::vector<double> x;
+    Stream stream({1});
+    for (int i = 0; i < 20000; ++i) x.push_back((i < 100 ? 20 : 1) * (0.9 + 0.2 * stream.number()));
+    EXPECT_FALSE(tail_may_be_heavy(x));
+}
+
 }  // namespace light_test
 }  // namespace crescent::check
