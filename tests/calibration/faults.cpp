@@ -253,8 +253,8 @@ std::string_view cause_of(const Fault& fault) {
 
 bool is_true_of(std::string_view kind, std::string_view family, std::string_view text) {
     static const std::map<std::string_view, std::vector<std::string_view>> words = {
-        {"leak", {"spread evenly", "does not have one of the lobes"}}, {"rotation", {"turned by"}},
-        {"mismatch", {"An exponent or a roughness differs", "Across the surface p is"}},
+        {"leak", {"spread evenly", "does not have one of the lobes", "the chooser's probability"}},
+        {"rotation", {"turned by"}}, {"mismatch", {"An exponent or a roughness differs", "Across the surface p is"}},
         {"exponent", {"An exponent or a roughness differs"}}, {"hole", {"positive where no draw falls"}},
         {"one number twice", {"lie on a curve"}}, {"lobe's pdf", {"the chooser's probability"}},
         {"one u used twice", {"lie on a curve"}}, {"axis about n but pdf about R", {"turned by"}},

@@ -17,6 +17,7 @@ namespace crescent::check {
 namespace {
 
 constexpr std::size_t fewest = 24;
+constexpr double same_normal = 1e-4;  // 1 - cos of 0.8 degrees: fitted normals are known to a tenth of that
 
 using RatioModel = std::function<double(Vec3d wo, Vec3d wi)>;  // ratio of the draws to p
 
@@ -116,7 +117,7 @@ constexpr PlanePower plane_powers[] = {{1,
                                            "times r^2 / cos"},
     {2, "the squared distance to the light, r^2, is missing in p"},
     {3, "r^2 / cos at the light is missing in p, which is a density per area"},
-    {-1, "the cosine at the light is once too often in p"},
+    {-1, "p is divided by the cosine at the light once too often"},
     {-2, "the squared distance to the light, r^2, is once too often in p"},
     {-3, "r^2 / cos at the light is once too often in p"}};
 
@@ -171,14 +172,21 @@ std::optional<Cause> plane_cause(std::span<const KnownRatio> ratios, std::span<c
         if (!agree(model, ratios)) continue;
         Hypothesis h = times(model, "light in a plane");
         if (!passes(h, places, 1)) continue;
+        const Vec3d normal = *n * (1 / length(*n));
+        const bool of_surface = std::fabs(normal.z) > 1 - same_normal;
+        const std::string surface = of_surface
+            ? fmt::format(" For a surface with this normal, cos theta_i{} is {} in p.",
+                  std::abs(power) == 1 ? "" : fmt::format("^{}", std::abs(power)),
+                  power < 0 ? "missing" : "a factor too many")
+            : "";
         return Cause{.factor = "light in a plane",
             .exponent = static_cast<double>(power),
             .error = 0,
             .text = fmt::format(
-                "By the derivatives of sample(u), draws over p is {} |n.w_i|^{}, with n = {}. For a light in a "
-                "plane with this normal, {}.",
-                crescent::figures(math::exp(-power * math::log(length(*n))), 4), -power,
-                direction_text(*n * (1 / length(*n))), what)};
+                "By the derivatives of sample(u), draws over p is {} |n.w_i|^{}, with n = {}.{} For a light "
+                "in a plane with this normal, {}.",
+                crescent::figures(math::exp(-power * math::log(length(*n))), 4), -power, direction_text(normal),
+                surface, what)};
     }
     return {};
 }

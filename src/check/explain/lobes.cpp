@@ -27,6 +27,7 @@ constexpr double fits_at = 1e-3;            // p-value of the remaining misfit
 constexpr double known_share = 0.02;        // of x, relative
 constexpr double known_probability = 0.05;  // half an interval
 constexpr double left_out = 0.1;            // an x that is 0 is known to this: a lobe that p does not have
+constexpr double known_factor = 0.1;        // half an interval of x, relative: a factor of a lobe that is named
 
 bool has_direction(const Draw& d) { return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z); }
 
@@ -247,26 +248,36 @@ bool explains(const Shares& s) {
     return chi_squared_tail(degrees, s.misfit) > fits_at || s.misfit - degrees < 0.02 * (s.before - degrees);
 }
 
-/// `where`: " at w_o 60 deg", or "".
-std::string lobe_sentence(const LobeChooser& chooser, const Shares& s, const std::string& where) {
+/// A probability with half of its interval, which is cut at 0 and 1.
+std::string probability_text(double p, double half) {
+    if (p - half < 0) return fmt::format("at most {:.2g}", std::max(p + half, 0.0));
+    if (p + half > 1) return fmt::format("at least {:.2g}", std::min(p - half, 1.0));
+    return with_error(p, half);
+}
+
+/// `where`: " at w_o 60 deg", or "". Other probabilities of the same lobes leave the integral of p as it is: if that
+/// differs, each lobe has a factor, which is named if it is known.
+std::optional<std::string> lobe_sentence(const LobeChooser& chooser, const Shares& s, const std::string& where) {
+    const int number = chooser.number + 1;
     std::vector<std::size_t> differing;
-    std::vector<std::string> drawn, claimed;
-    bool shares_known = true;  // whether the probabilities of p are known, each in [0, 1] and all together 1
+    std::vector<std::string> drawn, claimed, factors;
+    bool shares_known = true, factors_known = true;
     double sum = 0, sum_half = 0;
     for (std::size_t k = 0; k < s.x.size(); ++k) {
-        const double share = chooser.lobes[k].share(), of_p = s.x[k] * share, half = 1.96 * s.errors[k] * share;
-        shares_known = shares_known && of_p - half >= 0 && of_p + half <= 1 && half < known_probability;
-        sum += of_p;
-        sum_half += half;
+        const double share = chooser.lobes[k].share(), half = 1.96 * s.errors[k];
+        shares_known = shares_known && half * share < known_probability;
+        factors_known = factors_known && half < known_factor * s.x[k];
+        sum += s.x[k] * share;
+        sum_half += half * share;
         drawn.push_back(fmt::format("{:.3g}", share));
-        claimed.push_back(with_error(of_p, half));
+        claimed.push_back(probability_text(s.x[k] * share, half * share));
+        factors.push_back(with_error(s.x[k], half));
         if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) differing.push_back(k);
     }
-    shares_known = shares_known && std::fabs(sum - 1) < sum_half + known_share;
     for (std::size_t k : differing)
         if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], known_share) && 3 * s.errors[k] < left_out)
             return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}{}.",
-                chooser.number + 1, chooser.lobes[k].from, chooser.lobes[k].to, where);
+                number, chooser.lobes[k].from, chooser.lobes[k].to, where);
     if (differing.size() == 1) {
         const LobeInterval& lobe = chooser.lobes[differing[0]];
         const double x = s.x[differing[0]];
@@ -275,14 +286,20 @@ std::string lobe_sentence(const LobeChooser& chooser, const Shares& s, const std
         return fmt::format(
             "Of the lobes that u{} chooses, the one from {:.4g} to {:.4g} has {:.3g} +- {:.1g} times what "
             "it draws in p{}, the others are right: {}.",
-            chooser.number + 1, lobe.from, lobe.to, x, 1.96 * s.errors[differing[0]], where,
+            number, lobe.from, lobe.to, x, 1.96 * s.errors[differing[0]], where,
             no_chooser ? "the chooser's probability of that one lobe is left out"
                        : "the chooser's probability of that one lobe, or a constant of its own, is off");
     }
+    if (std::fabs(sum - 1) > sum_half + known_share) {
+        if (!factors_known) return {};
+        return fmt::format(
+            "Of the lobes that u{} chooses, p has {} times what they draw{}: a factor that differs from lobe to lobe, "
+            "such as a Jacobian or the area of a light.",
+            number, fmt::join(factors, ", "), where);
+    }
     return fmt::format(
-        "The lobes that u{} chooses are drawn with {}{}; p has them with {}: the chooser's probability "
-        "differs.",
-        chooser.number + 1, fmt::join(drawn, ", "), where,
+        "The lobes that u{} chooses are drawn with {}{}; p has them with {}: the chooser's probability differs.",
+        number, fmt::join(drawn, ", "), where,
         shares_known ? fmt::format("{}", fmt::join(claimed, ", ")) : "other probabilities");
 }
 
@@ -321,8 +338,8 @@ std::optional<Cause> lobe_cause(std::span<const Place> places) {
         if (!shares || !explains(*shares)) continue;
         const auto [least, most] = std::ranges::minmax_element(shares->x);
         if (*most - *least < known_share) continue;  // a constant
-        return Cause{
-            .factor = "chooser", .exponent = 0, .error = 0, .text = lobe_sentence(*chooser, *shares, place.where())};
+        if (std::optional<std::string> text = lobe_sentence(*chooser, *shares, place.where()))
+            return Cause{.factor = "chooser", .exponent = 0, .error = 0, .text = std::move(*text)};
     }
     return {};
 }
