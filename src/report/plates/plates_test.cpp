@@ -212,6 +212,30 @@ TEST(Plates, ARunThatWasNotMadeIsNamedOnThePlate) {
     EXPECT_TRUE(has(world.settings(plan), "cosine n=1024 s=32 was not run"));
 }
 
+TEST(Plates, EnlargeTheMiddleOfARegionThatIsTheWholeFrame) {
+    World world(96, 54);
+    world.e.regions = {{"all", {0, 0, 95, 53}, {}}};
+    EXPECT_TRUE(has(world.settings(world.plan(PlateKind::columns, 2)), "crop x 32–63, y 18–35"));
+}
+
+TEST(Plates, WrapALongDensityUnderANarrowPicture) {
+    World world(960, 540);
+    for (std::size_t i = 0; i < world.e.arms.size(); ++i) {
+        if (world.e.arms[i].is_combination()) continue;
+        world.e.arms[i].sampler = "material";
+    }
+    for (const Setting& each : world.settings(world.plan(PlateKind::columns, 6))) {
+        EXPECT_FALSE(each.ellipsized) << each.text;
+        EXPECT_GE(each.px, 13) << each.text;
+    }
+}
+
+TEST(Plates, OfASceneWithoutAnExponentShowNone) {
+    EXPECT_TRUE(exponent_facts(0).empty());
+    EXPECT_EQ(with_exponent("Converged reference", 0), "Converged reference");
+    EXPECT_EQ(with_exponent("Converged reference", 32), "Converged reference s=32");
+}
+
 TEST(Plates, StateWhenTheReferenceIsTooImprecise) {
     World world(96, 54);
     const char* message = "reference not good enough in H";

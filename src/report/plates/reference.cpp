@@ -69,10 +69,11 @@ void draw_reference(Sheet& sheet) {
             "drawn through Khronos PBR Neutral, exposure " + number(e.exposure) + ", " + to_string(f));
         sheet.notes.push_back("means off the float film");
     } else {
-        paint_missing(sheet, picture_slot, "no reference for s=" + number(s));
+        paint_missing(sheet, picture_slot, with_exponent("no reference", s));
     }
-    double y = facts(sheet, "Reference", reference_words(e),
-        {{"s", number(s)}, {"image", fmt::format("{} × {}", e.image.width, e.image.height)}});
+    std::vector<Fact> list = exponent_facts(s);
+    list.push_back({"image", fmt::format("{} × {}", e.image.width, e.image.height)});
+    double y = facts(sheet, "Reference", reference_words(e), list);
     region_facts(sheet, v, y);
 }
 

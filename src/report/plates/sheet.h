@@ -232,6 +232,10 @@ inline constexpr Rect facts_slot{
 struct Fact {
     std::string name, value;
 };
+/// The line of an exponent; none in a scene without one, whose s is 0.
+std::vector<Fact> exponent_facts(double s);
+/// Appends " s=32" to a text, nothing in a scene without an exponent.
+std::string with_exponent(const std::string& text, double s);
 /// Returns the y under the last line.
 double facts(Sheet& sheet, const std::string& title, const std::string& under_title, const std::vector<Fact>& list);
 

@@ -5,6 +5,13 @@
 
 namespace crescent::plates {
 
+std::vector<Fact> exponent_facts(double s) {
+    if (!(s > 0)) return {};
+    return {{"s", number(s)}};
+}
+
+std::string with_exponent(const std::string& text, double s) { return s > 0 ? text + " s=" + number(s) : text; }
+
 double facts(Sheet& sheet, const std::string& title, const std::string& under_title, const std::vector<Fact>& list) {
     Rect line = facts_slot;
     line.h = 34;
@@ -58,7 +65,9 @@ void draw_run(Sheet& sheet, const RunKey& key) {
     View v = view(sheet.in.film(key));
     photograph_header(sheet, runs_label({key}, e), stream_words({key}));
     picture(sheet, v, escaped(to_string(key)) + " was not run");
-    std::vector<Fact> list{{"N", count(key.n)}, {"s", number(key.s)}, {"seed", fmt::format("{}", key.seed)}};
+    std::vector<Fact> list{{"N", count(key.n)}};
+    for (Fact& f : exponent_facts(key.s)) list.push_back(std::move(f));
+    list.push_back({"seed", fmt::format("{}", key.seed)});
     for (Fact& f : common_facts(sheet, v)) list.push_back(std::move(f));
     facts(sheet, arm_name(key.arm, e), density_formula(key.arm, e), list);
 }
@@ -67,9 +76,9 @@ void draw_converged(Sheet& sheet) {
     const Experiment& e = sheet.experiment();
     double s = sheet.plan.runs.empty() ? e.s() : key_of(sheet.plan.runs[0], e).s;
     View v = view(sheet.in.reference(s));
-    photograph_header(sheet, "Converged reference s=" + number(s), reference_stream(e));
-    picture(sheet, v, "no reference for s=" + number(s));
-    std::vector<Fact> list{{"s", number(s)}};
+    photograph_header(sheet, with_exponent("Converged reference", s), reference_stream(e));
+    picture(sheet, v, with_exponent("no reference", s));
+    std::vector<Fact> list = exponent_facts(s);
     for (Fact& f : common_facts(sheet, v)) list.push_back(std::move(f));
     facts(sheet, "Converged", reference_words(e), list);
 }

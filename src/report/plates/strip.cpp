@@ -32,19 +32,31 @@ std::string heading(const RunKey& r, const Varies& v, const Experiment& e) {
     return joined(parts, ", ");
 }
 
-// Returns the crop of the plan; else the first region for the highlight, the last for the surround; else nothing.
+// Returns the middle third of a box that is more than half of the picture, which would show what the frame shows; else
+// the box.
+Box detail_of(const Box& box, const Image& image) {
+    if (2.0 * box.width() * box.height() <= double(image.width) * image.height) return box;
+    const int dx = box.width() / 3, dy = box.height() / 3;
+    return {box.x0 + dx, box.y0 + dy, box.x1 - dx, box.y1 - dy};
+}
+
+// Returns the crop of the plan; else of the first region for the highlight, of the last for the surround; else nothing.
 std::optional<Box> crop_of(const Sheet& sheet) {
     const auto& regions = sheet.experiment().regions;
     if (sheet.plan.crop) return sheet.plan.crop;
     if (regions.empty()) return {};
-    return sheet.plan.kind == PlateKind::surround ? regions.back().box : regions.front().box;
+    const Region& region = sheet.plan.kind == PlateKind::surround ? regions.back() : regions.front();
+    return detail_of(region.box, sheet.experiment().image);
 }
+
+constexpr double density_line_h = 23;
 
 // The layout, the same in every cell. Up to six runs are in one row; more make a grid of crops.
 struct Layout {
     std::size_t columns = 1, rows = 1;
     bool frames = true, crops = false;
     double words_h = 0, frame_h = 0, crop_h = 0, top = 0;  // top: of the pictures in their cell
+    int density_lines = 0;
     Fit frame, crop;
     Rect cell(std::size_t i) const {
         double h = (content_band.h - gap * double(rows - 1)) / double(rows);
@@ -53,12 +65,33 @@ struct Layout {
     }
 };
 
-Layout lay_out(const Sheet& sheet, std::size_t runs, const Varies& varies, const std::optional<Box>& crop) {
+std::string density_of(const RunKey& run, const Varies& varies, const Experiment& e) {
+    return varies.s ? density_formula_at(run.arm, run.s, e) : density_formula(run.arm, e);
+}
+
+Text density_text() { return with(with(with_px(body_text, 17), muted), Align::centre); }
+
+// Returns how many lines the longest density takes, with a tenth of a line for what breaking at words leaves empty.
+int density_lines(const Sheet& sheet, const std::vector<RunKey>& runs, const Varies& varies, double width) {
+    constexpr int most_lines = 4;
+    const Text smallest = with_px(density_text(), density_text().least);
+    double longest = 0;
+    for (const RunKey& run : runs)
+        longest = std::max(longest, sheet.canvas.measure(density_of(run, varies, sheet.experiment()), smallest).w);
+    if (longest <= width) return 1;
+    return std::min(most_lines, static_cast<int>(std::ceil(1.1 * longest / width)));
+}
+
+Layout lay_out(
+    const Sheet& sheet, const std::vector<RunKey>& runs, const Varies& varies, const std::optional<Box>& crop) {
     const Image& image = sheet.experiment().image;
+    const std::size_t count = runs.size();
     Layout l;
-    l.columns = runs <= 6 ? runs : std::max<std::size_t>(6, std::size_t(std::ceil(std::sqrt(1.8 * double(runs)))));
-    l.rows = (runs + l.columns - 1) / l.columns;
-    l.words_h = l.rows > 1 || !(varies.arm || varies.s) ? 36 : 58;
+    l.columns = count <= 6 ? count : std::max<std::size_t>(6, std::size_t(std::ceil(std::sqrt(1.8 * double(count)))));
+    l.rows = (count + l.columns - 1) / l.columns;
+    const bool has_density = l.rows == 1 && (varies.arm || varies.s);
+    l.density_lines = has_density ? density_lines(sheet, runs, varies, l.cell(0).w) : 0;
+    l.words_h = has_density ? 35 + density_line_h * l.density_lines : 36;
     double w = l.cell(0).w, room = l.cell(0).h - l.words_h;
     l.crops = crop.has_value();
     l.frames = !l.crops || (sheet.plan.kind != PlateKind::surround && l.rows == 1);
@@ -97,9 +130,9 @@ void draw_words(Sheet& sheet, const RunKey& run, const Varies& varies, const Lay
     const Experiment& e = sheet.experiment();
     double y = col.bottom() - l.top - l.words_h;
     sheet.canvas.text({col.x, y + 8, col.w, 28}, heading(run, varies, e), with(with_px(title_text, 22), Align::centre));
-    if (l.words_h < 58) return;
-    std::string density = varies.s ? density_formula_at(run.arm, run.s, e) : density_formula(run.arm, e);
-    sheet.canvas.text({col.x, y + 35, col.w, 23}, density, with(with(with_px(body_text, 17), muted), Align::centre));
+    if (l.density_lines == 0) return;
+    sheet.canvas.text({col.x, y + 35, col.w, density_line_h * l.density_lines}, density_of(run, varies, e),
+        with_lines(density_text(), l.density_lines));
 }
 
 void add_notes(Sheet& sheet, const Layout& l, const std::optional<Box>& crop) {
@@ -132,7 +165,7 @@ void draw_strip(Sheet& sheet) {
     std::optional<Box> crop = crop_of(sheet);
     if (crop) crop = inside(*crop, any);
     Varies varies(runs);
-    Layout l = lay_out(sheet, runs.size(), varies, crop);
+    Layout l = lay_out(sheet, runs, varies, crop);
     for (std::size_t i = 0; i < runs.size(); ++i) {
         Rect col = l.cell(i);
         View v = view(sheet.in.film(runs[i]));
