@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <optional>
@@ -113,6 +114,7 @@ public:
         const CheckResult j = result_of(arg, listener->IsInterested());
         const bool matches = j.state == State::right || (open_ && j.state == State::inconclusive);
         if (!matches && listener->IsInterested()) *listener << "\n" << what_is_wrong(j);
+        if (matches && !listener->IsInterested()) record(j);
         return matches;
     }
     /// "is a right sampler"
@@ -125,6 +127,15 @@ public:
     }
 
 private:
+    /// What was tested is a property of the running test in GoogleTest's XML and JSON: crescent_1, crescent_2 ... It is
+    /// also printed if the environment variable CRESCENT_PRINT is set.
+    static void record(const CheckResult& result) {
+        static int count = 0;
+        const std::string text = what_was_tested(result);
+        if (testing::UnitTest::GetInstance()->current_test_info())
+            testing::Test::RecordProperty("crescent_" + std::to_string(++count), text);
+        if (std::getenv("CRESCENT_PRINT")) std::printf("%s", text.c_str());
+    }
     /// Matchers of several elements (Each, ElementsAre) match some before they explain the first: only an explanation
     /// directly after a single match reuses its result.
     CheckResult result_of(const std::remove_cvref_t<Argument>& arg, bool explains) const {

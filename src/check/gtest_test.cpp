@@ -50,6 +50,16 @@ TEST(Matchers, CheckOnceAlsoOnFailure) {
         once);
 }
 
+TEST(Matchers, RecordWhatWasTested) {
+    EXPECT_THAT(Counted{}, IsARightSamplerBy(one_wo()));
+    const testing::TestResult& result = *testing::UnitTest::GetInstance()->current_test_info()->result();
+    ASSERT_EQ(result.test_property_count(), 1);
+    const std::string text = result.GetTestProperty(0).value();
+    EXPECT_NE(text.find("Skipped: "), std::string::npos) << text;
+    EXPECT_NE(text.find("physics"), std::string::npos) << text;
+    EXPECT_NE(text.find("a constant factor of"), std::string::npos) << text;
+}
+
 /// The second element has the address of the first: the result of one element must not be used for another.
 TEST(Matchers, CheckEachElementSeparately) {
     const auto made = [](double factor) { return Counted{factor}; };

@@ -76,6 +76,8 @@ std::string summary_of(const CheckResult& result);
 /// The findings in at most `most_lines` (5 or more), for a failing test: message, size, place and cause of the first
 /// ones, then the names of the others and the next step in calls of C++; "" if there are none.
 std::string what_is_wrong(const CheckResult& result, std::size_t most_lines = 8);
+/// What a check without a fault skipped or left out, and the sizes of the faults it would have found: a line each.
+std::string what_was_tested(const CheckResult& result);
 
 // ---- The first view of one sampler on a terminal: at most 12 lines.
 

@@ -340,6 +340,20 @@ std::string nothing_drawn_text(const CheckResult& result) {
     return out;
 }
 
+std::string what_was_tested(const CheckResult& result) {
+    std::map<std::string, std::vector<std::string>> skipped;  // verdicts by reason
+    for (const Verdict& v : result.verdicts) {
+        if (v.state != State::skipped) continue;
+        std::vector<std::string>& names = skipped[in_one_line(v.message)];
+        if (std::ranges::find(names, v.name) == names.end()) names.push_back(v.name);
+    }
+    std::string out;
+    for (const auto& [reason, names] : skipped) out += fmt::format("Skipped: {}. {}\n", fmt::join(names, ", "), reason);
+    for (const std::string& text : {skipped_text(result), nothing_drawn_text(result), unseen_text(result)})
+        if (!text.empty()) out += text + "\n";
+    return out;
+}
+
 // ---- The text of a density that draws imply (check/report/implied.cpp). Rings of 15 degrees are means of the finer
 // rings, weighted by solid angle.
 
