@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiment/assertion.h"
+#include "experiment/parser.h"
 #include "experiment/schema.h"
 #include "samplers/info.h"
 

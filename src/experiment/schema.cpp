@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "experiment/assertion.h"
+#include "experiment/parser.h"
 #include "samplers/info.h"
 
 namespace crescent {
