@@ -197,8 +197,16 @@ std::shared_ptr<const ProgramSampler> program_of(const CheckFlags& flags, const 
     if (python && !flags.settings.empty())
         throw InputError({"--set " + flags.settings.front(), 0, 0},
             "is for built-in samplers, and " + flags.arm + " has its own parameters");
-    if (python) return start_python_sampler(flags.arm, limits_of(flags, monitor));
-    return flags.exec.empty() ? nullptr : start_pipe(flags.exec, limits_of(flags, monitor), "", domain_of(flags));
+    const int neighbours = flags.neighbours > 0 ? flags.neighbours : default_neighbours;
+    std::shared_ptr<const ProgramSampler> out;
+    if (python) out = start_python_sampler(flags.arm, limits_of(flags, monitor), neighbours);
+    else if (!flags.exec.empty())
+        out = start_pipe(flags.exec, limits_of(flags, monitor), "", domain_of(flags), neighbours);
+    if (out && flags.neighbours > 0 && out->traits().neighbours == 0)
+        throw InputError({"--neighbours", 0, 0},
+            "is for a sampler that merges reservoirs: weight=reciprocal merge=yes in the handshake, merge = True in a "
+            "Python file");
+    return out;
 }
 
 /// An estimator of a number, which has no w_o.
@@ -370,6 +378,8 @@ void write_repro(const CheckFlags& flags, std::span<const CheckCase> check_cases
 void check_limits(const CheckFlags& flags) {
     if (!flags.repro.empty() && (is_experiment(flags) || (flags.exec.empty() && !names_python_sampler(flags.arm))))
         throw InputError({"--repro", 0, 0}, "needs --exec or a sampler in a Python file");
+    if (flags.neighbours > 0 && flags.exec.empty() && !names_python_sampler(flags.arm))
+        throw InputError({"--neighbours", 0, 0}, "needs --exec or a sampler in a Python file");
     if (!flags.exec.empty() || names_python_sampler(flags.arm) || names_shader(flags.arm) || is_experiment(flags))
         return;
     for (const auto& [flag, given] : {std::pair("--patience", flags.patience > 0), {"--accept-few", flags.accept_few}})
@@ -395,6 +405,7 @@ std::string command_of(const CheckFlags& f) {
     if (!f.arm.empty()) out += " " + shell_word(f.arm);
     if (!f.sampler.empty()) out += " --sampler " + shell_word(f.sampler);
     if (f.pixels > 0) out += fmt::format(" --pixels {}", f.pixels);
+    if (f.neighbours > 0) out += fmt::format(" --neighbours {}", f.neighbours);
     if (f.light) out += " --light";
     if (!f.domain.empty()) out += " --domain " + shell_word(f.domain);
     if (!f.estimates.empty()) out += " --estimates " + shell_word(f.estimates);

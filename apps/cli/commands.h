@@ -78,6 +78,7 @@ struct CheckFlags {
     std::string arm;  // "": all built-in arms; an experiment: `sampler` is an arm of it
     std::string sampler;
     std::vector<std::string> settings;  // s=128
+    int neighbours = 0;                 // 0: the default
     std::string exec, plugin, samples, table;
     std::map<std::string, std::vector<std::string>> shader;  // options of a shader, by flag
     std::string over;                                        // NAME=VALUES of a shader

@@ -170,6 +170,9 @@ void add_check(CLI::App& app, Work& work) {
     c->add_option("--estimates", f->estimates, "the expected value of a sampler of domain=number: 0.8187, exp(-0.2)")
         ->type_name("VALUE[,VALUE,VALUE]")
         ->check(not_empty);
+    c->add_option("--neighbours", f->neighbours, "supplied to a sampler that merges reservoirs; default 8")
+        ->type_name("K")
+        ->check(whole_number(1, Neighbour::most));
     limits(*c, *f);
     for (auto* other : {arm, set, planted}) {
         exec->excludes(other);

@@ -539,6 +539,7 @@ std::optional<std::string> repro_script(
         if (worst == check_cases.end()) continue;
         const SamplerAdapter& sampler = *worst->adapter;
         const Traits traits = sampler.traits();
+        if (traits.neighbours > 0) continue;  // a script has no neighbours
         if (traits.domain) {
             if (std::optional<std::string> script = script_of_points(flags, *worst, finding)) return script;
             continue;

@@ -36,6 +36,7 @@
 #include "check/report/print.h"
 #include "check/sources/cases.h"
 #include "check/sources/external.h"
+#include "check/sources/neighbours.h"
 #include "check/sources/point_file.h"
 #include "check/sources/sample_file.h"
 #include "check/user.h"

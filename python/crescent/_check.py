@@ -81,7 +81,7 @@ def _numbers(settings: Mapping[str, float]) -> dict[str, float]:
 
 def _of_library(s: Sampler) -> Sampler:
     """Returns the sampler with callables that take NumPy's arrays, for any library of its own."""
-    if s.array_module is np or s.array_module == "numpy":
+    if s.array_module is np or s.array_module == "numpy" or s.merge:  # neighbours are NumPy's arrays
         return s
     rows = rows_to_look_with(8, s.u) if s.wo != "none" else rows_to_look_with(8, s.u)[1:]
     if s.array_module is None:
@@ -122,6 +122,7 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
         s = _of_library(s)
         chart = None
         number, reciprocal = s.is_number(), s.weight is not None
+        neighbours = s.neighbours if s.merge else 0
         if reciprocal:
             s = with_weights(s)
         if number:
@@ -157,6 +158,7 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
         domain=chart,
         number=number,
         reciprocal_weight=reciprocal,
+        neighbours=neighbours,
     )
 
 

@@ -59,21 +59,35 @@ def as_weights(s: Sampler) -> Sampler:
     return replace(s, sample=sample, name=name, numbers=None, domain="sphere")
 
 
+NEIGHBOUR_COLUMNS = 7  # w_o, n, light
+
+
+def weighted(answer: Any, n: int, name: str) -> tuple[Any, Array, Array]:
+    """Returns w_i, 1 or 0 for a draw or none, and W."""
+    if not isinstance(answer, (tuple, list)) or len(answer) != 2:
+        raise ValueError(f"{name}: sample gave {type(answer).__name__}, expected (wi, W)")
+    weight = _arrays.column(answer[1], n, f"{name}: sample's W")
+    return answer[0], (weight != 0).astype(np.float64), weight[:, None]
+
+
+def _neighbours(wo: Array, count: int) -> Array:
+    """Returns the neighbours of each w_o, [n, K, 7]."""
+    each, index = np.unique(wo, axis=0, return_inverse=True)
+    return np.array([_crescent.neighbours_of(x, y, z, count) for x, y, z in each.tolist()])[index.reshape(-1)]
+
+
 def with_weights(s: Sampler) -> Sampler:
     """Returns a sampler of (w_i, W) as one without pdf whose weights are W, and whose f is the target."""
     name, takes_wo = s.title(), s.wo != "none"
 
     def sample(*given: Array) -> tuple[Any, Array, Array]:
-        answer = s.sample(*given)
-        if not isinstance(answer, (tuple, list)) or len(answer) != 2:
-            raise ValueError(f"{name}: sample gave {type(answer).__name__}, expected (wi, W)")
-        weight = _arrays.column(answer[1], len(given[-1]), f"{name}: sample's W")
-        return answer[0], (weight != 0).astype(np.float64), weight[:, None]
+        more = (_neighbours(given[0], s.neighbours),) if s.merge else ()
+        return weighted(s.sample(*given, *more), len(given[-1]), name)
 
     target = s.target
     assert target is not None
     f = target if takes_wo or not s.of_directions() else lambda wo, wi: target(wi)
-    return replace(s, sample=sample, f=f, name=name, weight=None, target=None)
+    return replace(s, sample=sample, f=f, name=name, weight=None, target=None, merge=False)
 
 
 def as_given(x: Array, chart: Any) -> Array:

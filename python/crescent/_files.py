@@ -18,7 +18,7 @@ from ._sampler import Sampler
 
 
 #: Names in a file or class that state what its sampler is, as the fields of a Sampler do.
-_STATED = ("domain", "numbers", "own_random", "weight", "target")
+_STATED = ("domain", "numbers", "own_random", "weight", "target", "merge")
 
 
 def names_a_file(text: str) -> bool:

@@ -106,6 +106,8 @@ class Sampler:
     radiance: Callable[..., Any] | None = None
     #: "reciprocal": sample(wo, u) -> (wi, W), where W is random and estimates 1/p, as that of a reservoir does
     weight: Literal["reciprocal"] | None = None
+    merge: bool = False  #: sample(wo, u, neighbours[n,K,7]): it merges their reservoirs, see docs/domains.md
+    neighbours: int = 8  #: K, from 1 to 64, in crescent.check; a file is given those of --neighbours
     n: int | Sequence[int] | None = None  #: the sample counts of its arm in a run; None: those of the other arms
     target: Callable[..., Any] | None = None  #: target(wo[n,3], wi[n,3]) -> [n], on whose support E[h W] is the integral of h
 
@@ -147,6 +149,13 @@ class Sampler:
             raise ValueError(f"weight is {self.weight!r}: expected None or 'reciprocal'")
         if (self.weight is None) != (self.target is None):
             raise TypeError("weight='reciprocal' and target(wo, wi) go together: samples are (wi, W), and W estimates 1/p")
+        object.__setattr__(
+            self, "neighbours", whole("neighbours", self.neighbours, 1, 64, "expected 1 to 64 neighbours")
+        )
+        if self.merge and (self.weight is None or not self.of_directions() or self.wo == "none"):
+            raise ValueError("merge is given: it is for directions with a w_o and weight='reciprocal'")
+        if self.merge and getattr(self.array_module, "__name__", self.array_module) not in (None, "numpy"):
+            raise ValueError("merge is given: its neighbours are arrays of NumPy; expected array_module=None")
         if self.weight and (self.pdf is not None or self.f is not None or self.delta):
             raise ValueError("pdf, f or delta is given: a sampler with weight='reciprocal' has sample and target alone")
 
@@ -200,6 +209,8 @@ class Known(TypedDict, total=False):
     radiance: Callable[..., Any] | None
     weight: Literal["reciprocal"] | None
     target: Callable[..., Any] | None
+    merge: bool
+    neighbours: int
 
 
 def rows_to_look_with(n: int, numbers: int) -> tuple[Array, Array]:

@@ -20,7 +20,7 @@ from . import _arrays, _crescent
 from ._arrays import Array
 from ._check import _look, _of_library
 from ._context import ContextCalls, columns_of, decoded, on_one_surface
-from ._domains import as_given, points, values, with_weights
+from ._domains import NEIGHBOUR_COLUMNS, as_given, points, values, weighted, with_weights
 from ._files import sampler_at
 from ._sampler import Sampler, rows_to_look_with
 
@@ -98,8 +98,12 @@ def _started_reservoir(s: Sampler) -> tuple[str, Sampler, dict[bytes, tuple[int,
     drawing, takes_wo = with_weights(inner), s.wo != "none"
 
     def sample(rows: Array) -> Array:
-        given = (rows[:, :3], rows[:, 3:]) if takes_wo else (rows[:, 3:],)
-        wi, _, weight = drawing.sample(*given)
+        wo, u, rest = rows[:, :3], rows[:, 3 : 3 + s.u], rows[:, 4 + s.u :]
+        if s.merge:
+            answer = inner.sample(wo, u, rest.reshape(len(rows), -1, NEIGHBOUR_COLUMNS))
+            wi, _, weight = weighted(answer, len(rows), s.title())
+        else:
+            wi, _, weight = drawing.sample(*((wo, u) if takes_wo else (u,)))
         return np.column_stack([_arrays.directions(wi, len(rows), f"{s.title()}: sample's wi"), weight])
 
     def target(rows: Array) -> Array:
@@ -175,6 +179,7 @@ def _handshake(s: Sampler, count: int, weighs: bool, delta: bool) -> str:
     keys: dict[str, Any] = {"u": s.u, "domain": s.domain, "wo": s.wo, "channels": count, "block": "f64"}
     given = {
         "weight": (s.weight or "yes", weighs or s.weight is not None),
+        "merge": ("yes", s.merge),
         "delta": ("yes", delta),
         "pdf": ("no", s.pdf is None and s.weight is None),
         "transport": ("importance", s.importance),
@@ -228,6 +233,8 @@ def _serve(requests: BinaryIO, answers: BinaryIO, s: Sampler, operations: dict[b
         count = struct.unpack("<I", head[4:])[0]
         lights = struct.unpack("<I", requests.read(4))[0] if "lights" in s.uses else 0
         columns += columns_of(s.uses, lights)
+        if s.merge and head[:4] == b"smpl":
+            columns += 1 + NEIGHBOUR_COLUMNS * struct.unpack("<I", requests.read(4))[0]
         rows = np.frombuffer(requests.read(8 * count * columns), "<f8").reshape(count, columns)
         try:
             out = np.ascontiguousarray(answer(rows), "<f8")

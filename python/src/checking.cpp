@@ -39,7 +39,7 @@ Traits::WoDomain wo_domain(const std::string& wo) {
 CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const std::string& name, int numbers,
     int u_bits, int channels, const std::string& wo, bool delta, bool weighs, bool upper_only, bool serial,
     bool reciprocal, bool own_random, std::optional<std::vector<double>> eta, bool importance, bool full,
-    const Grid& grid, std::shared_ptr<DomainChart> domain, bool number, bool reciprocal_weight) {
+    const Grid& grid, std::shared_ptr<DomainChart> domain, bool number, bool reciprocal_weight, int neighbours) {
     Callables c{name, std::move(sample), std::move(pdf), std::move(f), {}, weighs, upper_only, serial};
     c.traits.numbers = numbers;
     c.traits.u_bits = u_bits;
@@ -53,6 +53,7 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     c.traits.domain = std::move(domain);
     c.traits.number = number;
     c.traits.reciprocal_weight = reciprocal_weight;
+    c.traits.neighbours = neighbours;
     if (eta) c.traits.eta = Vec3d{eta->at(0), eta->at(eta->size() / 2), eta->at(eta->size() - 1)};
     const auto adapter = std::make_shared<CallableSampler>(std::move(c));
     if (!number) return {make_user_cases(adapter, full, grid), adapter};
@@ -274,7 +275,7 @@ void add_checking(nb::module_& m) {
     m.def("cases_of_callables", &of_callables, "sample"_a, "pdf"_a.none(), "f"_a.none(), "name"_a, "numbers"_a,
         "u_bits"_a, "channels"_a, "wo"_a, "delta"_a, "weighs"_a, "upper_only"_a, "serial"_a, "reciprocal"_a,
         "own_random"_a, "eta"_a.none(), "importance"_a, "full"_a, "grid"_a, "domain"_a.none(), "number"_a,
-        "reciprocal_weight"_a);
+        "reciprocal_weight"_a, "neighbours"_a);
     m.def("cases_of_experiment", &of_experiment, "experiment"_a, "sampler"_a, "pixels"_a, "full"_a, "callables"_a,
         "grid"_a, "keyword"_a,
         "An arm of an experiment at pixels of its scene; 0: over the grid of w_o on each material.");

@@ -3,6 +3,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include "module.h"
 #include "watched.h"
@@ -56,6 +57,16 @@ std::pair<Made, Made> points(const DomainChart& chart, const Rows& w) {
     return {owned(std::move(out), n, columns), owned(std::move(factor), n, 0)};
 }
 
+/// The columns of each neighbour of a w_o.
+std::vector<std::vector<double>> rows_of_neighbours(double x, double y, double z, int count) {
+    std::vector<double> all;
+    add_neighbours(neighbours_of({x, y, z}, count), all);
+    std::vector<std::vector<double>> out;
+    for (std::size_t i = 1; i < all.size(); i += Neighbour::columns)
+        out.emplace_back(&all[i], &all[i] + Neighbour::columns);
+    return out;
+}
+
 }  // namespace
 
 void add_domains(nb::module_& m) {
@@ -72,6 +83,7 @@ void add_domains(nb::module_& m) {
         .def("directions", &directions, "points"_a, "spread"_a)
         .def("points", &points, "w"_a);
     m.def("domain_chart", &chart_of, "text"_a);
+    m.def("neighbours_of", &rows_of_neighbours, "x"_a, "y"_a, "z"_a, "count"_a);
     m.attr("draws_of_chart") = draws_of_chart;
 }
 

@@ -186,3 +186,59 @@ def test_reservoirs(loss, state):
         assert "light is lost" in next(v.message for v in result.verdicts if v.name == "mean")
     with pytest.raises(TypeError, match="go together"):
         crescent.check(disk(np.sqrt), weight="reciprocal")
+
+
+def merged(fault=""):
+    """Each surface has one uniform candidate; one of them is kept at the receiver, all have Lambert's target."""
+    rng = np.random.default_rng(11)
+
+    def targets(wi, neighbours):
+        n = np.concatenate([np.broadcast_to([0.0, 0.0, 1.0], (len(wi), 1, 3)), neighbours[:, :, 3:6]], axis=1)
+        light = np.concatenate([np.ones((len(wi), 1)), neighbours[:, :, 6]], axis=1)
+        return light * np.maximum(np.einsum("nkc,nc->nk", n, wi), 0), n
+
+    def sample(wo, u, neighbours):
+        kept, total = np.tile([0.0, 0.0, 1.0], (len(wo), 1)), np.zeros(len(wo))
+        for k in range(neighbours.shape[1] + 1):
+            wi = rng.normal(size=(len(wo), 3))
+            wi /= np.linalg.norm(wi, axis=1, keepdims=True)
+            _, n = targets(wi, neighbours)
+            wi *= np.sign(np.sum(wi * n[:, k], axis=1))[:, None]
+            there, _ = targets(wi, neighbours)
+            balance = there[:, k] / np.maximum(there.sum(axis=1), 1e-30)
+            mis = 1 / there.shape[1] if fault == "1/M" else balance
+            weight = np.where(there[:, k] > 0, mis * there[:, k if fault == "source" else 0] * 2 * np.pi, 0)
+            total += weight
+            take = rng.random(len(wo)) * total < weight
+            kept[take] = wi[take]
+        dead = 1 - 0.14 * (fault == "dead") * (rng.random(len(wo)) < 0.05)  # one of seven counted in vain
+        return kept, dead * total / np.maximum(targets(kept, neighbours)[0][:, 0], 1e-30)
+
+    return {
+        "sample": sample,
+        "target": lambda wo, wi: np.maximum(wi[:, 2], 0),
+        "weight": "reciprocal",
+        "merge": True,
+        "own_random": True,
+    }
+
+
+@pytest.mark.parametrize(
+    "fault, cause", [("", ""), ("dead", ""), ("1/M", "1/M bias"), ("source", "the target of its source surface")]
+)
+def test_merged_reservoirs(fault, cause):
+    result = crescent.check(wo_deg=30, **merged(fault))
+    assert result.state == ("wrong" if fault else "right")
+    if fault:
+        mean = next(v for v in result.verdicts if v.name == "mean")
+        assert "light is lost" in mean.message or "light is gained" in mean.message
+        assert cause in mean.cause
+
+
+def test_what_is_wrong_with_a_merge_is_said():
+    with pytest.raises(ValueError, match="expected 1 to 64 neighbours"):
+        crescent.check(neighbours=0, **merged())
+    with pytest.raises(ValueError, match="merge is given: it is for directions"):
+        crescent.check(disk(np.sqrt), uniform_in_disk, domain="disk", merge=True)
+    with pytest.raises(ValueError, match="its neighbours are arrays of NumPy"):
+        crescent.check(array_module="torch", **merged())

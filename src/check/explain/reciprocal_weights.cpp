@@ -10,6 +10,7 @@
 #include "check/decide/check_sampler.h"
 #include "check/estimate/source.h"
 #include "check/explain/causes.h"
+#include "check/sources/neighbours.h"
 #include "math/statistics.h"
 #include "output/format.h"
 
@@ -17,25 +18,48 @@ namespace crescent::check {
 
 namespace {
 
-/// A factor by which W may be off, as a function of the direction and of the target over q.
+/// At one direction: the target of the receiver over q, and sums over it and its neighbours of their targets there over
+/// the receiver's.
+struct WeightPlace {
+    Vec3d wi;
+    double target = 1;
+    double surfaces = 1, with_target = 1, ratios = 1, squared_ratios = 1, reciprocal_ratios = 1;
+};
+
+/// A factor by which W may be off.
 struct WeightFactor {
     const char* name;
-    double (*value)(Vec3d wi, double target);
+    double (*value)(const WeightPlace& at);
     const char* corrected;  // W without it
     const char* fault;      // in words
 };
 constexpr WeightFactor weight_factors[] = {
-    {"constant", [](Vec3d, double) { return 1.0; }, "", ""},
-    {"target", [](Vec3d, double target) { return target; }, "W / target",
+    {"constant", [](const WeightPlace&) { return 1.0; }, "", ""},
+    {"target", [](const WeightPlace& at) { return at.target; }, "W / target",
         "W is not divided by the target of the direction that is kept"},
-    {"1/target", [](Vec3d, double target) { return 1 / target; }, "W x target",
+    {"1/target", [](const WeightPlace& at) { return 1 / at.target; }, "W x target",
         "W is divided twice by the target of the direction that is kept"},
-    {"cos theta_i", [](Vec3d w, double) { return std::fabs(w.z); }, "W / cos theta_i",
+    {"cos theta_i", [](const WeightPlace& at) { return std::fabs(at.wi.z); }, "W / cos theta_i",
         "W has cos theta_i once too often"},
-    {"1/cos theta_i", [](Vec3d w, double) { return 1 / std::max(std::fabs(w.z), 1e-6); }, "W x cos theta_i",
+    {"1/cos theta_i", [](const WeightPlace& at) { return 1 / std::max(std::fabs(at.wi.z), 1e-6); }, "W x cos theta_i",
         "W lacks a factor cos theta_i"},
+    {"1/M", [](const WeightPlace& at) { return at.with_target / at.surfaces; }, "W x M / Z",
+        "M counts all surfaces, also those whose target is 0 at w_i (1/M bias); MIS weights, or Z, the number of those "
+        "that can draw w_i, are unbiased"},
+    {"target of the source in the resampling weight", [](const WeightPlace& at) { return at.ratios / at.surfaces; },
+        "the receiver's target",
+        "the weight by which a neighbour's sample is resampled has the target of its source surface, not that of the "
+        "receiver"},
+    {"target of the source in the balanced resampling weight",
+        [](const WeightPlace& at) { return at.squared_ratios / at.ratios; }, "the receiver's target",
+        "the weight by which a neighbour's sample is resampled has the target of its source surface, not that of the "
+        "receiver"},
+    {"target of the source in W", [](const WeightPlace& at) { return at.reciprocal_ratios / at.surfaces; },
+        "the receiver's target",
+        "W is divided by the target of the source surface of the kept sample, not by that of the receiver"},
 };
-constexpr std::size_t by_constant = 0;  // its index
+constexpr std::size_t by_constant = 0;     // its index
+constexpr std::size_t of_one_surface = 5;  // factors that do not depend on neighbours; these are the first
 
 constexpr std::size_t of_height = 8, of_azimuth = 4, of_target = 2, regions = of_height * of_azimuth * of_target;
 constexpr std::uint32_t draws_of_weights = 1u << 18, points_of_target = 1u << 16, batch = 1u << 14;
@@ -72,6 +96,38 @@ struct ReservoirSums {
     std::array<double, 3> with_target{};
 };
 
+/// Sets what depends on the neighbours: identity shifts, so that w_i is one direction for all of them.
+void add_neighbours(const Source& source, std::span<WeightPlace> places) {
+    const std::vector<Neighbour> neighbours = neighbours_of(source.wo, source.traits.neighbours);
+    const auto targets = [&](auto&& pair_at) {
+        std::vector<Pair> pairs;
+        for (const WeightPlace& place : places) pairs.push_back(pair_at(place.wi));
+        std::vector<double> out(pairs.size());
+        source.adapter.target(pairs, out);
+        return out;
+    };
+    if (neighbours.empty()) return;
+    const std::vector<double> own = targets([&](Vec3d wi) { return Pair{source.wo, wi}; });
+    for (const Neighbour& each : neighbours) {
+        const Vec3d wo = to_local(each, each.wo);
+        const std::vector<double> there = targets([&](Vec3d wi) { return Pair{wo, to_local(each, wi)}; });
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const double ratio = own[i] > 0 ? each.light * there[i] / own[i] : 0;
+            ++places[i].surfaces;
+            if (!(ratio > 0)) continue;
+            ++places[i].with_target;
+            places[i].ratios += ratio;
+            places[i].squared_ratios += ratio * ratio;
+            places[i].reciprocal_ratios += 1 / ratio;
+        }
+    }
+}
+
+/// Factors of merging are none without it.
+std::size_t factor_count(const Traits& traits) {
+    return traits.neighbours > 0 ? std::size(weight_factors) : of_one_surface;
+}
+
 void add_draws(Source& source, const StreamKey& key, ReservoirSums& out) {
     std::vector<Draw> draws(batch);
     std::vector<Vec3d> w;
@@ -92,11 +148,17 @@ void add_draws(Source& source, const StreamKey& key, ReservoirSums& out) {
         source.f_cos(w, h);
         out.draws += batch;
         out.empty += static_cast<double>(batch - w.size());
+        std::vector<WeightPlace> places(w.size());
+        for (std::size_t k = 0; k < w.size(); ++k) {
+            places[k].wi = w[k];
+            places[k].target = h[k].x / (1 - h[k].x);
+        }
+        add_neighbours(source, places);
         for (std::size_t k = 0; k < w.size(); ++k) {
             if (!(h[k].x > 0 && h[k].x < 1)) continue;
             const std::size_t region = region_of(w[k], h[k].x);
-            for (std::size_t f = 0; f < std::size(weight_factors); ++f)
-                out.drawn[f][region].add(weights[k] / weight_factors[f].value(w[k], h[k].x / (1 - h[k].x)));
+            for (std::size_t f = 0; f < factor_count(source.traits); ++f)
+                out.drawn[f][region].add(weights[k] / weight_factors[f].value(places[k]));
         }
     }
 }
@@ -183,8 +245,10 @@ std::string count_sentence(const ReservoirSums& sums, const WeightFit& fit, cons
 
 std::string text_of(std::size_t factor, const WeightFit& fit, const ReservoirSums& sums, const Traits& traits) {
     if (factor != by_constant)
-        return fmt::format("With {} in the place of W the draws follow the target: {}.",
-            weight_factors[factor].corrected, weight_factors[factor].fault);
+        return factor < of_one_surface ? fmt::format("With {} in the place of W the draws follow the target: {}.",
+                                             weight_factors[factor].corrected, weight_factors[factor].fault)
+                                       : fmt::format("With {} the draws follow the target: {}.",
+                                             weight_factors[factor].corrected, weight_factors[factor].fault);
     const std::string number = number_name(fit.constant, std::max(2 * fit.error, detection_floor), traits);
     std::string out = fmt::format("W is {}{} times what it should be, by the same factor in all directions.",
         with_error(fit.constant, half_width_95 * fit.error), number.empty() || number == "1" ? "" : " = " + number);
@@ -215,7 +279,7 @@ std::optional<Cause> reciprocal_weight_cause(std::span<const CheckCase> check_ca
                     .part = 0},
                 sums);
             std::optional<Cause> found;
-            for (std::size_t f = 0; f < std::size(weight_factors); ++f) {
+            for (std::size_t f = 0; f < factor_count(source.traits); ++f) {
                 const WeightFit fit = fit_of(sums, f);
                 if (fit.p < none_p) continue;
                 if (fit.p < least_p || found) return {};  // unclear, or two of them

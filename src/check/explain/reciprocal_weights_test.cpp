@@ -8,7 +8,7 @@
 namespace crescent::check {
 namespace reciprocal_weights_test {
 
-double target(Vec3d w) { return w.z > 0 && w.x > 0 ? w.z * (0.2 + w.y * w.y) : 0; }
+double target_of(Vec3d w) { return w.z > 0 && w.x > 0 ? w.z * (0.2 + w.y * w.y) : 0; }
 
 /// RIS of two candidates that are uniform over the hemisphere.
 struct Reservoir : FunctionSampler {
@@ -17,11 +17,11 @@ struct Reservoir : FunctionSampler {
     void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {
             const Vec3d a = from_chart({u[i][0], two_pi * u[i][1]}), b = from_chart({u[i][2], two_pi * u[i][3]});
-            const double wa = target(a) * two_pi, wb = target(b) * two_pi;
+            const double wa = target_of(a) * two_pi, wb = target_of(b) * two_pi;
             const Vec3d kept = u[i][4] * (wa + wb) < wa ? a : b;
             const double m = counts_all ? 2 : (wa > 0) + (wb > 0);
             out[i] = Draw{kept, 1};
-            out[i].weight = wa + wb > 0 ? (wa + wb) / m / target(kept) * factor(kept) : 0;
+            out[i].weight = wa + wb > 0 ? (wa + wb) / m / target_of(kept) * factor(kept) : 0;
             out[i].weights = {*out[i].weight, 0, 0};
         }
     }
@@ -31,7 +31,7 @@ Explained explained_reservoir(Reservoir made) {
     made.of.numbers = 5;
     made.of.reciprocal_weight = true;
     made.of.has_pdf = false;
-    made.f_value = [](Vec3d, Vec3d w) { return target(w); };
+    made.f_value = [](Vec3d, Vec3d w) { return target_of(w); };
     Explained out;
     CheckCase& t = out.check_cases.emplace_back();
     t.arm = "made";
@@ -67,7 +67,7 @@ TEST(ReciprocalWeights, LackAFactor) {
     made.factor = [](Vec3d w) { return w.z; };
     r = explained_reservoir(made);
     expect_cause(r, "cos theta_i");
-    made.factor = [](Vec3d w) { return target(w); };
+    made.factor = [](Vec3d w) { return target_of(w); };
     r = explained_reservoir(made);
     expect_cause(r, "target");
 }

@@ -39,12 +39,15 @@ public:
     std::string name() const override = 0;
 };
 
+inline constexpr int default_neighbours = 8;
+
 /// Starts `command` with /bin/sh -c. Throws SamplerError with the request, the answer and the expected answer;
 /// InputError if the shell cannot start it, or if it answers `error TEXT` to the handshake, where TEXT may begin with
 /// FILE:LINE:COLUMN; OutputError if it answers `missing TEXT`. `label` is the prefix of its stderr output and of that
-/// text; "": the command. `domain`: what it draws, if its handshake does not say so.
+/// text; "": the command. `domain`: what it draws, if its handshake does not say so. `neighbours`: supplied
+/// to a program that merges reservoirs.
 std::shared_ptr<const ProgramSampler> start_pipe(const std::string& command, const PipeLimits& limits = {},
-    const std::string& label = "", const std::optional<Domain>& domain = {});
+    const std::string& label = "", const std::optional<Domain>& domain = {}, int neighbours = default_neighbours);
 
 // ---- The declaration of a program; docs/samplers.md has the keys.
 
@@ -59,6 +62,7 @@ struct Handshake {
     std::optional<Domain> domain{};  // other than directions
     bool f_cos = false;              // f includes |cos|
     bool weight = false, delta = false, blocks = false;
+    bool merge = false;             // a draw merges the reservoirs of neighbours
     std::vector<std::string> uses;  // of context_names()
     bool uses_lights() const { return std::ranges::find(uses, "lights") != uses.end(); }
 };
@@ -79,7 +83,8 @@ bool names_python_sampler(const std::string& word);
 /// Starts the Python interpreter with crescent.serve, which answers for this sampler over a pipe. The interpreter is
 /// CRESCENT_PYTHON, which the installed command sets to its own, or else python3. Throws InputError if the sampler
 /// cannot be loaded, OutputError if the interpreter or the package is missing.
-std::shared_ptr<const ProgramSampler> start_python_sampler(const std::string& word, const PipeLimits& limits);
+std::shared_ptr<const ProgramSampler> start_python_sampler(
+    const std::string& word, const PipeLimits& limits, int neighbours = default_neighbours);
 
 // ---- Samplers in shader files: `crescent check bsdf.wgsl`.
 

@@ -17,6 +17,7 @@
 
 #include "base/errors.h"
 #include "base/text.h"
+#include "check/sources/neighbours.h"
 #include "check/sources/pipe_io.h"
 #include "check/sources/sampler_adapter.h"
 #include "samplers/external_sampler.h"
@@ -52,8 +53,8 @@ InputError error_of_program(std::string_view text, const std::string& label) {
 class PipeSampler : public ProgramSampler {
 public:
     PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label,
-        const std::optional<Domain>& domain)
-        : connection_(command, limits, label) {
+        const std::optional<Domain>& domain, int neighbours)
+        : connection_(command, limits, label), neighbours_(neighbours) {
         try {
             handshake_with_program(label, domain);
         } catch (const SamplerError&) {
@@ -87,8 +88,10 @@ public:
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         std::vector<double> in;
         in.reserve(u.size() * columns_of_sample(example_lights));
+        std::vector<double> context = example_;
+        if (hello_.merge) add_neighbours(neighbours_of(wo, neighbours_), context);
         for (const PrimarySample& v : u)
-            add_row(wo_to_send(wo), [&](std::size_t k) { return v[static_cast<int>(k)]; }, example_, in);
+            add_row(wo_to_send(wo), [&](std::size_t k) { return v[static_cast<int>(k)]; }, context, in);
         query_samples(in, example_lights, out.size(),
             [&](std::size_t i, std::span<const double> answer, bool delta) { out[i] = drawn(answer, delta, u[i]); });
     }
@@ -148,6 +151,7 @@ public:
 
 private:
     mutable PipeConnection connection_;
+    int neighbours_;
     const char* f_operation() const { return hello_.traits.reciprocal_weight ? "trgt" : "f___"; }
     const char* f_verb() const { return hello_.traits.reciprocal_weight ? "target" : "f"; }
     static constexpr std::size_t example_lights = 1;  // of example_context()
@@ -193,7 +197,9 @@ private:
     }
     double number_for(double u) const { return hello_.traits.u_bits == 53 ? u : for_float(u); }
     std::size_t columns_of_sample(std::size_t lights) const {
-        return columns_of_wo() + own_numbers() + context_columns(hello_.uses, lights);
+        const std::size_t merged =
+            hello_.merge ? 1 + Neighbour::columns * static_cast<std::size_t>(neighbours_) : std::size_t{0};
+        return columns_of_wo() + own_numbers() + context_columns(hello_.uses, lights) + merged;
     }
     /// Appends a row of a request for a sample; u(k): its random numbers.
     template <class U>
@@ -235,8 +241,11 @@ private:
         const std::vector<double>& in, std::span<double> out, std::size_t lights) const {
         if (count == 0) return;
         std::string header;
-        if (hello_.uses_lights())
-            for (int byte = 0; byte < 4; ++byte) header += static_cast<char>(lights >> (8 * byte) & 255);
+        const auto add_count = [&](std::size_t number) {
+            for (int byte = 0; byte < 4; ++byte) header += static_cast<char>(number >> (8 * byte) & 255);
+        };
+        if (hello_.uses_lights()) add_count(lights);
+        if (hello_.merge && std::string_view(verb) == "sample") add_count(static_cast<std::size_t>(neighbours_));
         const PipeConnection::Write write = writer(verb, given, in);
         connection_.blocks({.operation = operation,
             .count = count,
@@ -379,6 +388,7 @@ private:
                     throw InputError(
                         {"--domain " + given->name(), 0, 0}, "the program draws " + stated + " by its handshake");
                 hello_ = hello;
+                hello_.traits.neighbours = hello.merge ? neighbours_ : 0;
                 example_ = example_context(hello.uses);
                 return true;
             });
@@ -448,8 +458,8 @@ private:
 }  // namespace
 
 std::shared_ptr<const ProgramSampler> start_pipe(const std::string& command, const PipeLimits& limits,
-    const std::string& label, const std::optional<Domain>& domain) {
-    return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label, domain);
+    const std::string& label, const std::optional<Domain>& domain, int neighbours) {
+    return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label, domain, neighbours);
 }
 
 // ---- A table of keys with their values, from which the messages are made too. The name is the text before the first
@@ -494,9 +504,9 @@ struct HandshakeKey {
     std::function<bool(std::string_view, Handshake&)> read;
 };
 
-const std::array<HandshakeKey, 16>& keys() {
+const std::array<HandshakeKey, 17>& keys() {
     using S = std::string_view;
-    static const std::array<HandshakeKey, 16> handshake_keys = {{
+    static const std::array<HandshakeKey, 17> handshake_keys = {{
         {"u", "a whole number from 1 to 8",
             [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most_numbers, g.traits.numbers); }},
         {"domain", number_or_domain.c_str(),
@@ -526,6 +536,7 @@ const std::array<HandshakeKey, 16>& keys() {
                 g.weight = v == "yes" || g.traits.reciprocal_weight;
                 return g.weight || v == "no";
             }},
+        {"merge", "yes or no", [](S v, Handshake& g) { return (g.merge = v == "yes") || v == "no"; }},
         {"delta", "yes or no", [](S v, Handshake& g) { return (g.delta = v == "yes") || v == "no"; }},
         {"pdf", "yes or no", [](S v, Handshake& g) { return (g.traits.has_pdf = v == "yes") || v == "no"; }},
         {"f", "cos or nocos", [](S v, Handshake& g) { return (g.f_cos = v == "cos") || v == "nocos"; }},
@@ -584,6 +595,11 @@ std::size_t end_of_word(std::string_view rest) {
 
 /// What the domain decides: without wo=, no w_o; and the numbers that spread a point.
 HandshakeError settle_domain(Handshake& out) {
+    if (out.merge) {
+        if (!out.traits.reciprocal_weight || out.domain || out.traits.wo == Traits::WoDomain::none)
+            return {"weight=reciprocal, directions and a w_o with merge=yes", "got none of one of them"};
+        if (!out.uses.empty()) return {"no uses= with merge=yes", "got uses="};
+    }
     if (out.traits.reciprocal_weight) {
         if (out.delta || out.traits.channels != 1)
             return {"channels=1 and no delta=yes with weight=reciprocal", "got one of them"};
@@ -671,12 +687,12 @@ std::string python_interpreter() {
 
 /// Starts a module of the package `package`, which answers for the file `label`.
 std::shared_ptr<const ProgramSampler> start_python_module(const char* module, const std::vector<std::string>& words,
-    const char* package, const PipeLimits& limits, const std::string& label) {
+    const char* package, const PipeLimits& limits, const std::string& label, int neighbours = default_neighbours) {
     // An interpreter that the shell cannot start (126, 127) is reported in the same way as a missing package.
     const std::string command =
         python_command(module, words) + "; code=$?; [ $code -lt 126 ] || [ $code -gt 127 ] || code=1; exit $code";
     try {
-        return start_pipe(command, limits, label);
+        return start_pipe(command, limits, label, {}, neighbours);
     } catch (const SamplerTimeout&) { throw; } catch (const SamplerError& error) {
         if (std::string_view(error.what()).find("exit code 1") == std::string_view::npos) throw;
         throw OutputError(fmt::format(
@@ -695,8 +711,9 @@ std::string python_command(const std::string& module, const std::vector<std::str
     return out;
 }
 
-std::shared_ptr<const ProgramSampler> start_python_sampler(const std::string& word, const PipeLimits& limits) {
-    return start_python_module("crescent.serve", {word}, "crescent-bench", limits, word);
+std::shared_ptr<const ProgramSampler> start_python_sampler(
+    const std::string& word, const PipeLimits& limits, int neighbours) {
+    return start_python_module("crescent.serve", {word}, "crescent-bench", limits, word, neighbours);
 }
 
 // ---- Shaders: crescent_shader of the same package.

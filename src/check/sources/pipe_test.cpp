@@ -100,6 +100,9 @@ TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     EXPECT_NE(fault("hello 2 x weights=yes").find("did you mean 'weight'?"), std::string::npos);
     EXPECT_NE(fault("hello 2 x u=9").find("expected a whole number from 1 to 8 for u, got '9'"), std::string::npos);
     EXPECT_NE(fault("hello 2 x delta=yes").find("weight=yes"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x merge=yes").find("expected weight=reciprocal"), std::string::npos)
+        << fault("hello 2 x merge=yes");
+    EXPECT_NE(fault("hello 2 x weight=reciprocal merge=yes uses=alpha").find("no uses="), std::string::npos);
     EXPECT_NE(fault("hello 2 x u=3 wo=both u=2").find("got the key 'u' twice"), std::string::npos);
     EXPECT_NE(fault("hello 2 u=3").find("no name"), std::string::npos);
     EXPECT_NE(fault("hello 4 x").find("got 'hello 4 x'"), std::string::npos);

@@ -42,6 +42,7 @@ public:
             out[i] = target > 0 ? bounded(target, q) * (out[i] / target) : target;
         }
     }
+    void target(std::span<const Pair> pairs, std::span<double> out) const override { inner().f(pairs, out); }
     void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
         SamplerAdapter::f_channels(pairs, out);
     }

@@ -80,6 +80,7 @@ struct Traits {
     int bits = 0;                    // precision of its arithmetic: 24, 53; 0: determined from the answers
     int u_bits = 24;                 // of its random numbers: 24, or 53 if it asks for them
     bool reciprocal_weight = false;  // a draw's weight is random and estimates 1/p; f is the target, without a cosine
+    int neighbours = 0;              // whose reservoirs a draw merges, see neighbours.h; 0: none
     bool number = false;             // each draw is one value, its weight: an estimate of a number
     /// The chart through which it draws directions for points of another domain; null: it draws directions.
     std::shared_ptr<const DomainChart> domain{};
@@ -164,6 +165,8 @@ public:
         f(pairs, y);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = {y[i], y[i], y[i]};
     }
+    /// The target of random weights, over solid angle; f may be a bounded function of it.
+    virtual void target(std::span<const Pair> pairs, std::span<double> out) const { f(pairs, out); }
     /// Whether a reference value of f is known independently of f; reference_f() is f otherwise.
     virtual bool has_true_f() const { return false; }
     virtual void reference_f(std::span<const Pair> pairs, std::span<double> out) const { f(pairs, out); }
@@ -285,6 +288,7 @@ public:
     void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
         inner_->f_channels(pairs, out);
     }
+    void target(std::span<const Pair> pairs, std::span<double> out) const override { inner_->target(pairs, out); }
     bool has_true_f() const override { return inner_->has_true_f(); }
     void reference_f(std::span<const Pair> pairs, std::span<double> out) const override {
         inner_->reference_f(pairs, out);
