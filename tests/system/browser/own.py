@@ -120,7 +120,7 @@ def tests(page, work):
         drop(driver, folder / "tent.mesh")
         browser.wait(driver, "document.getElementById('save-own')?.textContent === 'Save tent.toml' && "
                              "document.querySelectorAll('#pictures canvas')[0]?.width === 240")
-        assert "both" in browser.text(driver, "#pictures"), browser.text(driver, "#pictures")
+        assert "renderer" in browser.text(driver, "#pictures"), browser.text(driver, "#pictures")
 
     def your_scene_is_refused(driver):
         """A pack that is damaged or too large, another file, and an experiment without its mesh each get a sentence with
