@@ -172,7 +172,7 @@ void add_check(CLI::App& app, Work& work) {
         ->check(not_empty);
     c->add_option("--neighbours", f->neighbours, "supplied to a sampler that merges reservoirs; default 8")
         ->type_name("K")
-        ->check(whole_number(1, Neighbour::most));
+        ->check(whole_number(1, Neighbour::largest_count));
     limits(*c, *f);
     for (auto* other : {arm, set, planted}) {
         exec->excludes(other);

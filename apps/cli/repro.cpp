@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <random>
 #include <regex>
 #include <sstream>
 #include <vector>
@@ -18,6 +17,7 @@
 #include <fmt/ranges.h>
 
 #include "repro_points.h"
+#include "repro_numbers.h"
 #include "repro_reach.h"
 
 namespace crescent::cli {
@@ -28,7 +28,6 @@ constexpr std::size_t evaluations = 1u << 16;  // the longest block of docs/samp
 constexpr double clear_errors = 6;             // standard errors: several hundred means are compared
 constexpr double kept_size = 0.5;              // of the fault at the worst w_o, at a rounder one
 constexpr double rounding = 1e-3;              // relative: a difference that single precision does not explain
-constexpr double below_one = 1 - 0x1p-24;      // the largest u of single precision
 constexpr double degree = pi / 180;
 
 /// A direction by its angles in degrees, as the script writes it.
@@ -99,20 +98,19 @@ private:
     using Kind = ShownFault::Kind;
 
     std::vector<PrimarySample> numbers() const {
-        std::mt19937_64 random(1);
+        RandomBits random(1);
         std::vector<PrimarySample> out(evaluations);
-        for (PrimarySample& u : out)
-            for (int k = 0; k < traits_.numbers; ++k) u[k] = static_cast<double>(random() >> 40) * 0x1p-24;
+        for (PrimarySample& u : out) u = random_numbers(random, traits_.numbers);
         return out;
     }
     double lowest() const { return hemisphere_ ? 0 : -1; }
     /// Uniform over the domain.
     std::vector<Vec3d> directions() const {
-        std::mt19937_64 random(2);
+        RandomBits random(2);
         std::vector<Vec3d> out;
         while (out.size() < evaluations) {
-            const double z = lowest() + (1 - lowest()) * static_cast<double>(random() >> 11) * 0x1p-53;
-            const double phi = 2 * pi * static_cast<double>(random() >> 11) * 0x1p-53, r = std::sqrt(1 - z * z);
+            const double z = lowest() + (1 - lowest()) * uniform(random);
+            const double phi = 2 * pi * uniform(random), r = std::sqrt(1 - z * z);
             out.push_back({r * std::cos(phi), r * std::sin(phi), z});
         }
         return out;
@@ -120,11 +118,11 @@ private:
     double solid_angle() const { return 2 * pi * (1 - lowest()); }
     /// Of the upper hemisphere, with the density cos / pi or uniform.
     static std::vector<Vec3d> upper(bool cosine) {
-        std::mt19937_64 random(3);
+        RandomBits random(3);
         std::vector<Vec3d> out;
         while (out.size() < evaluations) {
-            const double u = static_cast<double>(random() >> 11) * 0x1p-53, z = cosine ? std::sqrt(1 - u) : u;
-            const double phi = 2 * pi * static_cast<double>(random() >> 11) * 0x1p-53, r = std::sqrt(1 - z * z);
+            const double u = uniform(random), z = cosine ? std::sqrt(1 - u) : u;
+            const double phi = 2 * pi * uniform(random), r = std::sqrt(1 - z * z);
             out.push_back({r * std::cos(phi), r * std::sin(phi), z});
         }
         return out;
@@ -178,14 +176,7 @@ private:
         const std::vector<Draw> drawn = draw(u);
         const auto at = std::ranges::find_if(drawn, holds);
         if (at == drawn.end()) return {};
-        const PrimarySample found = u[static_cast<std::size_t>(at - drawn.begin())];
-        for (double scale = 10; scale < 1e8; scale *= 10) {
-            PrimarySample round = found;
-            for (int k = 0; k < traits_.numbers; ++k)
-                if (found[k] < below_one) round[k] = std::min(std::round(found[k] * scale) / scale, below_one);
-            if (holds(draw({&round, 1})[0])) return round;
-        }
-        return found;
+        return with_few_digits(sampler_, wo_, u[static_cast<std::size_t>(at - drawn.begin())], traits_.numbers, holds);
     }
     /// Angles of as few digits as the predicate allows, near those of w.
     static Angles shortest_angles(Vec3d w, const std::function<bool(Vec3d)>& holds) {

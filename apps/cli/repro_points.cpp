@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
-#include <random>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "check.h"
+#include "repro_numbers.h"
 #include "repro_reach.h"
 
 namespace crescent::cli {
@@ -22,12 +23,9 @@ namespace of_points {
 
 using Kind = DomainPart::Kind;
 using Point = std::array<double, Domain::most_coordinates>;
-using Dice = std::mt19937_64;
 constexpr std::size_t count = 1u << 16;  // draws, and points
 constexpr double clear = 6;              // standard errors: hundreds of shares are compared
 constexpr double rounding = 1e-3;        // relative: a difference that single precision does not explain
-
-double uniform(Dice& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 /// The place and the scale of the draws on an infinite line.
 struct LineScale {
@@ -40,7 +38,7 @@ struct UniformPart {
     LineScale line;
 
     /// Appends the coordinates of a point; returns 1 / density.
-    double add(Dice& random, std::span<double> to) const {
+    double add(RandomBits& random, std::span<double> to) const {
         const double u = uniform(random);
         const auto direction = [&](double z) {
             const double phi = 2 * pi * uniform(random), r = std::sqrt(1 - z * z);
@@ -171,10 +169,9 @@ private:
     const char* given_each() const { return traits_.wo == Traits::WoDomain::none ? "" : "wo.repeat(n, 0), "; }
 
     void draw() {
-        Dice random(1);
+        RandomBits random(1);
         u_.resize(count);
-        for (PrimarySample& u : u_)
-            for (int k = 0; k < traits_.numbers; ++k) u[k] = static_cast<double>(random() >> 40) * 0x1p-24;
+        for (PrimarySample& u : u_) u = random_numbers(random, traits_.numbers);
         draws_.resize(count);
         sampler_.sample(0, wo_, u_, draws_);
         for (const Draw& d : draws_) {
@@ -190,7 +187,7 @@ private:
             parts_.push_back({part, part.is_infinite() ? scale_of(part, coordinate) : LineScale{}});
             coordinate += part.coordinates();
         }
-        Dice random(2);
+        RandomBits random(2);
         points_.resize(count);
         reciprocal_.assign(count, 1);
         for (std::size_t i = 0; i < count; ++i) {
@@ -248,17 +245,8 @@ private:
         for (int k = 0; k < traits_.own_numbers(); ++k) out += fmt::format("{}{:.9g}", k > 0 ? ", " : "", u[k]);
         return "np.array([[" + out + "]])";
     }
-    /// The numbers of a draw with the fewest digits for which the predicate holds.
-    template <class Holds> PrimarySample shortest(const PrimarySample& u, const Holds& holds) const {
-        for (double scale = 10; scale < 1e8; scale *= 10) {
-            PrimarySample round = u;
-            for (int k = 0; k < traits_.own_numbers(); ++k)
-                round[k] = std::min(std::round(u[k] * scale) / scale, 1 - 0x1p-24);
-            Draw d;
-            sampler_.sample(0, wo_, {&round, 1}, {&d, 1});
-            if (holds(d)) return round;
-        }
-        return u;
+    PrimarySample shortest(const PrimarySample& u, const std::function<bool(const Draw&)>& holds) const {
+        return with_few_digits(sampler_, wo_, u, traits_.own_numbers(), holds);
     }
 
     // ---- Lines of the script.
@@ -283,25 +271,26 @@ private:
         std::string out;
         std::size_t c = 0;
         for (const DomainPart& part : chart_.domain().parts()) {
-            const std::string own = fmt::format("x[:, {}:{}]", c, c + part.coordinates());
+            const std::string columns = fmt::format("x[:, {}:{}]", c, c + part.coordinates());
             out += out.empty() ? "" : " & ";
             switch (part.kind) {
                 case Kind::hemisphere:
-                case Kind::sphere: out += fmt::format("(abs(np.sum({}**2, 1) - 1) < 1e-4)", own); break;
-                case Kind::disk: out += fmt::format("(np.sum({}**2, 1) <= 1.00001)", own); break;
+                case Kind::sphere: out += fmt::format("(abs(np.sum({}**2, 1) - 1) < 1e-4)", columns); break;
+                case Kind::disk: out += fmt::format("(np.sum({}**2, 1) <= 1.00001)", columns); break;
                 case Kind::triangle:
-                    out += fmt::format("np.all({0} >= -1e-5, 1) & (np.sum({0}, 1) <= 1.00001)", own);
+                    out += fmt::format("np.all({0} >= -1e-5, 1) & (np.sum({0}, 1) <= 1.00001)", columns);
                     break;
                 case Kind::set:
-                    out += fmt::format("np.all(({0} == np.floor({0})) & ({0} >= 0) & ({0} < {1}), 1)", own, part.count);
+                    out += fmt::format(
+                        "np.all(({0} == np.floor({0})) & ({0} >= 0) & ({0} < {1}), 1)", columns, part.count);
                     break;
                 case Kind::square:
-                case Kind::cube: out += fmt::format("np.all(abs({} - 0.5) <= 0.50001, 1)", own); break;
+                case Kind::cube: out += fmt::format("np.all(abs({} - 0.5) <= 0.50001, 1)", columns); break;
                 case Kind::line: {
                     const auto end = [](double x) {
                         return std::isfinite(x) ? fmt::format("{}", x) : x < 0 ? "-np.inf" : "np.inf";
                     };
-                    out += fmt::format("np.all(({0} >= {1}) & ({0} <= {2}), 1)", own, end(part.from), end(part.to));
+                    out += fmt::format("np.all(({0} >= {1}) & ({0} <= {2}), 1)", columns, end(part.from), end(part.to));
                 }
             }
             c += part.coordinates();
@@ -387,20 +376,20 @@ private:
         double size() const { return std::fabs(drawn - claimed); }
     };
     template <class Has> Shares shares(const Has& has) const {
-        double drawn = 0, sum = 0, all = 0, squares = 0;
+        double drawn = 0, sum = 0, total = 0, squares = 0;
         for (const Point& x : drawn_) drawn += has(x);
         for (std::size_t i = 0; i < count; ++i) {
             const double q = p_[i] * reciprocal_[i];
-            all += q;
+            total += q;
             if (has(points_[i])) {
                 sum += q;
                 squares += q * q;
             }
         }
         const auto n = static_cast<double>(drawn_.size());
-        if (!(n > 0 && all > 0)) return {};
-        const double share = drawn / n, claimed = sum / all;
-        return {share, claimed, std::sqrt(std::max({share, claimed, 1 / n}) / n + squares / (all * all))};
+        if (!(n > 0 && total > 0)) return {};
+        const double share = drawn / n, claimed = sum / total;
+        return {share, claimed, std::sqrt(std::max({share, claimed, 1 / n}) / n + squares / (total * total))};
     }
     std::string lines_of_bands() const {
         std::vector<std::vector<Band>> single, coarse;
@@ -532,16 +521,13 @@ std::optional<std::string> script_of_number(
     }
     const std::string draws = fmt::format("rng = np.random.default_rng(1)\nvalues = sample(rng.random(({{}}, {}){}))\n",
         traits.numbers, traits.u_bits == 53 ? "" : ", np.float32).astype(float");
-    constexpr std::size_t most = 1u << 20;
+    constexpr std::size_t most_draws = 1u << 20;
     std::vector<PrimarySample> u;
-    of_points::Dice random(1);
+    RandomBits random(1);
     for (const Finding& finding : findings_of(result)) {
         if (finding.state != State::wrong) continue;
-        for (std::size_t n = 1u << 16; n <= most; n *= 4) {
-            while (u.size() < n) {
-                u.emplace_back();
-                for (int k = 0; k < traits.numbers; ++k) u.back()[k] = static_cast<double>(random() >> 40) * 0x1p-24;
-            }
+        for (std::size_t n = 1u << 16; n <= most_draws; n *= 4) {
+            while (u.size() < n) u.push_back(random_numbers(random, traits.numbers));
             std::vector<Draw> drawn(n);
             estimator.sample(0, {0, 0, 1}, u, drawn);
             bool bad = false;

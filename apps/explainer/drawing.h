@@ -28,20 +28,9 @@ using plates::with_px;
 inline constexpr Colour highlight_ink = plates::series[3], surround_ink = plates::series[4];
 
 inline constexpr double least_px = 27;
-inline constexpr Text big_text{.px = 96,
-    .ink = bright,
-    .weight = Weight::semibold,
-    .align = Align::left,
-    .vertical = Vertical::top,
-    .lines = 1,
-    .least = 40};
-inline constexpr Text title_text{.px = 40,
-    .ink = bright,
-    .weight = Weight::semibold,
-    .align = Align::left,
-    .vertical = Vertical::middle,
-    .lines = 1,
-    .least = 30};
+inline constexpr Text big_text{.px = 96, .ink = bright, .weight = Weight::semibold, .least = 40};
+inline constexpr Text title_text{
+    .px = 40, .ink = bright, .weight = Weight::semibold, .vertical = Vertical::middle, .least = 30};
 inline constexpr Text caption_text{.px = 44,
     .ink = bright,
     .weight = Weight::medium,
@@ -49,33 +38,15 @@ inline constexpr Text caption_text{.px = 44,
     .vertical = Vertical::middle,
     .lines = 2,
     .least = 34};
-inline constexpr Text label_text{.px = 36,
-    .ink = bright,
-    .weight = Weight::medium,
-    .align = Align::left,
-    .vertical = Vertical::middle,
-    .lines = 1,
-    .least = 28};
-inline constexpr Text body_text{.px = 32,
-    .ink = bright,
-    .weight = Weight::regular,
-    .align = Align::left,
-    .vertical = Vertical::top,
-    .lines = 1,
-    .least = least_px};
-inline constexpr Text small_text{.px = 28,
-    .ink = muted,
-    .weight = Weight::regular,
-    .align = Align::left,
-    .vertical = Vertical::middle,
-    .lines = 1,
-    .least = least_px};
+inline constexpr Text label_text{
+    .px = 36, .ink = bright, .weight = Weight::medium, .vertical = Vertical::middle, .least = 28};
+inline constexpr Text body_text{.px = 32, .ink = bright, .least = least_px};
+inline constexpr Text small_text{.px = 28, .ink = muted, .vertical = Vertical::middle, .least = least_px};
 inline constexpr Text number_text{.px = 56,
     .ink = bright,
     .weight = Weight::semibold,
     .align = Align::centre,
     .vertical = Vertical::middle,
-    .lines = 1,
     .least = 34};
 
 /// A part of the image that fills a slot as far as whole-number enlargement permits.

@@ -59,11 +59,11 @@ std::pair<Made, Made> points(const DomainChart& chart, const Rows& w) {
 
 /// The columns of each neighbour of a w_o.
 std::vector<std::vector<double>> rows_of_neighbours(double x, double y, double z, int count) {
-    std::vector<double> all;
-    add_neighbours(neighbours_of({x, y, z}, count), all);
+    std::vector<double> columns;
+    add_neighbours(neighbours_of({x, y, z}, count), columns);
     std::vector<std::vector<double>> out;
-    for (std::size_t i = 1; i < all.size(); i += Neighbour::columns)
-        out.emplace_back(&all[i], &all[i] + Neighbour::columns);
+    for (std::size_t i = 1; i < columns.size(); i += Neighbour::columns)
+        out.emplace_back(&columns[i], &columns[i] + Neighbour::columns);
     return out;
 }
 

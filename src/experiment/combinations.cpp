@@ -96,25 +96,25 @@ std::vector<std::string> sampler_words() {
 void expand_renderers(ParseContext& context) {
     Experiment& e = context.e;
     const auto shines = [](const auto& light) { return std::ranges::max(light.radiance) > 0; };
-    std::vector<std::string> of = {"material"};
+    std::vector<std::string> parts = {"material"};
     if (std::ranges::any_of(e.disks, shines) || std::ranges::any_of(e.lights, shines))
-        of.push_back("light-solid-angle");
-    if (e.sky) of.push_back("sky");
-    if (std::ranges::any_of(e.meshes, &MeshObject::emits)) of.push_back("light-triangle");
+        parts.push_back("light-solid-angle");
+    if (e.sky) parts.push_back("sky");
+    if (std::ranges::any_of(e.meshes, &MeshObject::emits)) parts.push_back("light-triangle");
     for (ArmPlan& arm : e.arms) {
         if (arm.sampler != renderer_word || arm.is_combination()) continue;
-        for (const std::string& part : of)
-            if (const ArmPlan* other = e.find_arm(part); other && other->sampler != part && of.size() > 1)
+        for (const std::string& part : parts)
+            if (const ArmPlan* other = e.find_arm(part); other && other->sampler != part && parts.size() > 1)
                 context.report("arms." + other->name,
                     fmt::format("arms.{0}: expected the sampler '{0}', which the arm '{1}' combines, or another name",
                         other->name, arm.name));
-        if (of.size() == 1) {
-            arm.sampler = of[0];
+        if (parts.size() == 1) {
+            arm.sampler = parts[0];
             continue;
         }
         arm.sampler.clear();
         arm.combination.kind = CombinationKind::mis;
-        arm.combination.of = of;
+        arm.combination.of = parts;
     }
 }
 

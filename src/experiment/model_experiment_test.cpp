@@ -71,8 +71,8 @@ TEST(ModelExperiment, OfAWholeSceneHasItsMaterialsCopiesAndCamera) {
     EXPECT_EQ(e.meshes[1].instances.at(0).transform().point({0, 0, 0}).y, 3);
     EXPECT_EQ(e.meshes[1].rho_d_texture.file, "textures/lamp.exr");
     EXPECT_EQ(e.meshes[1].emission, (Rgb{3, 2, 1}));
-    const auto& of = e.find_arm("renderer")->combination.of;
-    EXPECT_NE(std::ranges::find(of, "light-triangle"), of.end());
+    const auto& parts = e.find_arm("renderer")->combination.of;
+    EXPECT_NE(std::ranges::find(parts, "light-triangle"), parts.end());
 }
 
 TEST(ModelExperiment, NamesTablesAfterFiles) {

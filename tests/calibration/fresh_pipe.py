@@ -746,9 +746,9 @@ def case_of(of_set: str, seed: int, number: int) -> Case:
     wo = random_direction(rng, 0.05)
     fault = ""
     if of_set == "faults":
-        own = FAMILIES[family]
+        of_family = FAMILIES[family]
         common = () if family in (own_rejection, only_weights) else tuple(COMMON)
-        faults = own + common
+        faults = of_family + common
         fault = faults[number // len(families) % len(faults)]
     sampler = family(rng, real, "" if fault in COMMON else fault)
     if fault in COMMON:

@@ -76,12 +76,8 @@ std::optional<SmallFault> draws_on_curve(Source& source, const StreamKey& key) {
     std::vector<Draw> draws(around.size()), here(u.size());
     source.draw(around, draws);
     source.draw(u, here);
-    SmallFault out{.family = Family::repeats,
-        .times = 0,
-        .of = 0,
-        .size = 0,
-        .first = {},
-        .what = "all draws lie on a curve, since no two random numbers move them apart"};
+    SmallFault out{
+        .family = Family::repeats, .what = "all draws lie on a curve, since no two random numbers move them apart"};
     const auto each = static_cast<std::size_t>(4 * numbers);
     for (std::size_t i = 0; i < u.size(); ++i) {
         const Derivatives d(std::span<const Draw>(draws).subspan(each * i, each), numbers);

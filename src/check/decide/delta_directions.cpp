@@ -57,8 +57,6 @@ SmallFault fault_at(const DeltaPart& p, const char* what) {
     SmallFault out{.family = Family::delta_direction,
         .times = static_cast<double>(p.drawn),
         .of = static_cast<double>(p.drawn),
-        .size = 0,
-        .first = {},
         .what = what};
     out.first.draw.wi = p.wi;
     out.first.draw.delta = p.q;

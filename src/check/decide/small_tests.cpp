@@ -259,12 +259,7 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     for (int k = 0; k < source.traits.numbers; ++k) {
         const std::vector<Draw> far = draws_moved_by(k, 0x1p-10), near = draws_moved_by(k, 0x1p-11),
                                 least = draws_moved_by(k, few_bits_step);
-        SmallFault out{.family = Family::repeats,
-            .times = 0,
-            .of = 0,
-            .size = 0,
-            .first = {},
-            .what = "only the first bits of a random number move the draw"};
+        SmallFault out{.family = Family::repeats, .what = "only the first bits of a random number move the draw"};
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double a = moved(here[i], far[i]), b = moved(here[i], near[i]);
             const bool smooth = b > 0 && a > 1.5 * b && a < 3 * b;

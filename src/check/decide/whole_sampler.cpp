@@ -164,12 +164,7 @@ std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const Strea
     }
     const std::vector<Vec3d> f = f_of(adapter, forth), g = f_of(adapter, back), again = f_of(adapter, forth);
     const int channels = traits.channels == 3 ? 3 : 1;
-    SmallFault out{.family = Family::reciprocity,
-        .times = 0,
-        .of = 256.0 * channels,
-        .size = 0,
-        .first = {},
-        .what = "f(a, b) differs from f(b, a)"};
+    SmallFault out{.family = Family::reciprocity, .of = 256.0 * channels, .what = "f(a, b) differs from f(b, a)"};
     for (std::size_t i = 0; i < forth.size(); ++i)
         for (int c = 0; c < channels; ++c) {
             const Pair& p = forth[i];
@@ -226,7 +221,7 @@ struct WeightedDraws {
 std::optional<SmallFault> mis_weights(const SamplerAdapter& adapter, Vec3d wo, const StreamKey& key) {
     if (adapter.techniques() < 2) return {};
     const Traits traits = adapter.traits();
-    SmallFault out{.family = Family::mis, .times = 0, .of = 0, .size = 0, .first = {}, .what = ""};
+    SmallFault out{.family = Family::mis};
     double too_small = 0;  // number of draws where a density is 0 and the weights sum to less than 1
     for (int t = 0; t < adapter.techniques(); ++t) {
         const std::vector<PrimarySample> u = first_numbers(key, 512, traits);

@@ -33,6 +33,9 @@ struct WeightFactor {
     const char* corrected;  // W without it
     const char* fault;      // in words
 };
+constexpr const char* source_in_weight =
+    "the weight by which a neighbour's sample is resampled has the target of its source surface, not that of the "
+    "receiver";
 constexpr WeightFactor weight_factors[] = {
     {"constant", [](const WeightPlace&) { return 1.0; }, "", ""},
     {"target", [](const WeightPlace& at) { return at.target; }, "W / target",
@@ -47,13 +50,9 @@ constexpr WeightFactor weight_factors[] = {
         "M counts all surfaces, also those whose target is 0 at w_i (1/M bias); MIS weights, or Z, the number of those "
         "that can draw w_i, are unbiased"},
     {"target of the source in the resampling weight", [](const WeightPlace& at) { return at.ratios / at.surfaces; },
-        "the receiver's target",
-        "the weight by which a neighbour's sample is resampled has the target of its source surface, not that of the "
-        "receiver"},
+        "the receiver's target", source_in_weight},
     {"target of the source in the balanced resampling weight",
-        [](const WeightPlace& at) { return at.squared_ratios / at.ratios; }, "the receiver's target",
-        "the weight by which a neighbour's sample is resampled has the target of its source surface, not that of the "
-        "receiver"},
+        [](const WeightPlace& at) { return at.squared_ratios / at.ratios; }, "the receiver's target", source_in_weight},
     {"target of the source in W", [](const WeightPlace& at) { return at.reciprocal_ratios / at.surfaces; },
         "the receiver's target",
         "W is divided by the target of the source surface of the kept sample, not by that of the receiver"},
@@ -107,12 +106,12 @@ void add_neighbours(const Source& source, std::span<WeightPlace> places) {
         return out;
     };
     if (neighbours.empty()) return;
-    const std::vector<double> own = targets([&](Vec3d wi) { return Pair{source.wo, wi}; });
+    const std::vector<double> of_receiver = targets([&](Vec3d wi) { return Pair{source.wo, wi}; });
     for (const Neighbour& each : neighbours) {
         const Vec3d wo = to_local(each, each.wo);
-        const std::vector<double> there = targets([&](Vec3d wi) { return Pair{wo, to_local(each, wi)}; });
+        const std::vector<double> of_neighbour = targets([&](Vec3d wi) { return Pair{wo, to_local(each, wi)}; });
         for (std::size_t i = 0; i < places.size(); ++i) {
-            const double ratio = own[i] > 0 ? each.light * there[i] / own[i] : 0;
+            const double ratio = of_receiver[i] > 0 ? each.light * of_neighbour[i] / of_receiver[i] : 0;
             ++places[i].surfaces;
             if (!(ratio > 0)) continue;
             ++places[i].with_target;

@@ -67,6 +67,8 @@ std::string skipped_text(const CheckResult& result);
 std::string unseen_text(const CheckResult& result);
 /// The largest share of draws without a sample, if it exceeds 1 %; otherwise "".
 std::string nothing_drawn_text(const CheckResult& result);
+/// Those of the three texts that are not empty, in the order skipped, nothing drawn, unseen.
+std::vector<std::string> closing_texts(const CheckResult& result);
 /// The sentences of a verdict: message, cause, next step and time.
 std::string describe(const Verdict& verdict, FrontEnd front_end = FrontEnd::command_line);
 /// Splits a text into sentences; each begins with a capital letter.

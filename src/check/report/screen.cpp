@@ -137,8 +137,7 @@ std::vector<ScreenLine> lines_by(
     add_right(result, layout, out);
     add_skipped(result, out);
     for (const std::string& line : result.unmet) out.push_back({{}, "", in_a_row(line)});
-    for (const std::string& last : {skipped_text(result), nothing_drawn_text(result), unseen_text(result)})
-        if (!last.empty()) out.push_back({{}, "", in_a_row(last)});
+    for (const std::string& text : closing_texts(result)) out.push_back({{}, "", in_a_row(text)});
     return out;
 }
 

@@ -340,6 +340,12 @@ std::string nothing_drawn_text(const CheckResult& result) {
     return out;
 }
 
+std::vector<std::string> closing_texts(const CheckResult& result) {
+    std::vector<std::string> out{skipped_text(result), nothing_drawn_text(result), unseen_text(result)};
+    std::erase(out, "");
+    return out;
+}
+
 std::string what_was_tested(const CheckResult& result) {
     std::map<std::string, std::vector<std::string>> skipped;  // verdicts by reason
     for (const Verdict& v : result.verdicts) {
@@ -349,8 +355,7 @@ std::string what_was_tested(const CheckResult& result) {
     }
     std::string out;
     for (const auto& [reason, names] : skipped) out += fmt::format("Skipped: {}. {}\n", fmt::join(names, ", "), reason);
-    for (const std::string& text : {skipped_text(result), nothing_drawn_text(result), unseen_text(result)})
-        if (!text.empty()) out += text + "\n";
+    for (const std::string& text : closing_texts(result)) out += text + "\n";
     return out;
 }
 

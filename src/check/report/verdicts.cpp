@@ -18,8 +18,8 @@ namespace {
 
 void add_sizes(const Sizes& s, bool of_points, Verdict& v) {
     const auto add = [&](const char* name, const std::optional<double>& size) {
-        constexpr double whole = 0.99;  // of the draws or of p: no fault of this kind would be found
-        if (!size || *size > whole) return;
+        constexpr double nearly_all = 0.99;  // of the draws or of p: no fault of this kind would be found
+        if (!size || *size > nearly_all) return;
         double& largest = v.hidden[name];
         largest = std::max(largest, *size);
         v.evidence["would_have_found"][name] = largest;

@@ -30,15 +30,15 @@ std::vector<double> edges_of(const std::vector<double>& centres, const GridAxis&
 }
 
 std::size_t cell_of(const std::vector<double>& edges, double v) {
-    const auto at = std::upper_bound(edges.begin(), edges.end(), v) - edges.begin() - 1;
-    return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, static_cast<std::ptrdiff_t>(edges.size()) - 2));
+    const auto cell = std::upper_bound(edges.begin(), edges.end(), v) - edges.begin() - 1;
+    return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(cell, 0, static_cast<std::ptrdiff_t>(edges.size()) - 2));
 }
 
 std::size_t nearest_of(const std::vector<double>& sorted, double v) {
-    const auto at = std::lower_bound(sorted.begin(), sorted.end(), v);
-    if (at == sorted.end() || (at != sorted.begin() && v - at[-1] < *at - v))
-        return static_cast<std::size_t>(at - sorted.begin()) - 1;
-    return static_cast<std::size_t>(at - sorted.begin());
+    const auto above = std::lower_bound(sorted.begin(), sorted.end(), v);
+    if (above == sorted.end() || (above != sorted.begin() && v - above[-1] < *above - v))
+        return static_cast<std::size_t>(above - sorted.begin()) - 1;
+    return static_cast<std::size_t>(above - sorted.begin());
 }
 
 std::size_t product_of_sizes(const std::vector<std::vector<double>>& entries) {
@@ -67,8 +67,8 @@ DensityGrid::DensityGrid(std::vector<GridAxis> axes, std::span<const double> row
     if (!full) throw std::invalid_argument(fmt::format("expected a full grid: {} are not {} entries", sizes, count));
     for (std::size_t a = 0; a < axes_.size(); ++a) {
         const GridAxis& axis = axes_[a];
-        const auto wanted = static_cast<std::size_t>(axis.whole ? axis.to - axis.from + 1 : 0);
-        if (axis.whole && entries_[a].size() != wanted)
+        const auto wanted = static_cast<std::size_t>(axis.integral ? axis.to - axis.from + 1 : 0);
+        if (axis.integral && entries_[a].size() != wanted)
             throw std::invalid_argument(
                 fmt::format("expected all {} values of {}, not {}", wanted, axis.name, entries_[a].size()));
         edges_.push_back(edges_of(entries_[a], axis));
@@ -96,7 +96,7 @@ double DensityGrid::bend_along(std::size_t axis, std::size_t index) const {
     const std::vector<double>& x = entries_[axis];
     const std::size_t n = x.size(), step = stride(axis), i = index / step % n;
     const auto p = [&](std::size_t k) { return values_[index - i * step + k * step]; };
-    if (axes_[axis].whole) return 0;
+    if (axes_[axis].integral) return 0;
     if (axes_[axis].periodic) return std::fabs(p(i) - 0.5 * (p((i + n - 1) % n) + p((i + 1) % n)));
     if (n < 3) return 0;
     const std::size_t c = std::clamp<std::size_t>(i, 1, n - 2);
@@ -135,7 +135,7 @@ double DensityGrid::of_cell(std::span<const double> x) const {
     std::size_t index = 0;
     for (std::size_t a = 0; a < axes_.size(); ++a)
         index =
-            index * entries_[a].size() + (axes_[a].whole ? nearest_of(entries_[a], x[a]) : cell_of(edges_[a], x[a]));
+            index * entries_[a].size() + (axes_[a].integral ? nearest_of(entries_[a], x[a]) : cell_of(edges_[a], x[a]));
     return values_[index];
 }
 
@@ -163,37 +163,40 @@ DensityGrid::Intervals DensityGrid::intervals_at(std::span<const double> x) cons
     return out;
 }
 
-template <class Each> void DensityGrid::for_each_corner(const Intervals& at, Each&& each) const {
+template <class Each> void DensityGrid::for_each_corner(const Intervals& intervals, Each&& each) const {
     const std::size_t corners = std::size_t{1} << axes_.size();
     for (std::size_t corner = 0; corner < corners; ++corner) {
         std::size_t index = 0;
         for (std::size_t a = 0; a < axes_.size(); ++a) {
             const bool high = corner >> (axes_.size() - 1 - a) & 1;
-            index = index * entries_[a].size() + (high ? at[a].high : at[a].low);
+            index = index * entries_[a].size() + (high ? intervals[a].high : intervals[a].low);
         }
         each(index);
     }
 }
 
 double DensityGrid::between(std::span<const double> x) const {
-    const Intervals at = intervals_at(x);
+    const Intervals intervals = intervals_at(x);
     std::array<double, 1 << most_axes> values{};
     std::size_t count = 0;
-    for_each_corner(at, [&](std::size_t index) { values[count++] = values_[index]; });
+    for_each_corner(intervals, [&](std::size_t index) { values[count++] = values_[index]; });
     for (std::size_t a = axes_.size(); a-- > 0; count /= 2)
         for (std::size_t i = 0; i < count / 2; ++i) {
             const double low = values[2 * i], high = values[2 * i + 1];
-            values[i] = std::max((1 - at[a].share) * low + at[a].share * high, std::min({low, high, 0.0}));
+            values[i] =
+                std::max((1 - intervals[a].share) * low + intervals[a].share * high, std::min({low, high, 0.0}));
         }
     return values[0];
 }
 
 double DensityGrid::error_between(std::span<const double> x) const {
-    const Intervals at = intervals_at(x);
+    const Intervals intervals = intervals_at(x);
     double out = 0;
-    for_each_corner(at, [&](std::size_t index) { out = std::max(out, bends_[index]); });
+    for_each_corner(intervals, [&](std::size_t index) { out = std::max(out, bends_[index]); });
     for (std::size_t a = 0; a < axes_.size(); ++a)
-        out += at[a].share > 1 ? variation_at_pole_[a][1] : at[a].share < 0 ? variation_at_pole_[a][0] : 0;
+        out += intervals[a].share > 1 ? variation_at_pole_[a][1]
+            : intervals[a].share < 0  ? variation_at_pole_[a][0]
+                                      : 0;
     return out;
 }
 

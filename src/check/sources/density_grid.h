@@ -15,7 +15,7 @@ struct GridAxis {
     double scale = 1;             // of its values, for what counts as equal
     bool periodic = false;        // `to` is the same place as `from`
     std::array<bool, 2> poles{};  // whether the next axis goes around the first and the last end
-    bool whole = false;           // has all integers from `from` to `to`
+    bool integral = false;        // has all integers from `from` to `to`
     std::size_t fewest = 1;       // distinct values
 };
 
@@ -58,7 +58,7 @@ private:
     Interval interval_at(std::size_t axis, double x) const;
     Intervals intervals_at(std::span<const double> x) const;
     /// Calls each(index) for the corners of a cell; the last axis varies first.
-    template <class Each> void for_each_corner(const Intervals& at, Each&& each) const;
+    template <class Each> void for_each_corner(const Intervals& intervals, Each&& each) const;
     double bend_along(std::size_t axis, std::size_t index) const;
     void find_bends();
 };

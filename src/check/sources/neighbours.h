@@ -13,7 +13,7 @@ struct Neighbour {
     Vec3d wo, n;       // unit; w_o is on the side of n on which the receiver's is of +z
     double light = 1;  // the light that reaches it, relative to the receiver's; 0: its target is 0 everywhere
     static constexpr std::size_t columns = 7;
-    static constexpr int most = 64;
+    static constexpr int largest_count = 64;
 };
 
 /// The same for the same w_o. One of eight is in the shadow.

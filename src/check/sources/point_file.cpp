@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <stdexcept>
 
 #include "base/text.h"
 #include "check/estimate/stream.h"
@@ -20,7 +19,6 @@ namespace {
 
 using Point = std::array<double, Domain::most_coordinates>;
 using GridPoint = std::array<double, DensityGrid::most_axes>;
-constexpr std::size_t fewest_rows = 1000;
 constexpr double edge_slack = 1e-6;  // of a coordinate, by single precision
 
 bool is_direction(const DomainPart& part) {
@@ -34,10 +32,8 @@ std::vector<GridAxis> axes_of(const Domain& domain) {
     for (const DomainPart& part : domain.parts()) {
         const bool sphere = part.kind == DomainPart::Kind::sphere;
         if (is_direction(part)) {
-            const std::string number = ++directions > 1 ? std::to_string(directions) : "";
-            out.push_back(
-                {.name = "cos_theta" + number, .from = sphere ? -1.0 : 0.0, .poles = {sphere, true}, .fewest = 2});
-            out.push_back({.name = "phi" + number, .to = 2 * pi, .periodic = true, .fewest = 2});
+            for (GridAxis& axis : direction_axes(sphere, ++directions > 1 ? std::to_string(directions) : ""))
+                out.push_back(std::move(axis));
         } else
             for (std::size_t k = 0; k < part.coordinates(); ++k) {
                 GridAxis axis{.name = fmt::format("x{}", coordinate + k)};
@@ -48,7 +44,7 @@ std::vector<GridAxis> axes_of(const Domain& domain) {
                 }
                 if (part.kind == DomainPart::Kind::set) {
                     axis.to = part.count - 1.0;
-                    axis.whole = true;
+                    axis.integral = true;
                 }
                 out.push_back(std::move(axis));
             }
@@ -61,7 +57,7 @@ class PointFile : public RecordedSampler {
 public:
     PointFile(const Domain& domain, const std::string& samples, const std::string& table)
         : name_(printable(samples)), chart_(std::make_shared<DomainChart>(domain)) {
-        const NumberTable draws = read_draws(samples);
+        const NumberTable draws = read_rows(samples);
         read_table(table);
         take_draws(samples, draws);
         cells_ = agrees_as_cells();
@@ -88,9 +84,7 @@ public:
         const GridPoint x = grid_point(w, factor);
         return cells_ || !(factor > 0) || !grid_.contains(x) ? 0 : factor * grid_.error_between(x);
     }
-    std::string place(std::size_t row) const override {
-        return row < lines_.size() ? fmt::format("{}:{}", name_, lines_[row]) : fmt::format("{}, row {}", name_, row);
-    }
+    std::string place(std::size_t row) const override { return place_of_row(name_, lines_, row); }
 
 private:
     std::string name_;
@@ -128,7 +122,7 @@ private:
         return grid_point(point);
     }
 
-    NumberTable read_draws(const std::string& path) {
+    NumberTable read_rows(const std::string& path) const {
         FileDiagnostics in{path, {}};
         std::vector<std::string> columns;
         for (std::size_t k = 0; k < coordinates(); ++k) columns.push_back(fmt::format("x{}", k + 1));
@@ -139,20 +133,11 @@ private:
             layouts.push_back(layouts[k]);
             layouts.back().emplace_back("f");
         }
-        NumberTable t = read_table_file(in, layouts);
-        if (t.rows() < fewest_rows) {
-            in.add(
-                0, 0, fmt::format("{} samples are too few for a check; expected at least {}", t.rows(), fewest_rows));
-            in.throw_if_any();
-        }
-        return t;
+        return read_draws(in, layouts);
     }
 
     void take_draws(const std::string& path, const NumberTable& t) {
         FileDiagnostics in{path, {}};
-        const auto value = [&](std::size_t row, const char* name) {
-            return t.at(row, static_cast<std::size_t>(t.column(name)));
-        };
         has_drawn_f_ = t.column("f") >= 0;
         numbers_ = t.column("u1") >= 0 ? 2 : 0;
         lines_ = t.lines;
@@ -161,7 +146,7 @@ private:
             columns.push_back(static_cast<std::size_t>(t.column(fmt::format("x{}", k + 1))));
         for (std::size_t r = 0; r < t.rows(); ++r) {
             for (std::size_t column : columns) points_.push_back(t.at(r, column));
-            densities_.push_back(value(r, "pdf"));
+            densities_.push_back(t.value(r, "pdf"));
             check_row(in, t, r);
         }
         in.throw_if_any();
@@ -170,12 +155,12 @@ private:
         for (std::size_t r = 0; r < t.rows(); ++r) {
             PrimarySample u = spreads[r];
             if (numbers_ > 0) {
-                u.x = value(r, "u1");
-                u.y = value(r, "u2");
+                u.x = t.value(r, "u1");
+                u.y = t.value(r, "u2");
             }
             u_.push_back(u);
             draws_.push_back(draw_of_point(*chart_, point_of_row(r), densities_[r], u, numbers_));
-            if (has_drawn_f_) draws_.back().f = value(r, "f") * factor_of(draws_.back());
+            if (has_drawn_f_) draws_.back().f = t.value(r, "f") * factor_of(draws_.back());
         }
     }
 
@@ -189,21 +174,13 @@ private:
 
     /// Random numbers of a row, and that an infinite line's table reaches as far as the draws.
     void check_row(FileDiagnostics& in, const NumberTable& t, std::size_t r) const {
-        const unsigned line = t.lines.empty() ? 0 : t.lines[r];
-        for (const char* name : {"u1", "u2"}) {
-            const int column = t.column(name);
-            if (column < 0) continue;
-            const double u = t.at(r, static_cast<std::size_t>(column));
-            if (!(u >= 0 && u <= 1))
-                in.add(line, static_cast<unsigned>(column) + 1,
-                    fmt::format("{} is {:g}; expected a number from 0 to 1", name, u));
-        }
+        check_numbers(in, t, r);
         if (!domain().is_infinite() || !(densities_[r] > 0) || !domain().fault(point_of_row(r)).empty()) return;
         const GridPoint x = grid_point(point_of_row(r));
         std::size_t axis = 0;
         for (const DomainPart& part : domain().parts()) {
             if (part.is_infinite() && !(x[axis] >= grid_.first_edge(axis) && x[axis] <= grid_.last_edge(axis)))
-                in.add(line, 1,
+                in.add(t.line(r), 1,
                     fmt::format("{} is outside the table of the density, which is from {:g} to {:g}",
                         domain().text(point_of_row(r)), grid_.first_edge(axis), grid_.last_edge(axis)));
             axis += part.dimensions();
@@ -236,7 +213,6 @@ private:
         const NumberTable t = read_table_file(in, {columns});
         std::vector<double> rows;
         for (std::size_t r = 0; r < t.rows(); ++r) {
-            const unsigned line = t.lines.empty() ? 0 : t.lines[r];
             for (std::size_t k = 0; k < columns.size(); ++k) {
                 const auto column = static_cast<std::size_t>(t.column(columns[k]));
                 const bool is_axis = k < axes.size();
@@ -244,25 +220,21 @@ private:
                 if (is_axis && axes[k].periodic && x < 0) x += axes[k].to;
                 const double slack = is_axis && std::isfinite(axes[k].to - axes[k].from) ? edge_slack * axes[k].to : 0;
                 if (is_axis && !(std::isfinite(x) && x >= axes[k].from - slack && x <= axes[k].to + slack))
-                    in.add(line, static_cast<unsigned>(column) + 1,
+                    in.add(t.line(r), static_cast<unsigned>(column) + 1,
                         fmt::format("{} is {:g}; expected a number from {:g} to {:g}", columns[k], x, axes[k].from,
                             axes[k].to));
-                if (is_axis && axes[k].whole && x != std::floor(x))
-                    in.add(line, static_cast<unsigned>(column) + 1,
+                if (is_axis && axes[k].integral && x != std::floor(x))
+                    in.add(t.line(r), static_cast<unsigned>(column) + 1,
                         fmt::format("{} is {:g}; expected an integer, an entry of the set", columns[k], x));
                 if (!is_axis && !std::isfinite(x))
-                    in.add(line, static_cast<unsigned>(column) + 1, fmt::format("pdf is {:g}; expected a number", x));
+                    in.add(
+                        t.line(r), static_cast<unsigned>(column) + 1, fmt::format("pdf is {:g}; expected a number", x));
                 rows.push_back(x);
             }
         }
         in.throw_if_any();
         set_scales(axes, rows);
-        try {
-            grid_ = DensityGrid(std::move(axes), rows);
-        } catch (const std::invalid_argument& e) {
-            in.add(0, 0, e.what());
-            in.throw_if_any();
-        }
+        grid_ = grid_of(in, std::move(axes), rows);
     }
 
     /// Values of a line have any size.
@@ -281,16 +253,12 @@ private:
         }
     }
 
-    /// Whether nine of ten draws have exactly the value of their cell.
     bool agrees_as_cells() const {
-        std::size_t drawn = 0, alike = 0;
-        for (std::size_t r = 0; r < densities_.size(); ++r) {
-            const double p = densities_[r];
-            if (!(p > 0) || !domain().fault(point_of_row(r)).empty()) continue;
-            ++drawn;
-            alike += std::fabs(grid_.of_cell(grid_point(point_of_row(r))) - p) <= 1e-4 * p;
-        }
-        return 10 * alike >= 9 * drawn;
+        CellAgreement out;
+        for (std::size_t r = 0; r < densities_.size(); ++r)
+            if (densities_[r] > 0 && domain().fault(point_of_row(r)).empty())
+                out.add(grid_.of_cell(grid_point(point_of_row(r))), densities_[r]);
+        return out.holds();
     }
 };
 

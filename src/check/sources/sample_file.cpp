@@ -150,6 +150,45 @@ NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<s
     return t;
 }
 
+NumberTable read_draws(FileDiagnostics& in, const std::vector<std::vector<std::string>>& layouts) {
+    constexpr std::size_t fewest_rows = 1000;
+    NumberTable out = read_table_file(in, layouts);
+    if (out.rows() < fewest_rows) {
+        in.add(0, 0, fmt::format("{} samples are too few for a check; expected at least {}", out.rows(), fewest_rows));
+        in.throw_if_any();
+    }
+    return out;
+}
+
+void check_numbers(FileDiagnostics& in, const NumberTable& draws, std::size_t row) {
+    for (const char* name : {"u1", "u2"}) {
+        const int column = draws.column(name);
+        if (column < 0) continue;
+        const double u = draws.at(row, static_cast<std::size_t>(column));
+        if (!(u >= 0 && u <= 1))
+            in.add(draws.line(row), static_cast<unsigned>(column) + 1,
+                fmt::format("{} is {:g}; expected a number from 0 to 1", name, u));
+    }
+}
+
+DensityGrid grid_of(FileDiagnostics& in, std::vector<GridAxis> axes, std::span<const double> rows) {
+    try {
+        return {std::move(axes), rows};
+    } catch (const std::invalid_argument& e) {
+        in.add(0, 0, e.what());
+        throw InputError(in.all);
+    }
+}
+
+std::array<GridAxis, 2> direction_axes(bool sphere, const std::string& number) {
+    return {{{.name = "cos_theta" + number, .from = sphere ? -1.0 : 0.0, .poles = {sphere, true}, .fewest = 2},
+        {.name = "phi" + number, .to = 2 * pi, .periodic = true, .fewest = 2}}};
+}
+
+std::string place_of_row(const std::string& name, std::span<const unsigned> lines, std::size_t row) {
+    return row < lines.size() ? fmt::format("{}:{}", name, lines[row]) : fmt::format("{}, row {}", name, row);
+}
+
 // ---- The table is a full grid in cos theta and phi: cells if nine of ten samples have exactly the value of their
 // cell, otherwise points with linear interpolation.
 
@@ -171,24 +210,14 @@ void SampleFile::read_samples(const std::string& path) {
     const std::vector<std::string> without = {"u1", "u2", "wix", "wiy", "wiz", "pdf"};
     std::vector<std::string> with = without;
     with.emplace_back("f");
-    const NumberTable t = read_table_file(in, {without, with});
-    if (t.rows() < 1000) {
-        in.add(0, 0, fmt::format("{} samples are too few for a check; expected at least 1000", t.rows()));
-        in.throw_if_any();
-    }
-    const int f = t.column("f");
-    has_drawn_f_ = f >= 0;
+    const NumberTable t = read_draws(in, {without, with});
+    has_drawn_f_ = t.column("f") >= 0;
     lines_ = t.lines;
     for (std::size_t r = 0; r < t.rows(); ++r) {
-        const auto value_of = [&](const char* name) { return t.at(r, static_cast<std::size_t>(t.column(name))); };
-        u_.push_back({value_of("u1"), value_of("u2")});
-        for (const char* name : {"u1", "u2"})
-            if (!(value_of(name) >= 0 && value_of(name) <= 1))
-                in.add(t.lines.empty() ? 0 : t.lines[r], static_cast<unsigned>(t.column(name)) + 1,
-                    fmt::format("{} is {:g}; expected a number from 0 to 1", name, value_of(name)));
-        Draw d{
-            .wi = {value_of("wix"), value_of("wiy"), value_of("wiz")}, .pdf = value_of("pdf"), .weight = {}, .f = {}};
-        if (f >= 0) d.f = t.at(r, static_cast<std::size_t>(f));
+        u_.push_back({t.value(r, "u1"), t.value(r, "u2")});
+        check_numbers(in, t, r);
+        Draw d{.wi = {t.value(r, "wix"), t.value(r, "wiy"), t.value(r, "wiz")}, .pdf = t.value(r, "pdf")};
+        if (has_drawn_f_) d.f = t.value(r, "f");
         draws_.push_back(d);
     }
     in.throw_if_any();
@@ -201,36 +230,26 @@ void SampleFile::read_table(const std::string& path) {
     std::vector<double> rows;
     double lowest = 1;
     for (std::size_t r = 0; r < t.rows(); ++r) {
-        const auto value_of = [&](const char* name) { return t.at(r, static_cast<std::size_t>(t.column(name))); };
+        const auto value_of = [&](const char* name) { return t.value(r, name); };
         const double cos = polar ? value_of("cos_theta") : value_of("wiz"), p = value_of("pdf");
         const double phi = polar ? turned(value_of("phi")) : turned(Vec3d{value_of("wix"), value_of("wiy"), 0});
         rows.insert(rows.end(), {cos, phi, p});
         lowest = std::min(lowest, cos);
         if (!(std::fabs(cos) <= 1 + 1e-6) || !(phi >= 0 && phi <= 2 * pi + 1e-6) || !std::isfinite(p))
-            in.add(t.lines.empty() ? 0 : t.lines[r], 1, "no direction of the sphere with a finite pdf");
+            in.add(t.line(r), 1, "no direction of the sphere with a finite pdf");
     }
     in.throw_if_any();
     const bool sphere = lowest < -1e-6;
     floor_ = sphere ? -1 : 0;
-    const GridAxis heights{.name = "cos_theta", .from = floor_, .to = 1, .poles = {sphere, true}, .fewest = 2};
-    const GridAxis angles{.name = "phi", .from = 0, .to = 2 * pi, .periodic = true, .fewest = 2};
-    try {
-        grid_ = DensityGrid({heights, angles}, rows);
-    } catch (const std::invalid_argument& e) {
-        in.add(0, 0, e.what());
-        in.throw_if_any();
-    }
+    const std::array<GridAxis, 2> axes = direction_axes(sphere);
+    grid_ = grid_of(in, {axes.begin(), axes.end()}, rows);
 }
 
-/// Whether nine of ten samples have exactly the value of their cell.
 bool SampleFile::agrees_as_cells() const {
-    std::size_t drawn = 0, alike = 0;
-    for (const Draw& d : draws_) {
-        if (!(d.pdf > 0)) continue;
-        ++drawn;
-        alike += std::fabs(of_cell(d.wi) - d.pdf) <= 1e-4 * d.pdf;
-    }
-    return 10 * alike >= 9 * drawn;
+    CellAgreement out;
+    for (const Draw& d : draws_)
+        if (d.pdf > 0) out.add(of_cell(d.wi), d.pdf);
+    return out.holds();
 }
 
 double SampleFile::of_cell(Vec3d w) const { return w.z < floor_ ? 0 : grid_.of_cell(std::array{w.z, turned(w)}); }
@@ -248,8 +267,6 @@ double SampleFile::tabulation_error(Vec3d w) const {
     return cells_ || w.z < floor_ ? 0 : grid_.error_between(place);
 }
 
-std::string SampleFile::place(std::size_t row) const {
-    return row < lines_.size() ? fmt::format("{}:{}", name_, lines_[row]) : fmt::format("{}, row {}", name_, row);
-}
+std::string SampleFile::place(std::size_t row) const { return place_of_row(name_, lines_, row); }
 
 }  // namespace crescent

@@ -2,7 +2,10 @@
 // line and column.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,11 +39,41 @@ struct NumberTable {
     std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
     double at(std::size_t row, std::size_t column) const { return values[row * columns.size() + column]; }
     int column(std::string_view name) const;
+    double value(std::size_t row, std::string_view name) const {
+        return at(row, static_cast<std::size_t>(column(name)));
+    }
+    /// The line of the file; 0 if it has none.
+    unsigned line(std::size_t row) const { return lines.empty() ? 0 : lines[row]; }
 };
 
 /// .npy has no names: the layout with the same number of columns applies. CSV must have exactly the columns of one
 /// layout.
 NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<std::string>>& layouts);
+
+// ---- What files of draws have in common, over directions and over points.
+
+/// Draws of which there are enough for a check. Throws InputError.
+NumberTable read_draws(FileDiagnostics& in, const std::vector<std::vector<std::string>>& layouts);
+/// Reports u1 and u2 of a row, if there are such columns, that are not in [0, 1].
+void check_numbers(FileDiagnostics& in, const NumberTable& draws, std::size_t row);
+/// The grid of a table. Throws InputError with what it lacks.
+DensityGrid grid_of(FileDiagnostics& in, std::vector<GridAxis> axes, std::span<const double> rows);
+/// cos theta and phi of directions; number: appended to the names.
+std::array<GridAxis, 2> direction_axes(bool sphere, const std::string& number = "");
+/// "samples.csv:17", or "samples.npy, row 16" without lines.
+std::string place_of_row(const std::string& name, std::span<const unsigned> lines, std::size_t row);
+
+/// A table is read as cells if nine of ten draws have exactly the value of their cell.
+struct CellAgreement {
+    std::size_t drawn = 0, alike = 0;
+    /// A draw with pdf p > 0 in a cell with this value.
+    void add(double of_cell, double p) {
+        ++drawn;
+        alike += std::fabs(of_cell - p) <= 1e-4 * p;
+    }
+    /// Whether the table is read as cells.
+    bool holds() const { return 10 * alike >= 9 * drawn; }
+};
 
 // ---- Samples of a user's sampler, from a file, at one w_o: CSV with a header line, or NPY (a plain float array,
 // columns in this order).
