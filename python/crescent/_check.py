@@ -159,6 +159,7 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
         number=number,
         reciprocal_weight=reciprocal,
         neighbours=neighbours,
+        evaluator=s.evaluator or ("", "", ""),
     )
 
 

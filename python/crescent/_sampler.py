@@ -110,6 +110,8 @@ class Sampler:
     neighbours: int = 8  #: K, from 1 to 64, in crescent.check; a file is given those of --neighbours
     n: int | Sequence[int] | None = None  #: the sample counts of its arm in a run; None: those of the other arms
     target: Callable[..., Any] | None = None  #: target(wo[n,3], wi[n,3]) -> [n], on whose support E[h W] is the integral of h
+    #: what evaluates the callables, for reports: the names of a device and its driver, and "single" or "double"
+    evaluator: tuple[str, str, str] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "n", counts(self.n))
@@ -141,6 +143,8 @@ class Sampler:
             if eta.shape not in ((1,), (3,)) or not (np.isfinite(eta) & (eta > 0)).all():
                 raise ValueError(f"eta is {self.eta!r}: expected a number above 0, or three of them")
 
+        if self.evaluator is not None and (len(self.evaluator) != 3 or self.evaluator[2] not in ("single", "double")):
+            raise ValueError(f"evaluator is {self.evaluator!r}: expected (device, driver, 'single' or 'double')")
         if not isinstance(self.domain, str):
             raise TypeError(f"domain is {self.domain!r}: expected a text")
         if not self.of_directions():
@@ -211,6 +215,7 @@ class Known(TypedDict, total=False):
     target: Callable[..., Any] | None
     merge: bool
     neighbours: int
+    evaluator: tuple[str, str, str] | None
 
 
 def rows_to_look_with(n: int, numbers: int) -> tuple[Array, Array]:

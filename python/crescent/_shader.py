@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
 from crescent_shader.client import Host
@@ -161,6 +162,7 @@ def shader(
         importance=keys.get("transport") == "importance",
         reciprocal=keys.get("reciprocal") != "no",
         serial=True,
+        evaluator=(unquote(keys["device"]), unquote(keys["driver"]), "single"),
         uses=calls.uses,  # type: ignore[arg-type]
         array_module="numpy",
     )

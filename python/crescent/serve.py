@@ -13,6 +13,7 @@ import struct
 import sys
 from collections.abc import Callable
 from typing import Any, BinaryIO
+from urllib.parse import quote
 
 import numpy as np
 
@@ -188,6 +189,11 @@ def _handshake(s: Sampler, count: int, weighs: bool, delta: bool) -> str:
         "u_bits": ("53", s.u_bits == 53),
     }
     keys.update({key: value for key, (value, there) in given.items() if there})
+    if s.evaluator is not None:
+        device, driver, precision = s.evaluator
+        real = {"single": "f32", "double": "f64"}[precision]
+        named = {"device": quote(device), "driver": quote(driver), "real": real}
+        keys.update({key: value for key, value in named.items() if value})
     if s.eta is not None:
         keys["eta"] = ",".join(repr(float(v)) for v in np.atleast_1d(s.eta))
     if s.uses:

@@ -51,10 +51,20 @@ def adapters() -> list[Any]:
     return sorted(found, key=_is_cpu)
 
 
+def name_of(adapter: Any) -> str:
+    """The name of the hardware."""
+    return str(adapter.info["device"])
+
+
+def driver_of(adapter: Any) -> str:
+    """The driver and its interface."""
+    info = adapter.info
+    return f"{info['description']} ({info['backend_type']})" if info["description"] else str(info["backend_type"])
+
+
 def title_of(adapter: Any) -> str:
     """The adapter and its driver."""
-    info = adapter.info
-    return f"{info['device']}, {info['description']}".rstrip(", ") + f" ({info['backend_type']})"
+    return f"{name_of(adapter)}, {driver_of(adapter)}"
 
 
 class Device:
@@ -66,7 +76,6 @@ class Device:
         if not chosen:
             raise BadInput(f"--device {name}: no such adapter: {'; '.join(title_of(a) for a in found)}")
         self.adapter = chosen[0]
-        self.title = title_of(self.adapter)
         wanted = ("shader-f16", "shader-f64", "shader-int64", "subgroup")
         features = [feature for feature in wanted if feature in self.adapter.features]
         self.device = self.adapter.request_device_sync(required_features=features)

@@ -10,12 +10,13 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, BinaryIO
+from urllib.parse import quote
 
 import numpy as np
 
 from . import GREETING_OF_PYTHON, BadInput, MissingPart
 from .compilers import compiled
-from .device import Array, Device, adapters, title_of
+from .device import Array, Device, adapters, driver_of, name_of, title_of
 from .languages import assigns, columns, program
 from .request import Request, read_request, wants_list
 
@@ -51,7 +52,7 @@ class Shader:
     """A compiled request: each operation, and what the handshake declares."""
 
     request: Request
-    device: str  # its title
+    adapter: Any
     channels: int
     weights: int
     delta: bool
@@ -67,6 +68,8 @@ class Shader:
             "channels": str(self.channels),
             "block": "f64",
             "real": "f32",
+            "device": quote(name_of(self.adapter)),
+            "driver": quote(driver_of(self.adapter)),
         }
         given = {
             "weight": ("yes", self.weights > 0),
@@ -131,7 +134,7 @@ def opened(request: Request, watch: Watchdog) -> Shader:
         raise BadInput("--sample assigns delta without weight: expected weight = f |cos| / delta with it")
     if not request.pdf and not assigns(request.sample, "pdf") and not weighs:
         raise BadInput(f"{request.path}: expected --pdf 'EXPRESSION', or a sample that assigns pdf or weight")
-    return Shader(request, device.title, channels or max(weights, 1), weights, delta, operations)
+    return Shader(request, device.adapter, channels or max(weights, 1), weights, delta, operations)
 
 
 def _first_that_compiles(make: Callable[[int], Answer], candidates: tuple[int, ...]) -> tuple[Answer, int]:
@@ -227,7 +230,7 @@ def main(words: list[str] | None = None) -> int:
     except MissingPart as error:
         say(f"missing {error}")
         return 3
-    print(f"{shader.device}, single precision", file=sys.stderr, flush=True)
+    print(f"{title_of(shader.adapter)}, single precision", file=sys.stderr, flush=True)
     say(shader.handshake(to_python=greeting.strip() == GREETING_OF_PYTHON))
 
     def report(text: str) -> None:

@@ -20,6 +20,7 @@ struct Callables {
     bool weighs = false;      // sample returns weights
     bool upper_only = false;  // pdf and f are 0 below the surface, for any result of the callables there
     bool serial = false;      // they require one thread
+    EvaluationDevice device{};
 };
 
 class CallableSampler : public InProcessAdapter {
@@ -28,6 +29,7 @@ public:
     std::string name() const override { return c_.name; }
     Traits traits() const override { return c_.traits; }
     bool serial() const override { return c_.serial; }
+    EvaluationDevice device() const override { return c_.device; }
     bool has_f() const override { return !c_.f.is_none(); }
     bool has_drawn_f() const override { return has_f() || c_.weighs; }
     void sample(int technique, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override;

@@ -39,8 +39,10 @@ Traits::WoDomain wo_domain(const std::string& wo) {
 CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const std::string& name, int numbers,
     int u_bits, int channels, const std::string& wo, bool delta, bool weighs, bool upper_only, bool serial,
     bool reciprocal, bool own_random, std::optional<std::vector<double>> eta, bool importance, bool full,
-    const Grid& grid, std::shared_ptr<DomainChart> domain, bool number, bool reciprocal_weight, int neighbours) {
+    const Grid& grid, std::shared_ptr<DomainChart> domain, bool number, bool reciprocal_weight, int neighbours,
+    const std::tuple<std::string, std::string, std::string>& evaluator) {
     Callables c{name, std::move(sample), std::move(pdf), std::move(f), {}, weighs, upper_only, serial};
+    std::tie(c.device.name, c.device.driver, c.device.precision) = evaluator;
     c.traits.numbers = numbers;
     c.traits.u_bits = u_bits;
     c.traits.channels = channels;
@@ -275,7 +277,7 @@ void add_checking(nb::module_& m) {
     m.def("cases_of_callables", &of_callables, "sample"_a, "pdf"_a.none(), "f"_a.none(), "name"_a, "numbers"_a,
         "u_bits"_a, "channels"_a, "wo"_a, "delta"_a, "weighs"_a, "upper_only"_a, "serial"_a, "reciprocal"_a,
         "own_random"_a, "eta"_a.none(), "importance"_a, "full"_a, "grid"_a, "domain"_a.none(), "number"_a,
-        "reciprocal_weight"_a, "neighbours"_a);
+        "reciprocal_weight"_a, "neighbours"_a, "evaluator"_a);
     m.def("cases_of_experiment", &of_experiment, "experiment"_a, "sampler"_a, "pixels"_a, "full"_a, "callables"_a,
         "grid"_a, "keyword"_a,
         "An arm of an experiment at pixels of its scene; 0: over the grid of w_o on each material.");

@@ -37,6 +37,13 @@ def test_describe_says_what_distribution_the_draws_have():
         crescent.describe(cosine, colour=3)
 
 
+def test_what_evaluates_a_sampler_is_in_its_result():
+    result = crescent.check(cosine, cosine_pdf, name="mine", wo_deg=30, evaluator=("a device", "a driver", "double"))
+    named = {"arm": "mine", "name": "a device", "driver": "a driver", "precision": "double"}
+    assert json.loads(result.json())["devices"] == [named]
+    assert "devices" not in json.loads(crescent.check(cosine, cosine_pdf, wo_deg=30).json())
+
+
 def test_a_judgement_is_data_files_and_no_truth_value(tmp_path):
     j = crescent.check(cosine, cosine_pdf, lambert, name="mine", wo_deg=[30, (60, 250)])
     assert {v.case for v in j.verdicts} == {"w_o 30 deg az 0", "w_o 60 deg az 250"}
@@ -293,6 +300,7 @@ def test_w_o_may_be_a_number_or_an_array():
         *({"eta": -1}, {"eta": [1.5, 1.6]}, {"eta": float("nan")}, {"against": "cosin"}),
         *({"wo_deg": at} for at in (90, [(30, float("nan"))], [(30, 2, 3)], ["x"], 120)),
         {"wo": "none", "wo_deg": 30},
+        {"evaluator": ("a device", "a driver", "half")},
     ],
 )
 def test_what_is_declared_wrongly_is_a_value_error(known):

@@ -1,5 +1,6 @@
 """Samplers in shaders: `crescent.shader`, and the text that is compiled. What evaluates needs wgpu and a driver."""
 
+import json
 import pickle
 from pathlib import Path
 
@@ -70,7 +71,10 @@ def test_a_shader_is_a_sampler(file: str) -> None:
     wi, pdf = s.sample(np.array([[0.0, 0.0, 1.0]] * 3), np.array([[0.25, 0.5]] * 3))
     assert np.allclose(wi, [[-0.5, 0, 0.75**0.5]], atol=1e-6)
     assert np.allclose(pdf, 0.75**0.5 / np.pi, atol=1e-6)
-    assert crescent.check(s, wo_deg=40).state == "right"
+    result = crescent.check(s, wo_deg=40)
+    assert result.state == "right"
+    (device,) = json.loads(result.json())["devices"]
+    assert device["precision"] == "single" and device["name"] and device["driver"]
     assert crescent.check(made(file, pdf="density(wi) * 1.03"), wo_deg=40).state == "wrong"
 
 

@@ -302,6 +302,7 @@ CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const Check
     for (std::size_t i = 0; i < a.size(); ++i) {
         out.questions = std::max(out.questions,
             a[i].adapter->spending().answers + (a[i].adapter == b[i].adapter ? 0 : b[i].adapter->spending().answers));
+        for (const CheckCase* side : {&a[i], &b[i]}) add_device(side->arm, *side->adapter, out.devices);
         for (Verdict& v : verdicts[i]) out.verdicts.push_back(std::move(v));
     }
     out.state = worst_state(out.verdicts);

@@ -287,6 +287,7 @@ CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSetting
     for (std::size_t i = 0; i < check_cases.size(); ++i) {
         if (check_cases[i].baseline) continue;
         out.questions = std::max(out.questions, check_cases[i].adapter->spending().answers);
+        add_device(check_cases[i].arm, *check_cases[i].adapter, out.devices);
         reaches_all[i] = std::ranges::none_of(
             verdicts[i], [](const Verdict& v) { return v.name == "support" && v.state == State::wrong; });
         std::ranges::move(verdicts[i], std::back_inserter(out.verdicts));

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "check/sources/evaluation_device.h"
+
 // In output order. The families of check/verdicts/ name the verdict that they make wrong. The list is used by `crescent
 // check` and its output, --expect, `crescent list verdicts` and the tests.
 // clang-format off: one a line
@@ -139,6 +141,7 @@ struct CheckResult {
     std::vector<BinHistogram> maps;
     std::vector<LineHistogram> lines;
     std::vector<WeightHistogram> weights;
+    DevicesByArm devices;  // of external samplers that name theirs
     double alpha = 0;
     std::uint64_t tests = 0, screened = 0, confirmed = 0;  // statistical tests: made, failed once, failed twice
     std::uint64_t questions = 0;                           // answers of an external sampler

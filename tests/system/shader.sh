@@ -11,6 +11,7 @@ export PYTHONPATH="$CRESCENT_SOURCE/python" XDG_CACHE_HOME="$work/cache" TMPDIR=
 mkdir tmp
 "$CRESCENT" check --device list >printed 2>said || skip "$(cat said)"
 [ -s printed ] || die "no adapter is listed"
+cp printed adapters
 languages=wgsl
 if command -v glslangValidator >/dev/null; then languages+=" glsl hlsl"; fi
 if command -v slangc >/dev/null; then languages+=" slang"; fi
@@ -46,6 +47,25 @@ expect 1 check "$file" --sample 'wi = cosine_sample(u)' --pdf 'wo.z / PI'
 expect 1 check "$file" --sample 'wi = mixture_sample(wo, 0.5, u, alpha)' --pdf 'mixture_pdf(wo, wi, alpha)' \
     --set alpha=0.3
 expect 1 check "$file" --sample 'wi = cosine_sample(u); pdf = cosine_pdf(wi); wi = wi / 0.0 * 0.0' --pdf 'cosine_pdf(wi)'
+
+# JSON, JUnit and the page name the adapter, the driver and the precision, also of both sides of a comparison.
+expect 0 check "$file" --sample 'wi = cosine_sample(u)' --pdf 'cosine_pdf(wi)' --json device.json --junit device.xml \
+    --html device.html
+expect 0 /usr/bin/python3 - "$CRESCENT_SOURCE" <<'END'
+import json, sys
+import jsonschema
+result = json.load(open("device.json"))
+jsonschema.Draft202012Validator(json.load(open(sys.argv[1] + "/docs/check.schema.json"))).validate(result)
+(device,) = result["devices"]
+assert device["arm"] == "lobes" and device["precision"] == "single", device
+adapters = open("adapters").read().splitlines()
+text = f"{device['name']}, {device['driver']}"
+assert text == adapters[0], (text, adapters)
+assert f'name="device of lobes" value="{text}, single precision"' in open("device.xml").read()
+assert f"evaluated on {text}, single precision" in open("device.html").read()
+END
+expect 0 check "$file" --sample 'wi = cosine_sample(u)' --pdf 'cosine_pdf(wi)' --against cosine --json device.json
+grep -q '"devices"' device.json || die "a comparison names no device"
 
 # What surrounds the functions: comments of the file, random numbers, another axis, a world frame, uniforms.
 cat >own.wgsl <<'W'

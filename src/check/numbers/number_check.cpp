@@ -341,7 +341,10 @@ private:
 
 CheckResult check_number(const std::shared_ptr<const SamplerAdapter>& estimator, const ExpectedMean& expected,
     const TestSettings& settings, ProgressMonitor& monitor) {
-    return NumberCheck(estimator, expected, settings, monitor).run();
+    CheckResult out = NumberCheck(estimator, expected, settings, monitor).run();
+    for (const auto& sampler : {estimator, expected.estimator})
+        if (sampler) add_device(sampler->name(), *sampler, out.devices);
+    return out;
 }
 
 }  // namespace crescent::check

@@ -187,6 +187,12 @@ Json implied_of(const Verdict& v) {
     return {{"rings", rings}};
 }
 
+Json devices_list(const CheckResult& j) {
+    Json out = Json::array();
+    for (const auto& [arm, device] : j.devices) out.push_back({{"arm", arm}, {"text", device.text()}});
+    return out;
+}
+
 std::string title_of(const CheckResult& j) {
     std::vector<std::string> names;
     for (const Verdict& v : j.verdicts)
@@ -266,7 +272,8 @@ std::string verdict_html(const CheckResult& j, const ResultSource& source) {
         {"left_out", left_out}, {"nothing_found", findings.empty() && j.unmet.empty() && left_out.empty()},
         {"statistical_tests", j.tests}, {"alpha", fmt::format("{:g}", j.alpha)}, {"screened", j.screened},
         {"confirmed", j.confirmed}, {"questions", j.questions > 0 ? std::to_string(j.questions) : ""},
-        {"unseen", unseen_text(j)}, {"nothing_drawn", nothing_drawn_text(j)}, {"cases", case_models(j)}};
+        {"unseen", unseen_text(j)}, {"nothing_drawn", nothing_drawn_text(j)}, {"cases", case_models(j)},
+        {"devices", devices_list(j)}};
     add_matrix(j, model);
     return render_page(check_templates(), "check.html", model);
 }

@@ -83,6 +83,7 @@ std::string verdict_table(const CheckResult& result, bool with_right) {
 std::string verdict_junit(const CheckResult& result) {
     using Case = JunitCase::State;
     JunitSuite suite{"crescent check", {}, {}};
+    for (const auto& [arm, device] : result.devices) suite.properties.emplace_back("device of " + arm, device.text());
     for (const Verdict& v : result.verdicts) {
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
         const bool open = v.state == State::skipped || v.state == State::inconclusive;

@@ -60,6 +60,19 @@ TEST(ResultAsJunit, HasACaseForEachVerdict) {
     EXPECT_THAT(verdict_junit(result), HasSubstr("tests=\"6\" failures=\"2\" errors=\"1\" skipped=\"1\""));
 }
 
+TEST(ResultOfADevice, NamesItInEveryFile) {
+    CheckResult result = every_state();
+    result.devices = {{"made", {.name = "a device", .driver = "Mesa <1>", .precision = "single"}}};
+    const nlohmann::json devices = nlohmann::json::parse(verdict_json(result))["devices"];
+    EXPECT_EQ(devices,
+        nlohmann::json::array(
+            {{{"arm", "made"}, {"name", "a device"}, {"driver", "Mesa <1>"}, {"precision", "single"}}}));
+    const char* text = "a device, Mesa &lt;1&gt;, single precision";
+    EXPECT_THAT(verdict_junit(result), HasSubstr(std::string("name=\"device of made\" value=\"") + text));
+    EXPECT_THAT(verdict_html(result), HasSubstr(text));
+    EXPECT_THAT(verdict_html(every_state()), Not(HasSubstr("evaluated on")));
+}
+
 TEST(ResultAsSarif, HasWhatFailsAtThePlaceOfTheSampler) {
     CheckResult result = every_state();
     const nlohmann::json sarif = nlohmann::json::parse(verdict_sarif(result, {"a b.py", 7}, {"1.2", "", ""}));

@@ -183,6 +183,14 @@ StoredResult stored_result(const Json& json) {
     for (const Json& l : json.at("left_out"))
         result.left_out.push_back({l.at("arm").get<std::string>(), l.at("case").get<std::string>(),
             l.at("verdicts").get<std::vector<std::string>>(), l.at("why").get<std::string>()});
+    if (const auto devices = json.find("devices"); devices != json.end())
+        for (const Json& one : *devices) {
+            EvaluationDevice& device =
+                result.devices.emplace_back(one.at("arm").get<std::string>(), EvaluationDevice{}).second;
+            read_member(one, "name", device.name);
+            read_member(one, "driver", device.driver);
+            read_member(one, "precision", device.precision);
+        }
     for (const Json& verdict : json.at("verdicts")) result.verdicts.push_back(read_verdict(verdict));
     result.maps = read_pictures<BinHistogram>(json.at("maps"));
     result.lines = read_pictures<LineHistogram>(json.at("lines"));
@@ -233,6 +241,13 @@ std::string verdict_json(const CheckResult& result, const ResultSource& source) 
     root["failed_once"] = result.screened;
     root["failed_twice"] = result.confirmed;
     if (result.questions > 0) root["questions"] = result.questions;
+    for (const auto& [arm, device] : result.devices) {
+        Json one = {{"arm", arm}};
+        for (const auto& [key, value] :
+            {std::pair("name", &device.name), {"driver", &device.driver}, {"precision", &device.precision}})
+            if (!value->empty()) one[key] = *value;
+        root["devices"].push_back(std::move(one));
+    }
     if (!result.unmet.empty()) root["unmet_expectations"] = result.unmet;
     root["requested"] = cases_of(result);
     root["left_out"] = Json::array();

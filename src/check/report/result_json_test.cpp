@@ -47,6 +47,7 @@ CheckResult full() {
     out.verdicts[4].first_failure = true;
     out.left_out = {{"made", "w_o 45 deg az 0", {"density"}, "No time was left."}};
     out.unmet = {"nothing is wrong"};
+    out.devices = {{"made", {.name = "a device", .driver = "a driver", .precision = "single"}}};
     BinHistogram& map = out.maps.emplace_back();
     map.arm = "made";
     map.check_case = "w_o 45 deg az 0";

@@ -64,6 +64,7 @@ struct Handshake {
     bool weight = false, delta = false, blocks = false;
     bool merge = false;             // a draw merges the reservoirs of neighbours
     std::vector<std::string> uses;  // of context_names()
+    EvaluationDevice device{};
     bool uses_lights() const { return std::ranges::find(uses, "lights") != uses.end(); }
 };
 

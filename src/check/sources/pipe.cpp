@@ -80,6 +80,7 @@ public:
     bool has_f() const override { return has_f_; }
     bool has_drawn_f() const override { return has_f_ || hello_.weight; }
     QueryUsage spending() const override { return connection_.spending(); }
+    EvaluationDevice device() const override { return hello_.device; }
 
     int numbers() const override { return hello_.traits.own_numbers(); }
     bool uses_lights() const override { return hello_.uses_lights(); }
@@ -496,6 +497,28 @@ bool indices(std::string_view value, std::optional<Vec3d>& out) {
     return true;
 }
 
+constexpr const char* text_of_word = "a text in which %20 is a space and %25 is %";
+
+/// The text of a word in which %HH is the byte HH (RFC 3986, 2.1).
+bool decode_word(std::string_view value, std::string& out) {
+    constexpr std::size_t longest = 200;  // bytes; names of adapters have below 100
+    std::string text;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        unsigned byte = 0;
+        if (value[i] != '%') {
+            text += value[i];
+            continue;
+        }
+        const std::string_view digits = value.substr(i + 1, 2);
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+        if (error != std::errc{} || digits.size() != 2 || end != digits.data() + 2) return false;
+        text += static_cast<char>(byte);
+        i += 2;
+    }
+    out = printable(text, longest);
+    return !out.empty();
+}
+
 const std::string number_or_domain = std::string("number, ") + Domain::expected;
 
 struct HandshakeKey {
@@ -504,9 +527,9 @@ struct HandshakeKey {
     std::function<bool(std::string_view, Handshake&)> read;
 };
 
-const std::array<HandshakeKey, 17>& keys() {
+const std::array<HandshakeKey, 19>& keys() {
     using S = std::string_view;
-    static const std::array<HandshakeKey, 17> handshake_keys = {{
+    static const std::array<HandshakeKey, 19> handshake_keys = {{
         {"u", "a whole number from 1 to 8",
             [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most_numbers, g.traits.numbers); }},
         {"domain", number_or_domain.c_str(),
@@ -550,6 +573,7 @@ const std::array<HandshakeKey, 17>& keys() {
         {"real", "f32 or f64",
             [](S v, Handshake& g) {
                 g.traits.bits = v == "f32" ? 24 : 53;
+                g.device.precision = v == "f32" ? "single" : "double";
                 return v == "f32" || v == "f64";
             }},
         {"u_bits", "24 or 53",
@@ -557,6 +581,8 @@ const std::array<HandshakeKey, 17>& keys() {
                 g.traits.u_bits = v == "53" ? 53 : 24;
                 return v == "53" || v == "24";
             }},
+        {"device", text_of_word, [](S v, Handshake& g) { return decode_word(v, g.device.name); }},
+        {"driver", text_of_word, [](S v, Handshake& g) { return decode_word(v, g.device.driver); }},
         {"block", "f64", [](S v, Handshake& g) { return (g.blocks = v == "f64"); }},
         {"uses", "names from s, alpha, rho_d, rho_s, side, eta and lights, separated by commas",
             [](S v, Handshake& g) { return take_context_names(v, g.uses); }},

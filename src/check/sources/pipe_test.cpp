@@ -62,7 +62,8 @@ TEST(Greetings, SayWhatAProgramIs) {
     Handshake g;
     EXPECT_EQ(
         read_handshake("hello 2 my glass u=3 domain=sphere wo=both channels=3 weight=yes delta=yes eta=1.5,1.51,1.52 "
-                       "transport=importance f=cos reciprocal=no random=own real=f32 block=f64 u_bits=53",
+                       "transport=importance f=cos reciprocal=no random=own real=f32 block=f64 u_bits=53 "
+                       "device=a%20%3Ddevice driver=Mesa%2025%25",
             g)
             .got,
         "");
@@ -75,6 +76,7 @@ TEST(Greetings, SayWhatAProgramIs) {
     EXPECT_DOUBLE_EQ(g.traits.eta->z, 1.52);
     EXPECT_EQ(g.traits.bits, 24);
     EXPECT_EQ(g.traits.u_bits, 53);
+    EXPECT_EQ(g.device.text(), "a =device, Mesa 25%, single precision");
 }
 
 TEST(Greetings, SayWhatAProgramUsesOfTheSurface) {
@@ -99,6 +101,8 @@ TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     EXPECT_NE(fault("hello 2 x colour=3").find("got the unknown key 'colour'"), std::string::npos);
     EXPECT_NE(fault("hello 2 x weights=yes").find("did you mean 'weight'?"), std::string::npos);
     EXPECT_NE(fault("hello 2 x u=9").find("expected a whole number from 1 to 8 for u, got '9'"), std::string::npos);
+    for (const char* text : {"", "%2", "%2x", "a%"})
+        EXPECT_NE(fault((std::string("hello 2 x device=") + text).c_str()).find("%20 is a space"), std::string::npos);
     EXPECT_NE(fault("hello 2 x delta=yes").find("weight=yes"), std::string::npos);
     EXPECT_NE(fault("hello 2 x merge=yes").find("expected weight=reciprocal"), std::string::npos)
         << fault("hello 2 x merge=yes");

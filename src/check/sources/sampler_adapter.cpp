@@ -284,6 +284,13 @@ const SamplerAdapter& uncached(const SamplerAdapter& sampler) {
     return cache ? cache->uncached_sampler() : sampler;
 }
 
+// ---- What evaluates an external sampler.
+
+void add_device(const std::string& arm, const SamplerAdapter& sampler, DevicesByArm& to) {
+    const bool is_listed = std::ranges::any_of(to, [&](const auto& one) { return one.first == arm; });
+    if (const EvaluationDevice device = sampler.device(); device.declared() && !is_listed) to.emplace_back(arm, device);
+}
+
 // ---- A sampler with a limited time.
 
 namespace {

@@ -15,6 +15,7 @@
 
 #include "base/vec.h"
 #include "check/domains/domain_chart.h"
+#include "check/sources/evaluation_device.h"
 #include "math/simd/frame.h"
 #include "samplers/info.h"
 #include "scene/lights/all.h"
@@ -178,6 +179,8 @@ public:
     virtual bool can_draw() const { return true; }
     /// Number of queries to an external sampler so far; for a program, the time they took.
     virtual QueryUsage spending() const { return {}; }
+    /// What evaluates an external sampler, if it names it.
+    virtual EvaluationDevice device() const { return {}; }
     /// Called during long computations between two queries, before a number of steps, so that a web page can respond to
     /// its user.
     virtual void yield_to_host(std::size_t /*steps*/) const {}
@@ -241,6 +244,9 @@ struct CaseLighting {
     double operator()(Vec3d wi) const;
 };
 
+/// Adds the device of a sampler, if it names one that is not in the list.
+void add_device(const std::string& arm, const SamplerAdapter& sampler, DevicesByArm& to);
+
 /// Named parameter values, in the order in which they are printed.
 using Parameters = std::vector<std::pair<std::string, double>>;
 
@@ -297,6 +303,7 @@ public:
     double tabulation_error(Vec3d w) const override { return inner_->tabulation_error(w); }
     bool can_draw() const override { return inner_->can_draw(); }
     QueryUsage spending() const override { return inner_->spending(); }
+    EvaluationDevice device() const override { return inner_->device(); }
     void yield_to_host(std::size_t steps) const override { inner_->yield_to_host(steps); }
     bool serial() const override { return inner_->serial(); }
     bool limited() const override { return inner_->limited(); }
