@@ -7,8 +7,9 @@ either form.
 from __future__ import annotations
 
 import importlib
+import math
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -43,7 +44,7 @@ class DrJit(Library):
 
     def __init__(self, module: Any = "drjit", tensors: bool = False) -> None:
         super().__init__(np)
-        self.name, self._keeps, self._tensors = "drjit", True, tensors
+        self.name, self._keeps, self._compiles, self._tensors = "drjit", True, True, tensors
         self._types = _types(module)
 
     def _vector(self, k: int) -> Any:
@@ -64,10 +65,11 @@ class DrJit(Library):
 
     def _keep(self, rows: Array, own: Any) -> None:
         dr = importlib.import_module("drjit")
-        if dr.width(own) not in (len(rows), rows.size):
+        shape = (self._length(len(rows)), *rows.shape[1:])
+        if dr.width(own) not in (shape[0], math.prod(shape)):
             return
         if self._tensors:
-            own = own if dr.is_tensor_v(own) else self._types.TensorXf(dr.ravel(own), rows.shape)
+            own = own if dr.is_tensor_v(own) else self._types.TensorXf(dr.ravel(own), shape)
         elif not isinstance(own, vector := self._vector(rows.shape[1])):
             own = vector(own)
         super()._keep(rows, own)
@@ -76,12 +78,8 @@ class DrJit(Library):
         own = super().into(rows)
         return type(own)(own)  # shares the memory; an array that a callable writes into is a copy
 
-    def _cut(self, answer: Any, n: int) -> Any:
-        if isinstance(answer, Mapping):
-            return {key: rows_of(part, n) for key, part in answer.items()}
-        if isinstance(answer, (tuple, list)):
-            return tuple(rows_of(part, n) for part in answer)
-        return rows_of(answer, n)
+    def _on_host(self, answer: Any, length: int) -> Any:
+        return rows_of(answer, length)
 
     def fits(self, sample: Callable[..., Any], rows: tuple[Array, ...]) -> bool:
         """Returns whether `sample` returns one draw per row for arrays of this form."""

@@ -3,6 +3,9 @@
 Arrays stay on the device between calls: directions returned by `sample` and passed to `pdf` and `f` are not copied, and
 neither are rows used before. Checked values are brought to the host by DLPack, or by NumPy's protocol if the host
 cannot read them in place.
+
+JAX and Dr.Jit compile code for each shape. Their batches are filled up to one of few lengths by copies of the last row,
+and the answers are cut on the host: a check, or a run, compiles each callable a few times.
 """
 
 from __future__ import annotations
@@ -23,6 +26,15 @@ Call = Callable[..., Any]
 #: The module of an array's type, and the library that its callables take; they reject others with an error.
 KNOWN = {"torch": "torch", "jax": "jax", "jaxlib": "jax", "cupy": "cupy", "drjit": "drjit", "mitsuba": "drjit"}
 _KEPT = 4  # arrays per thread: w_o, the numbers, drawn directions, queried directions
+_COMPILING = ("jax", "drjit")  # libraries that compile code for each shape
+#: Rows of a filled batch. Most batches of a check have 1 to 64 or 4,096 to 5,600 rows; a longer one has a multiple of the
+#: last.
+_LENGTHS = (64, 512, 2048, 8192, 32768, 131072)
+
+
+def filled_length(n: int) -> int:
+    """Returns the length to which a batch of n rows is filled."""
+    return next((length for length in _LENGTHS if n <= length), -(-n // _LENGTHS[-1]) * _LENGTHS[-1])
 
 
 class Library:
@@ -32,22 +44,27 @@ class Library:
         name = module if isinstance(module, str) else module.__name__
         self.name = name.partition(".")[0]
         if isinstance(module, str) or self.name == "jax":
-            module = importlib.import_module("jax.numpy" if self.name == "jax" else name)
+            module = importlib.import_module("jax" if self.name == "jax" else name)
         self._module, self._device, self._dtype = module, device, dtype
         self._keeps = self.name in ("torch", "jax")  # for these, it is known whether a callable writes into an array
+        self._compiles = self.name in _COMPILING
         self._of_thread: dict[int, list[tuple[Array, Any, int]]] = {}  # a threading.local ends with each call
+
+    def _length(self, n: int) -> int:
+        """The rows of an array that a callable receives for n rows."""
+        return filled_length(n) if self._compiles else n
+
+    def _filled(self, rows: Array) -> Array:
+        more = self._length(len(rows)) - len(rows)
+        return np.concatenate([rows, np.broadcast_to(rows[-1:], (more, *rows.shape[1:]))]) if more else rows
 
     def _made(self, rows: Array) -> Any:
         if self.name == "torch":
             kind = self._dtype or self._module.get_default_dtype()
             return self._module.from_numpy(np.require(rows, requirements="W")).to(device=self._device or "cpu", dtype=kind)
-        if self.name == "jax":  # filled up to a power of two, so that few shapes are compiled
-            count = 1 << max(len(rows) - 1, 63).bit_length()
-            rows = np.concatenate([rows, np.broadcast_to(rows[-1:], (count - len(rows), *rows.shape[1:]))])
-            made = self._module.asarray(rows, self._dtype or self._module.float32)
-            if self._device is None:
-                return made
-            return importlib.import_module("jax").device_put(made, self._device)
+        if self.name == "jax":
+            # Converted by NumPy: JAX would compile the conversion.
+            return self._module.device_put(np.ascontiguousarray(rows, np.dtype(self._dtype or np.float32)), self._device)
         more = {key: value for key, value in (("dtype", self._dtype), ("device", self._device)) if value is not None}
         return self._module.asarray(rows, **more)
 
@@ -71,17 +88,30 @@ class Library:
                 return own
             del kept[0]
             break
-        own = self._made(rows)
+        own = self._made(self._filled(rows))
         self._keep(rows, own)
         return own
 
     def _cut(self, answer: Any, n: int) -> Any:
-        """Returns the requested rows of a result with more."""
+        """Returns the requested rows of a result with more, which are on the host if the library compiles code: JAX would
+        compile the cut."""
         if isinstance(answer, Mapping):
             return {key: self._cut(part, n) for key, part in answer.items()}
         if isinstance(answer, (tuple, list)):
             return tuple(self._cut(part, n) for part in answer)
-        return answer if self.name != "jax" or answer is None or np.ndim(answer) == 0 else answer[:n]
+        if not self._compiles or not np.shape(answer):
+            return answer
+        length = self._length(n)
+        rows = self._on_host(answer, length)
+        if np.ndim(rows) == 0:
+            return rows
+        if len(rows) != length:
+            raise ValueError(f"{len(rows)} rows for {length} requested: expected one for each")
+        return rows[:n]
+
+    def _on_host(self, answer: Any, length: int) -> Any:
+        """Returns NumPy's array of an answer for so many rows."""
+        return _arrays.as_numpy(answer, self.name)
 
     def asks(self, call: Call) -> Call:
         """Wraps `call` to receive arrays of the library instead of NumPy's."""

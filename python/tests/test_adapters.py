@@ -9,6 +9,7 @@ import pytest
 
 import crescent
 from crescent import adapters
+from crescent._libraries import Library, filled_length
 from crescent.testing import mutants
 
 WO = [(30.0, 0.0), (75.0, 310.0)]
@@ -44,6 +45,10 @@ def test_a_triple_in_single_precision_is_right():
 
 def test_a_triple_in_jax_is_compiled_for_few_shapes():
     jax = pytest.importorskip("jax")
+    compiled = []
+    jax.monitoring.register_event_duration_secs_listener(
+        lambda event, seconds, **more: event.endswith("backend_compile_duration") and compiled.append(event)
+    )
     sample, eval, pdf = triple(jax.numpy)
     shapes = set()
 
@@ -53,9 +58,53 @@ def test_a_triple_in_jax_is_compiled_for_few_shapes():
 
     jitted = [jax.jit(call) for call in (sample, eval, noted)]
     assert crescent.check(adapters.jax(*jitted), wo_deg=WO).state == "right"
-    assert shapes and all(n & (n - 1) == 0 for n, _ in shapes)
+    assert 1 < len(shapes) <= 6 and all(n & (n - 1) == 0 for n, _ in shapes)
+    assert len(compiled) <= 3 * 6
+    del compiled[:]
+    assert crescent.check(adapters.jax(*jitted), wo_deg=[50], seed=2).state == "right"
+    assert len(compiled) <= 3, "a length that the first check did not have"
     off = adapters.jax(*jitted[:2], lambda wo, wi: 1.02 * jitted[2](wo, wi))
     assert "normalised" in crescent.check(off, wo_deg=WO).broken()
+
+
+class Compiling(Library):
+    """NumPy as a library that compiles code for each shape."""
+
+    def __init__(self):
+        super().__init__(np)
+        self._compiles = True
+
+
+def test_batches_of_a_library_that_compiles_have_few_lengths():
+    library, lengths = Compiling(), []
+
+    def noted(call):
+        def asked(*rows):
+            lengths.append({len(row) for row in rows})
+            return call(*rows)
+
+        return library.asks(asked)
+
+    sample, pdf, f = plain(np)
+    checked = crescent.check(noted(sample), noted(pdf), noted(f), array_module=np, name="mine")
+    assert all(len(of_one) == 1 for of_one in lengths)
+    assert len(set().union(*lengths)) <= 6
+    assert checked.json() == crescent.check(sample, pdf, f, array_module=np, name="mine").json()
+
+
+@pytest.mark.parametrize("n", [1, 64, 65, 5000, 8192, 131072, 131073, 400000])
+def test_a_batch_is_filled_to_one_of_few_lengths(n):
+    assert n <= filled_length(n) < max(65, 9 * n)
+    assert filled_length(n) in (64, 512, 2048, 8192, 32768, 131072, 262144, 524288)
+    rows = np.arange(3.0 * n).reshape(n, 3)
+    assert np.array_equal(Compiling().asks(lambda given: given + 0)(rows), rows)
+
+
+def test_an_answer_with_other_rows_than_the_filled_batch_is_an_error():
+    for rows in (3, 65):
+        with pytest.raises(ValueError, match=f"{rows} rows for 64 requested"):
+            Compiling().asks(lambda wo, wi: np.ones(rows))(np.ones((8, 3)), np.ones((8, 3)))
+    assert Compiling().asks(lambda wo, wi: 0.25)(np.ones((8, 3)), np.ones((8, 3))) == 0.25
 
 
 def test_a_triple_in_torch():

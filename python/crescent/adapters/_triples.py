@@ -68,7 +68,7 @@ def jax(
     dtype: Any = None,
     **known: Any,
 ) -> Sampler:
-    """JAX callables, jitted or not: rows are padded to a power of two, so that few shapes are compiled."""
+    """JAX callables, jitted or not: batches have one of few lengths, for which they are compiled."""
     return _sampler(Library("jax", device, dtype), sample, eval, pdf, known)
 
 
