@@ -163,7 +163,7 @@ def _cases(s: Sampler, full: bool, wo_deg: Grid | None) -> _crescent.CheckCases:
     )
 
 
-def _run_checks(
+def run_checks(
     cases: _crescent.CheckCases,
     command: str,
     *,
@@ -177,6 +177,7 @@ def _run_checks(
     progress: Progress | None = None,
     estimates: list[float] | None = None,
 ) -> CheckResult:
+    """Checks these cases; the keywords are those of :func:`check`."""
     if progress is not None and not callable(progress):
         raise TypeError(f"progress is {type(progress).__name__}: expected a callable progress(what, done, total)")
     seed = whole("seed", seed, 0, 2**32 - 1, "expected a whole number, 0 to 4294967295")
@@ -345,7 +346,7 @@ def check(
         raise TypeError(f"{title} draws values: expected either estimates=VALUE, their mean, or against=another estimator")
     if estimates is not None and not is_number:
         raise TypeError("estimates is for a sampler whose draws are values: domain='number'")
-    return _run_checks(
+    return run_checks(
         cases,
         f"crescent.check({title!r})",
         estimates=None if estimates is None else [float(v) for v in np.atleast_1d(estimates)],

@@ -60,12 +60,14 @@ def sampler_at(where: str, root: Path | None = None) -> Sampler:
     """Returns the sampler there, see :func:`object_at`."""
     found = object_at(where, root)
     name, _, inside = where.rpartition(":") if not where.endswith(".py") else (where, "", "")
+    return as_sampler(found() if isinstance(found, type) else found, where, inside or Path(name).stem)
+
+
+def as_sampler(found: Any, where: str, name: str) -> Sampler:
+    """Returns the sampler of a module, or of an object with its callables; `where` it is, for messages."""
     if isinstance(found, Sampler):
         return found
-    found = found() if isinstance(found, type) else found
     if not hasattr(found, "sample"):
         raise ValueError(f"{where} has no sample(wo, u)")
     known = {key: getattr(found, key) for key in _STATED if hasattr(found, key)}
-    return Sampler(
-        found.sample, getattr(found, "pdf", None), getattr(found, "f", None), name=inside or Path(name).stem, **known
-    )
+    return Sampler(found.sample, getattr(found, "pdf", None), getattr(found, "f", None), name=name, **known)

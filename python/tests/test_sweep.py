@@ -550,49 +550,6 @@ def test_a_full_disk_fails_tasks_and_leaves_whole_files(tiny, tmp_path):
         json.loads(path.read_text())
 
 
-# ---- checks over a grid
-
-
-def test_a_check_over_a_grid_maps_where_a_sampler_is_wrong(tmp_path):
-    (tmp_path / "power.py").write_text(POWER)
-    out = tmp_path / "out"
-    over = ["--over", "k=1,2", "--over", "factor=1,1.05"]
-    ended = command("--check", f"{tmp_path}/power.py:Power", *over, "--out", out, "--workers", "2")
-    assert ended.returncode == 1, ended.stderr
-    assert "wrong: 2 of 4" in ended.stdout and "p integrates to 1.0" in ended.stdout, ended.stdout
-    again = command("--check", f"{tmp_path}/power.py:Power", "--over", "k=1,2,3", "--over", "factor=1", "--out", out)
-    assert "1 to check, 2 there" in again.stderr, again.stderr
-    shares = [json.loads(path.read_text())["alpha"] for path in out.glob("store/checks/*.json")]
-    assert len(shares) == 5 and sum(shares) < 1e-3
-    for words, says in (
-        (["power.py:Powr", "--over", "k=1"], "did you mean 'Power'"),
-        (["power.py:Power", "--over", "kk=1"], "did you mean 'k'"),
-        (["phnog", "--over", "s=1"], "did you mean 'phong'"),
-        (["phong"], "at least one --over"),
-    ):
-        ended = command("--check", *words, cwd=tmp_path)
-        assert ended.returncode == 2 and says in ended.stderr, ended.stderr
-
-
-POWER = """
-import numpy as np
-
-class Power:
-    def __init__(self, k=1.0, factor=1.0):
-        self.k, self.factor = k, factor
-
-    def sample(self, wo, u):
-        z = u[:, 0] ** (1 / (self.k + 1))
-        r, phi = np.sqrt(1 - z * z), 2 * np.pi * u[:, 1]
-        wi = np.stack([r * np.cos(phi), r * np.sin(phi), z], -1)
-        return wi, self.pdf(wo, wi)
-
-    def pdf(self, wo, wi):
-        z = np.maximum(wi[:, 2], 0)
-        return self.factor * (self.k + 1) / (2 * np.pi) * z**self.k
-"""
-
-
 # ---- without the extra
 
 

@@ -32,11 +32,12 @@ def with_attributes(e: Experiment, values: Mapping[str, Any]) -> Experiment:
             near = _crescent.nearest(name, list(out.samplers))
             there = ", ".join(out.samplers) or "none: e.samplers[NAME] = sampler adds one"
             raise UsageError(f"--over {path}: no sampler '{name}': expected one of e.samplers, {there}" + hint(near))
-        out.samplers[name] = _with_attribute(out.samplers[name], attribute, value, path)
+        out.samplers[name] = with_attribute(out.samplers[name], attribute, value, path)
     return out
 
 
-def _with_attribute(sampler: Any, attribute: str, value: Any, path: str) -> Sampler:
+def with_attribute(sampler: Any, attribute: str, value: Any, path: str) -> Sampler:
+    """A sampler with this attribute, in a copy of the object whose methods it calls; `path` names it in messages."""
     calls = {
         field: call
         for field in ("sample", "pdf", "f", "target")

@@ -1,4 +1,5 @@
-"""Checks a sampler over a grid of its parameters: a map of where it is wrong, heavy-tailed or inconclusive.
+"""Checks a sampler over a grid of its parameters, or arms over a grid of their experiment: a map of where they are wrong,
+heavy-tailed or inconclusive.
 
 All tests of all points share one alpha. Call k of a sweep (k = 1, 2, ...) spends alpha / 2^k, in equal shares of its
 new points, so that points can be added without checking the finished ones again: the sum over all calls is below alpha.
@@ -8,10 +9,11 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import functools
 import html
 import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -20,12 +22,15 @@ from typing import Any
 import numpy as np
 
 from .. import _crescent, arms as built_in
+from .._sampler import whole
+from ..experiments import Experiment
 from .engines import DaskEngine, Job, engine_of
 from .grid import UsageError, axes_of, grid, hint, label, short
-from .identity import NUMERICS, _of_python, digest
+from .identity import NUMERICS, _of_python, arms_of, digest, scene_id
+from .plan import points_of
 from .progress import Progress
 from .store import Store, locked, read_json, write_whole
-from .sweep import Say, _folder
+from .sweep import Say, _check_axes, _folder, usable_points
 
 KINDS = ("right", "heavy-tailed", "inconclusive", "wrong", "error")
 _COLOURS = {
@@ -122,45 +127,141 @@ def _identify(sampler: str, paths: Sequence[str]) -> tuple[Any, Any]:
     return _of_python(str(path.resolve()) + colon + inside)
 
 
-def run_check_sweep(
-    sampler: str, *, over: Any, zip: bool, engine: str, out: str | PathLike[str], alpha: float, full: bool, seed: int,
-    workers: int | None, progress: bool, dry_run: bool, say: Say,
-) -> CheckSweep:  # fmt: skip
-    """Checks the missing points and writes the map."""
-    if not 0 < alpha < 1:
-        raise UsageError(f"--alpha {alpha:g}: expected a probability between 0 and 1")
-    axes = axes_of(over)
+@dataclass
+class CheckOptions:
+    """The arguments of a call."""
+
+    over: Any
+    zip: bool
+    engine: str
+    out: str | PathLike[str]
+    alpha: float
+    full: bool
+    seed: int
+    workers: int | None
+    resume: bool
+    progress: bool
+    dry_run: bool
+    say: Say
+
+
+@dataclass(frozen=True)
+class _Check:
+    """One point to be checked."""
+
+    id: str
+    values: dict[str, Any]
+    sampler: str  #: the identity of the sampler, which the points of a sweep share
+    task: dict[str, Any]  #: without its share of alpha
+
+
+Checks = tuple[list[_Check], dict[str, str]]  #: and by point the errors of those that are not valid
+
+
+def run_check_sweep(sampler: str, options: CheckOptions) -> CheckSweep:
+    """Checks a sampler of a file, or a built-in one, at the missing points and writes the map."""
+    return _run(sampler, options, functools.partial(_of_sampler, sampler, options))
+
+
+def run_arm_sweep(
+    base: Experiment, arms: bool | str | Sequence[str], pixels: int, versions: Mapping[str, str], options: CheckOptions
+) -> CheckSweep:
+    """Checks arms of an experiment at the missing points and writes the map."""
+    pixels = whole("pixels", pixels, 0, 4096, "expected a number of pixels, 0 for the grid of w_o")
+    names = _names_of_arms(base, arms)
+    title = f"{', '.join(names)} of {base['title'] or base._core.file}"
+    return _run(title, options, functools.partial(_of_arms, base, names, pixels, versions, options))
+
+
+def _run(title: str, options: CheckOptions, checks_at: Callable[[list[dict[str, Any]]], Checks]) -> CheckSweep:
+    if not 0 < options.alpha < 1:
+        raise UsageError(f"--alpha {options.alpha:g}: expected a probability between 0 and 1")
+    axes = axes_of(options.over)
     if not axes:
-        raise UsageError("--check: expected at least one --over PARAMETER=VALUES")
-    if engine_of(engine) == "commands":
+        raise UsageError("--check: expected at least one --over PATH=VALUES")
+    if engine_of(options.engine) == "commands":
         raise UsageError("--check: expected --engine local, dask://HOST:PORT or slurm:PROFILE")
-    values = grid(axes, zip)
-    folder = _folder(out)
-    with contextlib.nullcontext() if dry_run else locked(folder):
-        return _check_points(
-            sampler, values, [axis.path for axis in axes], engine, folder, alpha, full, seed, workers, progress, dry_run, say
-        )
+    folder = _folder(options.out)
+    checks, failed = checks_at(grid(axes, options.zip))
+    with contextlib.nullcontext() if options.dry_run else locked(folder):
+        return _check_points(title, {check.id: check for check in checks}, failed, folder, options)
+
+
+def _of_sampler(sampler: str, options: CheckOptions, values: list[dict[str, Any]]) -> Checks:
+    identity, code = _identify(sampler, list(values[0]))
+    task = {
+        "kind": "check", "numerics": NUMERICS, "sampler": sampler, "code": code, "seed": options.seed,
+        "full": options.full, "code_id": digest(code) if code else "",
+    }  # fmt: skip
+    return [
+        _Check(digest(NUMERICS, identity, at, options.seed, options.full), at, digest(identity), {**task, "values": at})
+        for at in values
+    ], {}
+
+
+def _names_of_arms(base: Experiment, given: bool | str | Sequence[str]) -> list[str]:
+    """The arms to check: all, or these, which may be built-in samplers too."""
+    there = list(base._with_arms()._tree()["arms"])
+    names = there if given is True else [given] if isinstance(given, str) else list(given or ())
+    known = list(dict.fromkeys([*there, *built_in.arm_names()]))
+    for name in names:
+        if name not in known:
+            near = _crescent.nearest(str(name), known)
+            raise UsageError(f"--check {name}: no arm or sampler '{name}': expected one of {', '.join(known)}{hint(near)}")
+    if not names:
+        raise UsageError("--check: expected at least one arm")
+    return names
+
+
+def _of_arms(
+    base: Experiment, names: list[str], pixels: int, versions: Mapping[str, str], options: CheckOptions,
+    values: list[dict[str, Any]],
+) -> Checks:  # fmt: skip
+    if clash := {"arm", "arms"} & set(values[0]):
+        raise UsageError(f"--over {clash.pop()}: the map has an axis of this name: expected a whole path")
+    points, failed = usable_points(*points_of(base, values, int(base["seeds"]), versions))
+    scene, arms = scene_id(base._with_arms()), arms_of(base, versions)
+    out = []
+    for point in points:
+        for name in names:
+            arm = point.arms[name].id if name in point.arms else ["built in", name]
+            at = {"arm": name, **point.values}
+            of_base = arms[name].id if name in arms else ["built in", name]
+            task = point.task(
+                "check", [name] if name in point.arms else [], arm=name, pixels=pixels, seed=options.seed, full=options.full
+            )
+            out.append(
+                _Check(
+                    digest(NUMERICS, point.key, arm, pixels, options.seed, options.full), at,
+                    digest(scene, of_base, pixels), task,
+                )
+            )  # fmt: skip
+    return out, failed
 
 
 def _check_points(
-    sampler: str, values: list[dict[str, Any]], paths: list[str], engine: str, folder: Path, alpha: float, full: bool,
-    seed: int, workers: int | None, progress: bool, dry_run: bool, say: Say,
-) -> CheckSweep:  # fmt: skip
-    identity, code = _identify(sampler, paths)
+    title: str, checks: dict[str, _Check], failed: dict[str, str], folder: Path, options: CheckOptions
+) -> CheckSweep:
     store = Store(folder)
-    state = read_json(folder / "sweep.json") or {"calls": 0, "points": [], "alpha": alpha}
+    alpha = options.alpha
+    state = read_json(folder / "sweep.json") or {"kind": "check", "calls": 0, "points": [], "alpha": alpha}
+    if state.get("kind") != "check":
+        raise UsageError(f"--out {options.out}: has a sweep of runs; expected another folder for checks")
     if state["alpha"] != alpha:
         raise UsageError(f"--alpha {alpha:g}: the sweep in {folder} has alpha {state['alpha']:g}; expected the same")
-    ids = {digest(NUMERICS, identity, at, seed, full): at for at in values}
-    new = {name: at for name, at in ids.items() if store.check(name) is None}
-    say(f"{len(ids)} points: {len(new)} to check, {len(ids) - len(new)} there")
-    if dry_run:
-        return CheckSweep(folder, [], 0, {})
+    new = {name: check for name, check in checks.items() if not options.resume or store.check(name) is None}
+    options.say(f"{len(checks)} points: {len(new)} to check, {len(checks) - len(new)} there")
+    if options.dry_run:
+        return CheckSweep(folder, [], 0, failed)
     share = alpha / 2 ** (state["calls"] + 1) / max(len(new), 1)
-    failed: dict[str, str] = {}
     computed = 0
-    older = [p for p in state["points"] if p["id"] not in ids and p["sampler"] == digest(identity)]
-    points = [*older, *({"id": name, "values": at, "sampler": digest(identity)} for name, at in ids.items())]
+    samplers = {check.sampler for check in checks.values()}
+    paths = set(next(iter(checks.values())).values)
+    older = [
+        p for p in state["points"]
+        if p["id"] not in checks and p["sampler"] in samplers and set(p["values"]) == paths
+    ]  # fmt: skip
+    points = [*older, *({"id": c.id, "values": c.values, "sampler": c.sampler} for c in checks.values())]
 
     def write_state() -> None:
         found: dict[str, list[Any]] = {}
@@ -169,29 +270,19 @@ def _check_points(
                 if value not in found.setdefault(path, []):
                     found[path].append(value)
         known = {
-            "format": "crescent sweep 1", "kind": "check", "title": sampler, "alpha": alpha, "axes": found,
+            "format": "crescent sweep 1", "kind": "check", "title": title, "alpha": alpha, "axes": found,
             "calls": state["calls"] + bool(new), "points": points, "numerics": NUMERICS, "failed": failed,
         }  # fmt: skip
         write_whole(folder / "sweep.json", json.dumps(known, indent=1))
 
     write_state()
     if new:
-        with DaskEngine(engine, workers) as dask:
+        with DaskEngine(options.engine, options.workers) as dask:
             dask.wait_for_workers()
             if address := dask.dashboard:
-                say(f"dashboard: {address}")
-            bar = Progress(len(new), 0, progress)
-            jobs = (
-                Job(
-                    name,
-                    {
-                        "kind": "check", "numerics": NUMERICS, "sampler": sampler, "code": code, "values": at,
-                        "alpha": share, "seed": seed, "full": full, "code_id": digest(code) if code else "",
-                    },
-                    at,
-                )
-                for name, at in new.items()
-            )  # fmt: skip
+                options.say(f"dashboard: {address}")
+            bar = Progress(len(new), 0, options.progress)
+            jobs = (Job(name, {**check.task, "alpha": share}, check.values) for name, check in new.items())
             for job, result in dask.run(jobs, lambda name: None):
                 error = result.get("error")
                 if error is None:

@@ -17,6 +17,7 @@ from .grid import UsageError, axis_of, hint
 
 _USAGE = """\
 crescent sweep FILE.toml --over PATH=VALUES [--over ...] [--zip] [--seeds K] [--out DIR] [--engine ENGINE]
+crescent sweep FILE.toml --check [ARM] --over PATH=VALUES [--over ...] [--pixels K] [--out DIR]
 crescent sweep --check FILE.py:NAME --over PARAMETER=VALUES [--over ...] [--out DIR]
 crescent sweep summary DIR [--metric NAME]"""
 _FOOTER = """\
@@ -79,20 +80,17 @@ def _parser() -> _Parser:
     add("--resume", action="store_true", default=True, help="compute only what is missing (default)")
     add("--no-resume", dest="resume", action="store_false", help="compute every point of this call again")
     add("--dry-run", action="store_true", help="print tasks, samples, time and disk; compute nothing")
-    add("--verify", default="1%", metavar="SHARE", help="share of tasks that another worker repeats; default 1%%")
+    add("--verify", metavar="SHARE", help="share of tasks that another worker repeats; default 1%%")
     add("--sampler-version", action="append", default=[], metavar="ARM=VERSION",
         help="identifies a sampler in place of the hash of its source")  # fmt: skip
-    add("--metric", default="", metavar="NAME", help="of the report and the summary, such as rmse.H")
-    add("--check", metavar="SAMPLER", help="check FILE.py:NAME or a built-in sampler over its parameters")
-    add(
-        "--alpha",
-        type=_probability,
-        default=1e-3,
-        metavar="P",
-        help="with --check: shared by all points; default 0.001",
-    )
+    add("--metric", metavar="NAME", help="of the report and the summary, such as rmse.H")
+    add("--check", nargs="?", const=True, metavar="SAMPLER",
+        help="check an arm of FILE, or all; without FILE a sampler FILE.py:NAME or a built-in one over its parameters")  # fmt: skip
+    add("--pixels", type=_whole(4096), metavar="K",
+        help="with FILE --check: at K pixels in view; default: over the grid of w_o on each material")  # fmt: skip
+    add("--alpha", type=_probability, metavar="P", help="with --check: shared by all points; default 0.001")
     add("--full", action="store_true", help="with --check: sixteen times as many draws")
-    add("--seed", type=_whole(2**32 - 1), default=1, metavar="S", help="with --check: of its random numbers")
+    add("--seed", type=_whole(2**32 - 1), metavar="S", help="with --check: of its random numbers; default 1")
     add("--quiet", action="store_true", help="no progress")
     return parser
 
@@ -132,17 +130,53 @@ def _one_value(setting: str) -> str:
     return setting
 
 
-def _check(given: argparse.Namespace) -> int:
-    from .check_sweep import run_check_sweep
+_OF_RUNS = ("seeds", "films", "verify", "metric")
+_OF_CHECKS = ("pixels", "alpha", "full", "seed")
 
-    if given.file:
-        raise UsageError(f"--check takes no FILE, found '{given.file}'")
-    name = os.path.basename(given.check.partition(":")[0]).removesuffix(".py")
+
+def _refuse(given: argparse.Namespace, names: Sequence[str], why: str) -> None:
+    """Refuses flags that have no effect."""
+    for name in names:
+        if getattr(given, name) not in (None, False):
+            raise UsageError(f"--{name}: {why}")
+
+
+def _versions(given: argparse.Namespace) -> dict[str, str]:
+    versions = {}
+    for text in given.sampler_version:
+        arm, equals, version = text.partition("=")
+        if not equals or not arm or not version:
+            raise UsageError(f"--sampler-version {text}: expected ARM=VERSION")
+        versions[arm] = version
+    return versions
+
+
+def _check(given: argparse.Namespace) -> int:
+    from .check_sweep import CheckOptions, run_arm_sweep, run_check_sweep
+    from .sweep import experiment_of, with_settings
+
+    _refuse(given, _OF_RUNS, "is of a run, which --check does not make")
+    if not given.file and isinstance(given.check, str) and given.check.endswith(".toml"):
+        given.file, given.check = given.check, True
+    if given.check is True and not given.file:
+        raise UsageError("--check: expected FILE.toml, a sampler FILE.py:NAME or a built-in sampler")
+    if not given.file and given.pixels:
+        raise UsageError("--pixels: is of an experiment: expected FILE.toml --check")
+    if not given.file and given.sampler_version:
+        raise UsageError("--sampler-version: is of an experiment: expected FILE.toml --check")
+    name = os.path.basename(given.file or given.check.partition(":")[0]).removesuffix(".py").removesuffix(".toml")
     out = given.out or f"out/{name}-check"
-    result = run_check_sweep(
-        given.check, over=[*given.over, *map(_one_value, given.set)], zip=given.zip, engine=given.engine, out=out, alpha=given.alpha, full=given.full,
-        seed=given.seed, workers=given.workers, progress=not given.quiet, dry_run=given.dry_run, say=_say,
+    over = given.over if given.file else [*given.over, *map(_one_value, given.set)]
+    options = CheckOptions(
+        over=over, zip=given.zip, engine=given.engine, out=out, alpha=given.alpha or 1e-3, full=given.full,
+        seed=given.seed or 1, workers=given.workers, resume=given.resume, progress=not given.quiet,
+        dry_run=given.dry_run, say=_say,
     )  # fmt: skip
+    if given.file:
+        e = with_settings(experiment_of(given.file), given.set)
+        result = run_arm_sweep(e, given.check, given.pixels or 0, _versions(given), options)
+    else:
+        result = run_check_sweep(given.check, options)
     if given.dry_run:
         return 0
     print(result.summary())
@@ -162,25 +196,20 @@ def _run(given: argparse.Namespace) -> int:
 
     if not given.file:
         raise UsageError("expected FILE, an experiment, or --check SAMPLER, or summary DIR")
-    versions = {}
-    for text in given.sampler_version:
-        arm, equals, version = text.partition("=")
-        if not equals or not arm or not version:
-            raise UsageError(f"--sampler-version {text}: expected ARM=VERSION")
-        versions[arm] = version
+    _refuse(given, _OF_CHECKS, "is of a check: expected --check too")
     stem = os.path.basename(given.file).removesuffix(".toml")
     out = given.out or f"out/{stem}-sweep"
     options = settled_options(
         over=given.over, zip=given.zip, seeds=given.seeds, engine=given.engine, out=out, films=given.films,
-        resume=given.resume, verify=given.verify, workers=given.workers, sampler_versions=versions,
+        resume=given.resume, verify=given.verify or "1%", workers=given.workers, sampler_versions=_versions(given),
         progress=not given.quiet, say=_say,
     )  # fmt: skip
     result = run_sweep(with_settings(experiment_of(given.file), given.set), options, given.dry_run)
     if given.dry_run:
         return 3 if result.failed else 0
     if given.engine != "commands":
-        page = write_report(out, given.metric)
-        print(result.summary(given.metric) if page else "no results")
+        page = write_report(out, given.metric or "")
+        print(result.summary(given.metric or "") if page else "no results")
         if page:
             print(f"{out}/report.html, {out}/data (Parquet), {out}/points")
     _list_failures(result.failed)
@@ -202,7 +231,7 @@ def _dispatch(words: list[str]) -> int:
         given = _parsed(words[1:])
         if not given.file:
             raise UsageError("summary: expected DIR, the folder of a sweep")
-        print(summary(given.file, given.metric))
+        print(summary(given.file, given.metric or ""))
         return 0
     given = _parsed(words)
     return _check(given) if given.check else _run(given)

@@ -126,6 +126,15 @@ def _check_axes(axes: Sequence[Axis]) -> None:
             raise UsageError(f"--over {axis.path}: the dataset has a column of this name: expected a whole path")
 
 
+def usable_points(points: list[Point], failed: dict[str, str]) -> tuple[list[Point], dict[str, str]]:
+    """What points_of() returned; UsageError if no point is valid."""
+    if not points:
+        errors = list(dict.fromkeys(failed.values()))
+        more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+        raise UsageError(errors[0].replace("--set ", "--over ", 1) + more)
+    return points, failed
+
+
 class Run:
     """One call."""
 
@@ -136,11 +145,7 @@ class Run:
         _check_axes(axes)
         self.seeds = base["seeds"] if options.seeds is None else options.seeds
         values = grid(axes, options.zip)
-        self.points, self.failed = points_of(base, values, self.seeds, options.versions)
-        if not self.points:
-            errors = list(dict.fromkeys(self.failed.values()))
-            more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-            raise UsageError(errors[0].replace("--set ", "--over ", 1) + more)
+        self.points, self.failed = usable_points(*points_of(base, values, self.seeds, options.versions))
         if not options.resume:
             self._forget()
         older = kept_points(base, options.out, self.seeds, options.versions, self.points)

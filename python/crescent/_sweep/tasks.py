@@ -1,7 +1,7 @@
 """The tasks of a sweep as plain data, and their computation in this process.
 
 A task has a kind: ``reference`` (of one scene), ``part`` (some arms and seeds of one point), ``studies`` (furnaces and
-checks of the article's claims of one point), ``check`` (a sampler at one point), ``sleep`` (waits, to
+checks of the article's claims of one point), ``check`` (a sampler or an arm at one point), ``sleep`` (waits, to
 measure the overhead of a task). Its result is plain data too; references are bytes.
 """
 
@@ -21,8 +21,10 @@ from typing import Any
 
 from .. import _crescent
 from .._callable_arms import callable_arm, callable_arms
-from .._check import check
-from .._files import sampler_at
+from .._check import check, run_checks
+from .._context import DEFAULTS
+from .._files import as_sampler, sampler_at
+from .attributes import with_attribute
 from .identity import NUMERICS
 
 Task = dict[str, Any]
@@ -115,35 +117,41 @@ def _films(run: Any) -> dict[str, bytes]:
 
 
 def _checked(task: Task) -> Result:
-    """Checks one sampler with the values of one point."""
-    values = task["values"]
-    sampler: Any = task["sampler"]
-    if task["code"]:
-        sampler = _sampler_with(task["code"], values)
-        settings = values if getattr(sampler, "uses", ()) else None
+    """Checks one sampler with the values of one point, or one arm of an experiment there."""
+    known = {"alpha": task["alpha"], "seed": task["seed"], "full": task["full"], "threads": 1}
+    if "arm" in task:
+        cases = _crescent.cases_of_experiment(
+            experiment_of(task), task["arm"], task["pixels"], task["full"], _callables(task), [], "check"
+        )
+        result = run_checks(cases, f"crescent.check({task['file']!r}, sampler={task['arm']!r})", **known)
     else:
-        settings = values
-    result = check(sampler, alpha=task["alpha"], seed=task["seed"], full=task["full"], settings=settings, threads=1)
+        sampler, settings = task["sampler"], task["values"]
+        if task["code"]:
+            sampler, settings = _sampler_with(task["code"], task["values"])
+        result = check(sampler, settings=settings, **known)
     rows = [
         {"case": v.case, "verdict": v.name, "state": v.state, "message": v.message, "cause": v.cause} for v in result.verdicts
     ]
     return {"state": result.state, "tests": result.tests, "verdicts": rows, "json": result.json()}
 
 
-def _sampler_with(code: Mapping[str, Any], values: Mapping[str, Any]) -> Any:
-    """The sampler of a file; a class or function of it is called with the values of the point as keywords."""
+def _sampler_with(code: Mapping[str, Any], values: Mapping[str, Any]) -> tuple[Any, dict[str, Any] | None]:
+    """The sampler of a file, and its settings: a class or function of it is called with the values of the point as
+    keywords; of a sampler that is there already they are the settings of its context, or attributes."""
     from .._files import _module_in
     from .._sampler import Sampler
 
     at = str(_code_folder(code["files"]) / code["at"])
     file, colon, inside = at.rpartition(":") if not at.endswith(".py") else (at, "", "")
     found = getattr(_module_in(Path(file)), inside) if colon else None
-    if found is None or isinstance(found, Sampler) or not callable(found):
-        return sampler_at(at)
-    sampler = found(**values)
-    if isinstance(sampler, Sampler):
-        return sampler
-    return Sampler(sampler.sample, getattr(sampler, "pdf", None), getattr(sampler, "f", None), name=inside)
+    if found is not None and not isinstance(found, Sampler) and callable(found):
+        sampler, rest = as_sampler(found(**values), at, inside), {}
+    else:
+        sampler, rest = sampler_at(at), dict(values)
+    settings = {key: value for key, value in values.items() if key in DEFAULTS} if sampler.uses else {}
+    for key in set(rest) - set(settings):
+        sampler = with_attribute(sampler, key, rest[key], key)
+    return sampler, settings or None
 
 
 def _rates(task: Task) -> Result:
