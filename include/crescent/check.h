@@ -6,5 +6,6 @@
 #error "crescent needs C++20: compile with -std=c++20"
 #else
 #include "check/report/print.h"
+#include "check/sources/shader.h"
 #include "check/user.h"
 #endif

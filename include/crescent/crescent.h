@@ -39,6 +39,7 @@
 #include "check/sources/neighbours.h"
 #include "check/sources/point_file.h"
 #include "check/sources/sample_file.h"
+#include "check/sources/shader.h"
 #include "check/user.h"
 #include "check/verdict.h"
 #include "compare/compare.h"

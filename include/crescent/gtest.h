@@ -5,4 +5,5 @@
 #error "crescent needs C++20: compile with -std=c++20"
 #else
 #include "check/gtest.h"
+#include "check/sources/shader.h"
 #endif

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -101,6 +102,12 @@ public:
 };
 
 namespace crescent {
+
+/// Prints the name of a sampler of another process in messages of GoogleTest.
+template <std::derived_from<SamplerAdapter> Adapter>
+void PrintTo(const std::shared_ptr<Adapter>& sampler, std::ostream* out) {
+    *out << (sampler ? sampler->name() : "no sampler");
+}
 
 /// Checks a sampler. EXPECT_THAT matches first and, on failure, matches again for an explanation: the second match of
 /// the same argument reuses the result of the first. A stored result is never used for another match.

@@ -266,7 +266,8 @@ private:
 };
 
 /// Checks a sampler, or the target of a pointer, over a grid of w_o under a uniform light. TestSettings::thorough()
-/// detects smaller faults and takes minutes. Throws Interrupted if `monitor` requests a stop.
+/// detects smaller faults and takes minutes. A sampler of another process, such as shader_sampler() returns, has limits
+/// of time of its own. Throws Interrupted if `monitor` requests a stop.
 template <class Given> CheckResult check_sampler(std::string name, Given&& sampler,
     const TestSettings& settings = TestSettings::quick(), ProgressMonitor* monitor = nullptr) {
     using S = std::decay_t<Given>;
@@ -276,7 +277,11 @@ template <class Given> CheckResult check_sampler(std::string name, Given&& sampl
     static_assert(std::is_abstract_v<S> || std::is_constructible_v<S, Given>,
         "a sampler is copied, and this one cannot be: pass a pointer to it, check_sampler(name, &sampler), or move it");
     if constexpr (std::is_abstract_v<S> || !std::is_constructible_v<S, Given>) return {};
-    else if constexpr (std::is_same_v<S, PointSampler>) {
+    else if constexpr (user::Adapted<S>) {
+        ProgressMonitor alone;
+        return run_checks(
+            make_user_cases(renamed(sampler, name), settings.full, settings.wo), settings, monitor ? *monitor : alone);
+    } else if constexpr (std::is_same_v<S, PointSampler>) {
         ProgressMonitor alone;
         return run_checks(
             make_user_cases(limited_in_time(adapter_of(sampler, name), settings.seconds), settings.full, settings.wo),

@@ -67,6 +67,19 @@ END
 expect 0 check "$file" --sample 'wi = cosine_sample(u)' --pdf 'cosine_pdf(wi)' --against cosine --json device.json
 grep -q '"devices"' device.json || die "a comparison names no device"
 
+# From C++.
+if [ -n "${CRESCENT_SHADER_SUITE:-}" ]; then
+    suite() { (cd "${lobes%/*}" && "$CRESCENT_SHADER_SUITE" "--gtest_filter=$1"); }
+    expect 0 suite 'Right.*'
+    expect 1 suite 'Wrong.*'
+    grep -q "normalised is wrong" printed || die "a factor of 1.03 has no verdict in C++: $(cat printed)"
+    grep -q "Actual: mine" printed || die "the sampler is not named: $(cat printed)"
+    expect 1 suite 'Mistake.*'
+    grep -q -- "--sample:1:6: " printed || die "a mistake has no place in C++: $(cat printed)"
+    expect 1 env CRESCENT_PYTHON=/nowhere/python bash -c "cd '${lobes%/*}' && '$CRESCENT_SHADER_SUITE' --gtest_filter='Right.*'"
+    grep -qF "pip install 'crescent-bench[shader]'" printed || die "a missing package has no name: $(cat printed)"
+fi
+
 # What surrounds the functions: comments of the file, random numbers, another axis, a world frame, uniforms.
 cat >own.wgsl <<'W'
 // crescent: sample = wi = lobe(&state); pdf = density(wi)

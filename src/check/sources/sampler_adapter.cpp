@@ -291,6 +291,26 @@ void add_device(const std::string& arm, const SamplerAdapter& sampler, DevicesBy
     if (const EvaluationDevice device = sampler.device(); device.declared() && !is_listed) to.emplace_back(arm, device);
 }
 
+// ---- A sampler with another name.
+
+namespace {
+
+class RenamedAdapter : public ForwardingAdapter {
+public:
+    RenamedAdapter(std::shared_ptr<const SamplerAdapter> sampler, std::string name)
+        : ForwardingAdapter(std::move(sampler)), name_(std::move(name)) {}
+    std::string name() const override { return name_; }
+
+private:
+    std::string name_;
+};
+
+}  // namespace
+
+std::shared_ptr<const SamplerAdapter> renamed(std::shared_ptr<const SamplerAdapter> sampler, const std::string& name) {
+    return std::make_shared<RenamedAdapter>(std::move(sampler), name);
+}
+
 // ---- A sampler with a limited time.
 
 namespace {

@@ -369,6 +369,9 @@ private:
     }
 };
 
+/// `sampler` with another name.
+std::shared_ptr<const SamplerAdapter> renamed(std::shared_ptr<const SamplerAdapter> sampler, const std::string& name);
+
 // ---- A sampler with a limited time.
 
 /// Throws SamplerTimeout for a call that begins more than `seconds` after this object was made. Until then it changes

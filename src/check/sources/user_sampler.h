@@ -54,9 +54,13 @@ template <Pointing S> struct Sampler<S> {
     using Type = std::remove_reference_t<decltype(*std::declval<S&>())>;
     static Type& of(S& s) { return *s; }
 };
+/// A pointer to a sampler of another process.
+template <class S>
+concept Adapted = Pointing<S> && std::convertible_to<S, std::shared_ptr<const SamplerAdapter>>;
 /// A copy of a sampler for the check: the sampler itself, or a pointer to it.
 template <class S> auto copy_for_check(const S& s) {
-    if constexpr (Pointing<S>) return &*s;
+    if constexpr (Adapted<S>) return s;
+    else if constexpr (Pointing<S>) return &*s;
     else return s;
 }
 template <class S> using SamplerOf = std::remove_const_t<typename Sampler<S>::Type>;
