@@ -83,8 +83,12 @@ bool same_draw(const Draw& a, const Draw& b, bool random = false) {
 /// w_i = -w_o, for example, the half vector is a difference of nearly equal numbers.
 bool differ_by_rounding(Source& source, Vec3d w, double a, double b) {
     if (!source.has_density() || !std::isfinite(a + b + w.x + w.y + w.z)) return false;
-    std::array<double, 8> p{};
-    source.stated_pdf(neighbours(w), p);
+    std::vector<Vec3d> around = of_other_lengths(source, w);
+    for (const Vec3d v : neighbours(w)) around.push_back(v);
+    std::vector<double> p(around.size());
+    source.stated_pdf(around, p);
+    std::erase_if(p, [](double v) { return !std::isfinite(v); });
+    if (p.empty()) return false;
     const auto [low, high] = std::ranges::minmax(p);
     return std::min(a, b) >= low * (1 - same_number) && std::max(a, b) <= high * (1 + same_number);
 }

@@ -23,6 +23,13 @@ std::array<Vec3d, 8> neighbours(Vec3d w) {
     return out;
 }
 
+std::vector<Vec3d> of_other_lengths(const Source& source, Vec3d w) {
+    std::vector<Vec3d> out = {w};
+    if (source.traits.domain || source.recorded()) return out;  // points and tables have no length
+    for (const double off : {-8 * ulp, -2 * ulp, 2 * ulp, 8 * ulp}) out.push_back(w * (1 + off));
+    return out;
+}
+
 // ---- A weight returned by the sampler has precedence over f cos / pdf.
 
 namespace {
@@ -225,7 +232,7 @@ private:
         to_.checks.differing_compared += differing.size();
         std::vector<Vec3d> around, here;
         for (std::size_t k : differing) {
-            here.push_back(w_[k]);
+            for (Vec3d v : of_other_lengths(source_, w_[k])) here.push_back(v);
             for (Vec3d v : neighbours(w_[k])) around.push_back(v);
         }
         std::vector<double> q(around.size()), stated(here.size());
@@ -235,8 +242,14 @@ private:
             const std::size_t k = differing[j];
             const Draw& d = draws_[at_[k]];
             const auto first = q.begin() + static_cast<std::ptrdiff_t>(8 * j), last = first + 8;
-            const double low = std::min({*std::min_element(first, last), p_[k], stated[j]});
-            const double high = std::max({*std::max_element(first, last), p_[k], stated[j]});
+            double low = std::min(*std::min_element(first, last), p_[k]);
+            double high = std::max(*std::max_element(first, last), p_[k]);
+            const std::size_t lengths = here.size() / differing.size();
+            for (const double p : std::span(stated).subspan(j * lengths, lengths)) {
+                if (!std::isfinite(p)) continue;  // an arc cosine, say, of more than 1
+                low = std::min(low, p);
+                high = std::max(high, p);
+            }
             const bool no_surface = !source_.traits.has_surface();
             const bool null_below = d.wi.z <= 0 && high == 0 && !no_surface;  // no density there
             to_.checks.null_below += null_below;

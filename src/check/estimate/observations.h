@@ -143,6 +143,10 @@ struct Observations {
 /// Eight directions within a few roundings of w: moved by 2 and by 8 ulp. The range of p over them is how well p is
 /// known in single precision.
 std::array<Vec3d, 8> neighbours(Vec3d w);
+/// The directions over which p in the sampler's own arithmetic may vary by rounding: w, and w with its length off by 2
+/// and by 8 ulp, as the rounding of its coordinates leaves it. The half vector of w_o and w at grazing angles depends
+/// on that length as on nothing else: it is divided by |w_o + w|.
+std::vector<Vec3d> of_other_lengths(const Source& source, Vec3d w);
 
 /// Adds the draws from the previous look up to this one. Completes the integrals where their points missed something: a
 /// draw with p > 2 top lies in a part of its leaf without points, and its contribution to both variances follows from

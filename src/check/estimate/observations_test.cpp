@@ -52,6 +52,19 @@ TEST(CheckDraws, EveryFaultIsCounted) {
     EXPECT_NEAR(c.pointwise.first.draw.pdf / c.pointwise.first.p, 1.01, 1e-9);
 }
 
+/// p depends on the length of w as at grazing angles, by 8000 times its deviation. Draws have the p of another length.
+TEST(CheckDraws, ALengthThatRoundingLeavesIsNoFault) {
+    FunctionSampler s;
+    s.p = [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * (1 + 4e3 * (dot(w, w) - 1)); };
+    const auto broken_by = [&](double off) {
+        s.change = [&s, off](const PrimarySample&, Draw& d) { d.pdf = s.p({}, d.wi * (1 + off)); };
+        return observed(s).checks.pointwise.times;
+    };
+    EXPECT_EQ(broken_by(1.5 * ulp), 0u);  // p off by 7e-4
+    EXPECT_EQ(broken_by(-1.5 * ulp), 0u);
+    EXPECT_GT(broken_by(20 * ulp), 1000u);  // of at most 1024 that are compared
+}
+
 TEST(CheckDraws, WeightsAreComparedWithFOverP) {
     FunctionSampler s;
     s.f_value = lambert(0.5);
