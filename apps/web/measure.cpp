@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "parts.h"
 
@@ -12,17 +11,11 @@ namespace crescent::web {
 
 namespace {
 
-/// `own`: the mean squared error of b, if it is known and a difference to b contains it. 0 if all of it is that.
-double rms_of(const std::vector<double>& a, const std::vector<double>& b, double own) {
-    double sum = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
-    return std::sqrt(std::max(0.0, sum / static_cast<double>(a.size()) - own));
-}
-
 /// RMSE of an arm over a box on several seeds.
 struct Measuring {
     explicit Measuring(const ordered_json& query)
-        : box(tile_of(requested_box(query))),
+        : area(requested_area(query)),
+          box(tile_of(area.box)),
           sampler(arm_of(query.at("arm").get<std::string>()).sampler),
           n(query.at("n").get<std::uint64_t>()),
           name(fmt::format("{}, N = {}: RMSE of {}", query.value("as", query.at("arm").get<std::string>()), n,
@@ -39,27 +32,38 @@ struct Measuring {
         for (int j = part.y0; j < part.y1; ++j)
             for (int i = part.x0; i < part.x1; ++i, ++from) {
                 y[seed][at(i, j)] = double(found.y[from]);
-                hits += found.light_hits[from];
+                const std::size_t index = static_cast<std::size_t>(j) * bench().width() + std::size_t(i);
+                if (area.surface == any_surface || bench().shapes.shape[index] == area.surface)
+                    hits += found.light_hits[from];
             }
     }
     void send() const {
-        std::vector<double> reference(pixels_of(box)), rmse;
-        for (int j = box.y0; j < box.y1; ++j)
-            for (int i = box.x0; i < box.x1; ++i)
-                reference[at(i, j)] = double(film.y[static_cast<std::size_t>(j) * bench().width() + std::size_t(i)]);
+        const AreaPixels measured(area, bench().shapes);
         const bool paired = bench().experiment.reference.kind == ReferenceKind::paired;
-        const double error = paired ? rms(film.error, film.width, {box.x0, box.y0, box.x1 - 1, box.y1 - 1}) : 0;
-        for (const std::vector<double>& one : y) rmse.push_back(rms_of(one, reference, error * error));
-        const auto pixels = static_cast<double>(pixels_of(box));
+        const double error = paired ? rms(film.error, measured) : 0;
+        const auto difference = [&](const std::vector<double>& one, std::size_t index) {
+            const auto i = static_cast<int>(index % bench().width()), j = static_cast<int>(index / bench().width());
+            return one[at(i, j)] - double(film.y[index]);
+        };
+        std::vector<double> rmse;
+        for (const std::vector<double>& one : y) {
+            const double mse = measured.mean([&](std::size_t index) {
+                const double d = difference(one, index);
+                return d * d;
+            });
+            rmse.push_back(std::sqrt(std::max(0.0, mse - error * error)));
+        }
+        const auto pixels = static_cast<double>(measured.count());
         const double directions = pixels * double(n) * double(directions_per_sample(sampler)) * double(y.size());
         ordered_json out = {{"name", name}, {"n", n}, {"median", json_number(quantile(rmse, 0.5))},
             {"q05", json_number(quantile(rmse, 0.05))}, {"q95", json_number(quantile(rmse, 0.95))},
-            {"mean", json_number(std::accumulate(reference.begin(), reference.end(), 0.0) / pixels)},
+            {"mean", json_number(measured.mean([&](std::size_t index) { return double(film.y[index]); }))},
             {"met", json_number(double(hits) / directions)}, {"rmse", ordered_json::array()}};
         for (const double x : rmse) out["rmse"].push_back(json_number(x));
         respond(out);
     }
 
+    Area area;
     TileBox box;
     std::string sampler;
     std::uint64_t n = 0;

@@ -30,8 +30,9 @@ std::string class_of(const std::string& arm) {
 }
 
 /// Merges the largest samples of a box with those of the boxes before it.
-void keep_largest(const TileBox& box, const SamplerRef& sampler, const TailPlan& plan, std::vector<float>& largest) {
-    const Box ends{box.x0, box.y0, box.x1 - 1, box.y1 - 1};
+void keep_largest(
+    const TileBox& box, int surface, const SamplerRef& sampler, const TailPlan& plan, std::vector<float>& largest) {
+    const Area ends{{box.x0, box.y0, box.x1 - 1, box.y1 - 1}, surface};
     ProgressMonitor monitor;
     std::uint64_t drawn = 0;
     const std::vector<float> here =
@@ -68,7 +69,7 @@ ordered_json metrics_of(const Slot& s) {
             out["own"][region.name] = figures(run.region(region.name)->reference_error, 2);
             continue;
         }
-        const double error = rms(b.reference.error, b.reference.width, region.box);
+        const double error = rms(b.reference.error, AreaPixels(region.area(), b.shapes));
         const double rmse = run.region(region.name)->rmse;
         if (error > most_error_share * rmse) out["unsure"].push_back(region.name);
     }
@@ -84,16 +85,17 @@ CRESCENT_EXPORT(metrics)(int index)->void {
     respond(out);
 }
 
-/// {arm, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: the tail index of the arm's samples in a box.
+/// {arm, region, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: the tail index of the arm's samples in a box,
+/// of the region's object if it has one.
 CRESCENT_EXPORT(tail)()->void {
     const ordered_json query = request();
-    const Box box = requested_box(query);
+    const Area area = requested_area(query);
     const SamplerRef sampler = sampler_of(arm_of(query.at("arm").get<std::string>()));
-    const TailPlan plan = tail_plan(box);
+    const TailPlan plan = tail_plan(pixels_of(tile_of(area.box)));
     std::vector<float> largest;
     if (plan.kept > 0)
-        for (const TileBox& part : parts_of(tile_of(box), cost_of(sampler, tail_cost * plan.n)))
-            keep_largest(part, sampler, plan, largest);
+        for (const TileBox& part : parts_of(tile_of(area.box), cost_of(sampler, tail_cost * plan.n)))
+            keep_largest(part, area.surface, sampler, plan, largest);
     send_tail(largest);
 }
 

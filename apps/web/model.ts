@@ -233,7 +233,7 @@ export class Model {
     for (const s of this.shown)
       for (const region of this.described.regions) {
         if (era !== this.era) return;
-        const tail = await this.request<Tail>("tail", { arm: s.name, box: region.box });
+        const tail = await this.request<Tail>("tail", { arm: s.name, region: region.name, box: region.box });
         if (era !== this.era) return;
         s.tails[region.name] = tail;
         this.viewer.tailed();

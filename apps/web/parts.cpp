@@ -29,6 +29,8 @@ std::vector<ShadingPoints>& points_seen(const TileBox& box) {
     const std::array key = {box.x0, box.y0, box.x1, box.y1};
     if (const auto known = b.shading_points.find(key); known != b.shading_points.end()) return known->second;
     if (b.points_last == key) return b.last;
+    b.shapes.width = b.experiment.image.width;
+    b.shapes.height = b.experiment.image.height;
     b.shapes.shape.resize(b.pixels());
     std::vector<ShadingPoints> made = shading_points_of(b.scene, box, b.shapes.shape.data());
     if (b.points_kept + pixels_of(box) > most_points) return b.points_last = key, b.last = std::move(made);
@@ -45,6 +47,11 @@ std::uint64_t pixels_of(const TileBox& b) {
 Box requested_box(const ordered_json& query) {
     const ordered_json& v = query.at("box");
     return {v.at(0).get<int>(), v.at(1).get<int>(), v.at(2).get<int>(), v.at(3).get<int>()};
+}
+
+Area requested_area(const ordered_json& query) {
+    const Region* region = bench().experiment.find_region(query.value("region", ""));
+    return {requested_box(query), region ? region->surface : any_surface};
 }
 
 TileBox tile_of(const Box& box) { return {box.x0, box.y0, box.x1 + 1, box.y1 + 1}; }
@@ -79,6 +86,10 @@ Film film_over(const TileBox& box, const SamplerRef& sampler, std::uint64_t n, s
         shading_points.pixel = of_image;
         film.invalid += bad_of(moments, shading_points.count);
     }
+    for_each_background(bench().scene, box, [&](int i, int j, const Rgb& radiance) {
+        const auto index = static_cast<std::size_t>((j - box.y0) * (box.x1 - box.x0) + i - box.x0);
+        store_background(film, index, radiance);
+    });
     return film;
 }
 
@@ -93,6 +104,7 @@ void reference_over(const TileBox& box, ReferenceFilm& film) {
     if (b.experiment.reference.kind == ReferenceKind::paired) {
         for (const ShadingPoints& points : points_seen(box))
             write_paired(b.scene, points, paired_plan(b.experiment), nullptr, film);
+        write_background(b.scene, box, film);
         return;
     }
     ensure(b.quadrature != nullptr, "the reference was prepared");

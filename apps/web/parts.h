@@ -20,6 +20,8 @@ inline constexpr std::uint64_t tail_cost = 4;
 
 /// Returns "box": [x0, y0, x1, y1] of a request, both ends inclusive.
 Box requested_box(const ordered_json& query);
+/// The same with the object of "region", if that is a region of the experiment's and has one.
+Area requested_area(const ordered_json& query);
 TileBox tile_of(const Box& box);
 std::uint64_t pixels_of(const TileBox& box);
 

@@ -36,11 +36,12 @@ References references(const Experiment& experiment, int threads, const std::stri
 
 /// Sets the tail indices of the rows of the first seed, as collect() does with studies.
 void add_tails(const RunPlan& what, const Scene& scene, const std::string& isa, ProgressMonitor& monitor,
-    const std::vector<Job>& jobs, Metrics& metrics) {
+    const std::vector<Job>& jobs, const ShapeMap& shapes, Metrics& metrics) {
     for (const Job& job : jobs) {
         if (job.seed != what.whole.seed) continue;
         for (const Region& region : what.experiment.regions) {
-            const std::optional<Tail> tail = region_tail(scene.with_s(job.s), job, region.box, isa, monitor);
+            const std::optional<Tail> tail =
+                region_tail(scene.with_s(job.s), job, AreaPixels(region.area(), shapes), isa, monitor);
             monitor.check();
             for (RunMetrics& run : metrics.runs)
                 if (run.key.seed == job.seed && run.key.arm == job.arm && run.key.s == job.s)
@@ -98,7 +99,7 @@ RunResult run_part(const Experiment& experiment, int first, int last, const Name
         Measured all =
             collect(what, std::move(prepared), std::move(results), engine, monitor, {"crescent sweep", false});
         monitor.check();
-        on_threads(engine.threads, [&] { add_tails(what, scene, engine.isa, monitor, jobs, all.metrics); });
+        on_threads(engine.threads, [&] { add_tails(what, scene, engine.isa, monitor, jobs, all.shapes, all.metrics); });
         leave_out_files(what, all.provenance);
         out = result_of(std::move(all));
     });

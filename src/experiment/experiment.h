@@ -119,11 +119,18 @@ struct ExponentControl {
     SourceLocation at;
 };
 
-/// A named box of pixels; both ends inclusive, origin bottom-left.
+/// Named pixels in which errors are measured.
 struct Region {
     std::string name;
-    Box box;
+    Box box;  // the whole image if the file gives none
     SourceLocation at;
+    bool has_box = true;      // whether the file gives it
+    std::string mesh, shape;  // whose pixels they are; "": those of any
+    int surface = any_surface;
+
+    Area area() const { return {box, surface}; }
+    /// Returns the name of the object whose pixels they are; "": all pixels of the box.
+    const std::string& object() const { return mesh.empty() ? shape : mesh; }
 };
 
 /// The deterministic quadrature, the article's Monte Carlo estimate, or two independent estimates.

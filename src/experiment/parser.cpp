@@ -382,6 +382,32 @@ void resolve_reference(ParseContext& context) {
     if (paired && plan.n == 0 && context.is_valid("reference.n")) plan.n = paired_samples;
 }
 
+void resolve_regions(ParseContext& context) {
+    const Image& image = context.e.image;
+    for (Region& region : context.e.regions) {
+        const std::string path = "regions." + region.name;
+        const bool is_valid = context.is_valid(path) && context.is_valid(path + ".box") &&
+            context.is_valid(path + ".mesh") && context.is_valid(path + ".shape");
+        region.has_box = context.e.places.contains(path + ".box");
+        if (!region.has_box) region.box = {0, 0, image.width - 1, image.height - 1};
+        if (is_valid && !region.has_box && region.object().empty())
+            context.report(path + ".box",
+                fmt::format(
+                    "missing key 'box' in [{}]: expected [x0, y0, x1, y1], or an object by 'mesh' or 'shape'", path));
+        if (is_valid && !region.mesh.empty() && !region.shape.empty())
+            context.report(path + ".shape",
+                fmt::format("{}.shape: expected 'mesh' or 'shape', found both: a region has one object", path));
+        if (const auto surface = context.e.find_surface(region.object()); surface && !region.object().empty()) {
+            region.surface = static_cast<int>(*surface);
+            const bool is_shape = *surface < context.e.shapes.size();
+            if (is_shape == region.shape.empty())
+                context.report(path + (is_shape ? ".mesh" : ".shape"),
+                    fmt::format("{0}.{1}: '{2}' is a {3}: expected {3} = \"{2}\"", path, is_shape ? "mesh" : "shape",
+                        region.object(), is_shape ? "shape" : "mesh"));
+        }
+    }
+}
+
 void resolve_runs(ParseContext& context) {
     resolve_s(context);
     resolve_reference(context);
@@ -404,6 +430,7 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
     Node root = read_toml(text, name);
     apply_overrides(context, root, overrides);
     read_tree(context, root);
+    resolve_regions(context);
     expand_renderers(context);
     check_geometry(context);
     check_names(context);

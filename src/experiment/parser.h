@@ -87,6 +87,8 @@ void check_names(ParseContext& context);
 /// Fills in what depends on other keys (s, n, the sample counts of ladder plates) and checks runs against arms and
 /// exponents.
 void resolve_runs(ParseContext& context);
+/// Gives regions without a box the whole image, and those of an object its surface.
+void resolve_regions(ParseContext& context);
 
 /// Returns why the experiment makes no run of this arm at this s (0: its own); "" if it does. Does not check the sample
 /// count.

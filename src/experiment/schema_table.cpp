@@ -222,6 +222,9 @@ Section sky() {
                 "About the y axis, counterclockwise seen from above.", to<&SkyLight::rotation>},
             {"scale", Type::number, {0, 1e9, true}, "", defaulted, "1", "Factor of the image's radiance.",
                 to<&SkyLight::scale>},
+            {"visible", Type::flag, none, "", defaulted, "true",
+                "Whether the camera sees it where no surface is; such pixels have no geometry.",
+                to<&SkyLight::visible>},
             {"content", Type::text, none, "", optional, "not checked",
                 "Hash of the image, 16 hexadecimal digits; another image is refused.", to<&SkyLight::content>}},
         .sections = {}};
@@ -304,14 +307,37 @@ Section exponent() {
         .sections = {}};
 }
 
+/// A box that is stored only where it was given: the default depends on the image.
+constexpr Slot region_box = {[](void* object, const Value& value) {
+                                 Region& region = *static_cast<Region*>(object);
+                                 assign(region.box, value);
+                                 region.has_box = true;
+                             },
+    [](const void* object, Value& value) {
+        const Region& region = *static_cast<const Region*>(object);
+        return region.has_box && fetch(region.box, value);
+    }};
+
+/// The name of an object, which none has by default.
+template <std::string Region::* member> constexpr Slot region_object = {
+    [](void* object, const Value& value) { assign(static_cast<Region*>(object)->*member, value); },
+    [](const void* object, Value& value) {
+        const std::string& name = static_cast<const Region*>(object)->*member;
+        return !name.empty() && fetch(name, value);
+    }};
+
 Section regions() {
     return {.name = "regions",
         .many = Multiplicity::named,
         .need = optional,
-        .means = "Where errors are measured.",
+        .means = "Where errors are measured: in the pixels of a box, of an object, or of an object within a box.",
         .family = in<&Experiment::regions>,
-        .keys = {{"box", Type::box, pixel_range, "pixels", required, "",
-            "[x0, y0, x1, y1], both ends inside, origin bottom-left.", to<&Region::box>}},
+        .keys = {{"box", Type::box, pixel_range, "pixels", optional, "the whole image, if an object is named",
+                     "[x0, y0, x1, y1], both ends inside, origin bottom-left.", region_box},
+            {"mesh", Type::shape, none, "", optional, "all objects", "Only pixels in which the camera sees this mesh.",
+                region_object<&Region::mesh>},
+            {"shape", Type::shape, none, "", optional, "all objects",
+                "Only pixels in which the camera sees this shape.", region_object<&Region::shape>}},
         .sections = {}};
 }
 

@@ -55,7 +55,10 @@ template <class Find> double value_of(const ParsedQuantity& q, const Metrics& me
         }
         case QuantityOf::region: {
             const Region* region = experiment.find_region(q.adapter);
-            return region ? static_cast<double>(region->box.width()) * region->box.height() : unmeasured;
+            if (!region) return unmeasured;
+            if (region->surface == any_surface) return static_cast<double>(region->box.width()) * region->box.height();
+            const RegionMetrics* m = metrics.runs.empty() ? nullptr : metrics.runs.front().region(q.adapter);
+            return m ? static_cast<double>(m->pixels) : unmeasured;
         }
         case QuantityOf::plate: {
             const auto it = plate_bytes.find(q.adapter);

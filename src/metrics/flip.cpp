@@ -204,10 +204,14 @@ std::vector<float> flip_of_all(const FlipImage& reference, const FlipImage& test
     return out;
 }
 
-double mean_of(std::span<const float> map) {
-    double sum = 0;
-    for (const float v : map) sum += static_cast<double>(v);
-    return sum / static_cast<double>(map.size());
+/// The mean of a map of the bounds of these pixels of an image of that width.
+double mean_of(std::span<const float> map, const AreaPixels& pixels, int width) {
+    const Box box = pixels.bounds();
+    const Size size{box.width(), box.height()};
+    return pixels.mean([&](std::size_t index) {
+        const int i = static_cast<int>(index) % width, j = static_cast<int>(index) / width;
+        return static_cast<double>(map[size.at(i - box.x0, j - box.y0)]);
+    });
 }
 
 double luminance_of(const FlipImage& image, std::size_t i) {
@@ -246,7 +250,9 @@ std::vector<float> hdr_flip(const FlipImage& reference, const FlipImage& test, d
 }
 
 std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, const FlipExposures& exposures,
-    std::span<const FlipImage> tests, std::span<const Box> boxes, double ppd, const std::string& isa) {
+    std::span<const FlipImage> tests, std::span<const AreaPixels> areas, double ppd, const std::string& isa) {
+    std::vector<Box> boxes;
+    for (const AreaPixels& pixels : areas) boxes.push_back(pixels.bounds());
     std::vector<std::vector<float>> maps;
     for (std::size_t t = 0; t < tests.size(); ++t)
         for (const Box& box : boxes)
@@ -256,7 +262,8 @@ std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, cons
         wanted.push_back({reference, tests[k / boxes.size()], boxes[k % boxes.size()], maps[k].data()});
     compute_flips(wanted, ppd, factors(exposures), isa);
     std::vector<std::vector<double>> out(tests.size());
-    for (std::size_t k = 0; k < maps.size(); ++k) out[k / boxes.size()].push_back(mean_of(maps[k]));
+    for (std::size_t k = 0; k < maps.size(); ++k)
+        out[k / boxes.size()].push_back(mean_of(maps[k], areas[k % boxes.size()], reference.width));
     return out;
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene_data.h"
+#include "render/area_pixels.h"
 
 namespace crescent {
 
@@ -37,11 +37,10 @@ struct FlipExposures {
 /// Returns the exposures for a reference, in stops (Andersson et al. 2021, section 3.2).
 FlipExposures flip_exposures(const FlipImage& reference);
 
-/// Returns the mean of hdr_flip() over each box, for each test picture: out[test][box]. `exposures`: those of the
-/// reference. Only the pixels of a box and
-/// those that its filters reach are evaluated.
+/// Returns the mean of hdr_flip() over each area, for each test picture: out[test][area]. `exposures`: those of the
+/// reference. Only the pixels of an area's bounds and those that its filters reach are evaluated.
 std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, const FlipExposures& exposures,
-    std::span<const FlipImage> tests, std::span<const Box> boxes, double pixels_per_degree,
+    std::span<const FlipImage> tests, std::span<const AreaPixels> areas, double pixels_per_degree,
     const std::string& isa = "");
 
 }  // namespace crescent

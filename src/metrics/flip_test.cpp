@@ -57,7 +57,12 @@ TEST(Flip, OfABoxIsThatOfTheWholePictureThere) {
     const std::vector<float> map = hdr_flip(reference, test, 30);
     const Box boxes[] = {{40, 20, 52, 29}, {0, 0, 7, 59}, {89, 59, 89, 59}};
     const FlipImage tests[] = {reference, test};
-    const auto means = mean_hdr_flips(reference, flip_exposures(reference), tests, boxes, 30);
+    ShapeMap shapes{90, 60, std::vector<std::int16_t>(90 * 60, 0)};
+    for (std::size_t index = 0; index < map.size(); index += 7) shapes.shape[index] = 1;
+    std::vector<AreaPixels> areas;
+    for (const Box& box : boxes) areas.emplace_back(Area{box}, shapes);
+    areas.emplace_back(Area{boxes[0], 1}, shapes);
+    const auto means = mean_hdr_flips(reference, flip_exposures(reference), tests, areas, 30);
     for (std::size_t k = 0; k < std::size(boxes); ++k) {
         double sum = 0;
         for (int y = boxes[k].y0; y <= boxes[k].y1; ++y)
@@ -66,6 +71,15 @@ TEST(Flip, OfABoxIsThatOfTheWholePictureThere) {
         EXPECT_EQ(means[1][k], sum / (boxes[k].width() * boxes[k].height())) << k;
         EXPECT_EQ(means[0][k], 0) << k;
     }
+    double of_surface = 0;
+    int pixels = 0;
+    for (int y = boxes[0].y0; y <= boxes[0].y1; ++y)
+        for (int x = boxes[0].x0; x <= boxes[0].x1; ++x)
+            if ((90 * y + x) % 7 == 0) {
+                of_surface += static_cast<double>(map[static_cast<std::size_t>(90 * y + x)]);
+                ++pixels;
+            }
+    EXPECT_EQ(means[1][std::size(boxes)], of_surface / pixels);
 }
 
 /// Over several tiles, with radiances that no tone map can show.

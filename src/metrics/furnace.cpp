@@ -109,20 +109,19 @@ ShadingPoints furnace_points(const Surface& surface, std::size_t count, double c
 
 // ---- Draws four million samples over the region's pixels, at most 256 per pixel, and keeps the largest of all.
 
-TailPlan tail_plan(const Box& box) {
+TailPlan tail_plan(std::uint64_t pixels) {
     constexpr std::uint64_t sample_limit = 4'000'000, most_a_pixel = 256;
-    const std::uint64_t pixels = static_cast<std::uint64_t>(box.width()) * static_cast<std::uint64_t>(box.height());
     const std::uint64_t n = std::min(std::max<std::uint64_t>(sample_limit / pixels, 1), most_a_pixel);
     const std::size_t length = tail_length(pixels * n);
     return {n, length == 0 ? 0 : length + 1};
 }
 
-std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::uint32_t seed, const Box& box,
+std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::uint32_t seed, const AreaPixels& pixels,
     const std::string& isa, ProgressMonitor& monitor) {
-    const TailPlan plan = tail_plan(box);
+    const TailPlan plan = tail_plan(pixels.count());
     if (plan.kept == 0) return std::nullopt;
     std::uint64_t drawn = 0;
-    return fit_pooled_tail(largest_samples(scene, arm, plan.n, seed, box, plan.kept, isa, monitor, drawn));
+    return fit_pooled_tail(largest_samples(scene, arm, plan.n, seed, pixels.tight(), plan.kept, isa, monitor, drawn));
 }
 
 }  // namespace crescent

@@ -41,19 +41,19 @@ Surface furnace_surface(const SceneData& scene, const Material& material, bool l
 /// Returns `count` equal shading points, each with its own random numbers. X = (cos/p) f.
 ShadingPoints furnace_points(const Surface& surface, std::size_t count, double cos_o = 1);
 
-// ---- The tail index of one arm's samples in a box of the image.
+// ---- The tail index of one arm's samples in an area of the image.
 
-/// How a box is sampled: n samples per pixel, about four million in all, of which the `kept` largest are used; kept is
-/// 0 if too few vary.
+/// How an area of the image is sampled: n samples per pixel, about four million in all, of which the `kept` largest are
+/// used; kept is 0 if too few vary.
 struct TailPlan {
     std::uint64_t n = 0;
     std::size_t kept = 0;
 };
-TailPlan tail_plan(const Box& box);
+TailPlan tail_plan(std::uint64_t pixels);
 
-/// Returns the tail index of one arm's samples X in a box, as tail_plan() defines; none if too few vary. May throw
+/// Returns the tail index of one arm's samples X in an area, as tail_plan() defines; none if too few vary. May throw
 /// Interrupted.
-std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::uint32_t seed, const Box& box,
+std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::uint32_t seed, const AreaPixels& pixels,
     const std::string& isa, ProgressMonitor& monitor);
 
 }  // namespace crescent

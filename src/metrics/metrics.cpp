@@ -56,18 +56,6 @@ const RunMetrics* RunIndex::find(const RunKey& key) const {
 
 namespace {
 
-std::size_t index_of(int i, int j, int width) {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
-}
-
-/// Returns the mean of f(pixel) over a box, row by row.
-template <class Call> double box_mean(int width, const Box& box, Call&& f) {
-    double sum = 0;
-    for (int j = box.y0; j <= box.y1; ++j)
-        for (int i = box.x0; i <= box.x1; ++i) sum += f(index_of(i, j, width));
-    return sum / (static_cast<double>(box.width()) * box.height());
-}
-
 double square(double x) { return x * x; }
 
 }  // namespace
@@ -129,17 +117,17 @@ RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& 
     for (const Region& region : experiment.regions) {
         RegionMetrics m;
         m.region = region.name;
-        m.pixels = static_cast<std::uint64_t>(region.box.width()) * static_cast<std::uint64_t>(region.box.height());
+        const AreaPixels pixels(region.area(), shapes);
+        m.pixels = pixels.count();
         facts.pixels = static_cast<double>(m.pixels);
         RegionReaders readers;
         PairedError error;
-        for (int j = region.box.y0; j <= region.box.y1; ++j)
-            for (int i = region.box.x0; i <= region.box.x1; ++i) {
-                const FilmPixel p = pixel_at(film, reference, shapes, paired, index_of(i, j, film.width));
-                error.add(p);
+        pixels.for_each([&](std::size_t index) {
+            const FilmPixel p = pixel_at(film, reference, shapes, paired, index);
+            error.add(p);
 #define CRESCENT_ADD(name, Type) readers.name.add(p, facts);
-                CRESCENT_REGION_METRICS(CRESCENT_ADD)
-            }
+            CRESCENT_REGION_METRICS(CRESCENT_ADD)
+        });
 #define CRESCENT_VALUE(name, Type) m.name = readers.name.value(facts);
         CRESCENT_REGION_METRICS(CRESCENT_VALUE)
 #undef CRESCENT_VALUE
@@ -159,24 +147,25 @@ RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& 
     return run;
 }
 
-double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box) {
-    return std::sqrt(box_mean(width, box,
+double rms_difference(const std::vector<float>& a, const std::vector<float>& b, const AreaPixels& pixels) {
+    return std::sqrt(pixels.mean(
         [&](std::size_t index) { return square(static_cast<double>(a[index]) - static_cast<double>(b[index])); }));
 }
 
-double rms(const std::vector<float>& a, int width, const Box& box) {
-    return std::sqrt(box_mean(width, box, [&](std::size_t index) { return square(static_cast<double>(a[index])); }));
+double rms(const std::vector<float>& a, const AreaPixels& pixels) {
+    return std::sqrt(pixels.mean([&](std::size_t index) { return square(static_cast<double>(a[index])); }));
 }
 
 ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, const Region& region,
-    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used) {
+    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used, const ShapeMap& shapes) {
+    const AreaPixels pixels(region.area(), shapes);
     ReferenceQuality m;
     m.s = q.s;
     m.region = region.name;
-    m.quadrature_error = rms(q.error, q.width, region.box);
+    m.quadrature_error = rms(q.error, pixels);
     if (note) {
-        m.rms_difference = rms_difference(q.y, note->y, q.width, region.box);
-        m.rms_standard_error = rms(note->error, q.width, region.box);
+        m.rms_difference = rms_difference(q.y, note->y, pixels);
+        m.rms_standard_error = rms(note->error, pixels);
         m.max_relative_rmse_change = 0;
     }
     ensure(used != ReferenceKind::paired, "a paired reference is compared with no other");
@@ -184,8 +173,8 @@ ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, cons
     ensure(quadrature || note, "the reference that the metrics use was computed");
     for (const auto& [key, film] : films) {
         if (key.s != q.s) continue;
-        const double a = rms_difference(film.y, q.y, q.width, region.box);
-        const double b = note ? rms_difference(film.y, note->y, q.width, region.box) : a;
+        const double a = rms_difference(film.y, q.y, pixels);
+        const double b = note ? rms_difference(film.y, note->y, pixels) : a;
         if (note && a > 0) m.max_relative_rmse_change = std::max(*m.max_relative_rmse_change, std::fabs(b - a) / a);
         const double error = quadrature ? *m.quadrature_error : *m.rms_standard_error, rmse = quadrature ? a : b;
         if (error > 0) m.error_share = std::max(m.error_share, error / rmse);
@@ -193,15 +182,15 @@ ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, cons
     return m;
 }
 
-std::vector<ReferenceQuality> paired_quality(
-    const std::vector<ReferenceFilm>& references, const Experiment& experiment, const std::vector<RunMetrics>& runs) {
+std::vector<ReferenceQuality> paired_quality(const std::vector<ReferenceFilm>& references, const Experiment& experiment,
+    const std::vector<RunMetrics>& runs, const ShapeMap& shapes) {
     std::vector<ReferenceQuality> out;
     for (const ReferenceFilm& film : references)
         for (const Region& region : experiment.regions) {
             ReferenceQuality& m = out.emplace_back();
             m.s = film.s;
             m.region = region.name;
-            m.paired_error = rms(film.error, film.width, region.box);
+            m.paired_error = rms(film.error, AreaPixels(region.area(), shapes));
             for (const RunMetrics& run : runs)
                 if (const RegionMetrics* measured = run.region(region.name); measured && run.key.s == film.s)
                     m.error_share = std::max(m.error_share, share_of_reference(*measured));

@@ -13,6 +13,7 @@
 #include "experiment/assertion.h"
 #include "experiment/experiment.h"
 #include "math/statistics.h"
+#include "render/area_pixels.h"
 #include "render/film.h"
 #include "render/film_metrics.h"
 
@@ -25,7 +26,7 @@ inline constexpr double not_paired = std::numeric_limits<double>::quiet_NaN(), n
 struct RegionMetrics {
     std::string region;
     CRESCENT_REGION_METRICS(CRESCENT_FIELD)
-    std::uint64_t pixels = 0;    // geometry pixels in the box count the same as misses: |box|
+    std::uint64_t pixels = 0;    // of its area: without an object, geometry pixels and misses count the same
     std::optional<Tail> tail{};  // of the samples X of the region; published seed only
     // Against a paired reference, else NaN: the estimate of the squared error of Y, which may be negative, and its
     // standard error, from that of the reference; the reference's own root mean square error.
@@ -179,18 +180,18 @@ private:
 RunMetrics measure(const Experiment& experiment, const RunKey& key, const Film& film, const ReferenceFilm& reference,
     const ShapeMap& shapes);
 
-/// Returns the root mean square of the difference of two Y planes over a box, and of one plane.
-double rms_difference(const std::vector<float>& a, const std::vector<float>& b, int width, const Box& box);
-double rms(const std::vector<float>& a, int width, const Box& box);
+/// Returns the root mean square of the difference of two Y planes over an area, and of one plane.
+double rms_difference(const std::vector<float>& a, const std::vector<float>& b, const AreaPixels& pixels);
+double rms(const std::vector<float>& a, const AreaPixels& pixels);
 
 /// Compares two references of one exponent in a region, and the effect on the RMSE of any of the films; only the
 /// quadrature's part if the article's reference is missing. `used` is the one that the metrics use.
 ReferenceQuality compare(const ReferenceFilm& quadrature, const ReferenceFilm* note, const Region& region,
-    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used);
+    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used, const ShapeMap& shapes);
 
 /// Returns the quality of a paired reference in every region at every exponent, one film for each.
-std::vector<ReferenceQuality> paired_quality(
-    const std::vector<ReferenceFilm>& references, const Experiment& experiment, const std::vector<RunMetrics>& runs);
+std::vector<ReferenceQuality> paired_quality(const std::vector<ReferenceFilm>& references, const Experiment& experiment,
+    const std::vector<RunMetrics>& runs, const ShapeMap& shapes);
 /// Returns the part that the reference's error may have in the RMSE of a region, see ReferenceQuality::error_share.
 double share_of_reference(const RegionMetrics& region);
 

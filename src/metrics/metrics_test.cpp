@@ -129,6 +129,22 @@ TEST(Metrics, ReadEveryNumberOffTheFloatFilm) {
     EXPECT_DOUBLE_EQ(run.rmse_frame, std::sqrt((4 + 4.5 * 4.5) / 8));
 }
 
+/// Of the four pixels on the left, the first and the last see the surface 1.
+TEST(Metrics, OfAnObjectAreOfThePixelsThatSeeIt) {
+    Known k;
+    k.shapes.shape = {1, 0, 0, 0, 0, 1, 1, -1};
+    k.experiment.regions[0].shape = "ball";
+    k.experiment.regions[0].surface = 1;
+    k.film.y[5] = 2;
+    const RunMetrics run = measure(k.experiment, {"a", 10, 32, 1}, k.film, k.reference, k.shapes);
+    EXPECT_EQ(run.region("left")->pixels, 2u);
+    EXPECT_DOUBLE_EQ(run.region("left")->rmse, std::sqrt((4 + 1) / 2.0));
+    EXPECT_NEAR(run.region("left")->var, 0.4, 1e-7);
+    const AreaPixels whole({{0, 0, 3, 1}, 1}, k.shapes);
+    EXPECT_EQ(whole.count(), 3u);
+    EXPECT_EQ(whole.bounds(), (Box{0, 0, 2, 1}));
+}
+
 TEST(Metrics, HorizonShareIsOfAllDrawnDirections) {
     Known k;
     k.film.directions = 2;

@@ -145,6 +145,15 @@ void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const
     }
 }
 
+void store_background(Film& film, std::size_t index, const Rgb& radiance) {
+    const double y = luminance(radiance);
+    film.r[index] = static_cast<float>(radiance[0]);
+    film.g[index] = static_cast<float>(radiance[1]);
+    film.b[index] = static_cast<float>(radiance[2]);
+    film.y[index] = static_cast<float>(y);
+    film.second_moment[index] = static_cast<float>(y * y);
+}
+
 Rgb mean_radiance(
     const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, std::uint64_t n, std::size_t i) {
     MeanRadiance::Means mean;
@@ -196,6 +205,11 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
             }
             samples += static_cast<double>(shading_points.count) * static_cast<double>(n.back());
         }
+        for_each_background(view.scene(), tiles[k], [&](int i, int j, const Rgb& radiance) {
+            const std::size_t index =
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(i);
+            for (Film& film : films) store_background(film, index, radiance);
+        });
         return samples;
     });
     for (std::size_t r = 0; r < n.size(); ++r)
@@ -276,8 +290,22 @@ private:
 
 }  // namespace
 
+namespace {
+
+/// Keeps the samples of points on one surface, n for each point.
+void keep_surface(const ShadingPoints& points, int surface, std::uint64_t n, std::vector<float>& samples) {
+    auto end = samples.begin();
+    for (std::size_t i = 0; i < points.count; ++i)
+        if (static_cast<int>(points.shape[i]) == surface)
+            end = std::copy_n(samples.begin() + static_cast<std::ptrdiff_t>(i * n), n, end);
+    samples.erase(end, samples.end());
+}
+
+}  // namespace
+
 std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
-    const Box& box, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn) {
+    const Area& area, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn) {
+    const Box& box = area.box;
     std::vector<TileBox> tiles;
     for (const TileBox& t : tiles_of(box.width(), box.height()))
         tiles.push_back({box.x0 + t.x0, box.y0 + t.y0, box.x0 + t.x1, box.y0 + t.y1});
@@ -287,6 +315,7 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
             if (monitor.stop.load(std::memory_order_relaxed)) return;
             std::vector<float> samples(shading_points.count * n);
             estimate_points(shading_points, arm, n, seed, isa, &monitor.stop, samples.data());
+            if (area.surface != any_surface) keep_surface(shading_points, area.surface, n, samples);
             largest.add(samples);
         }
     });

@@ -27,6 +27,16 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
 /// Converts sums over film.n samples to the pixels of these shading points. The caller counts film.invalid.
 void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, Film& film);
 
+/// Calls f(i, j, radiance) for each pixel of a box in which the camera sees the sky.
+template <class F> void for_each_background(const Scene& scene, const TileBox& box, F&& f) {
+    if (!scene.has_background()) return;
+    for (int j = box.y0; j < box.y1; ++j)
+        for (int i = box.x0; i < box.x1; ++i)
+            if (!scene.sees_surface(i, j)) f(i, j, scene.background(i, j));
+}
+/// Stores what the camera sees without a surface: known, so without variance and without samples.
+void store_background(Film& film, std::size_t index, const Rgb& radiance);
+
 /// Returns the mean radiance of shading point i over the n samples of `moments`.
 Rgb mean_radiance(
     const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, std::uint64_t n, std::size_t i);
@@ -34,10 +44,10 @@ Rgb mean_radiance(
 /// Returns the shape that each pixel sees.
 ShapeMap shape_map(const Scene& scene);
 
-/// Returns the `count` >= 1 largest samples X of one sampler over the geometry pixels of a box, n samples each, in
+/// Returns the `count` >= 1 largest samples X of one sampler over the geometry pixels of an area, n samples each, in
 /// descending order. `drawn` receives the number of samples.
 std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
-    const Box& box, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn);
+    const Area& area, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn);
 
 /// Runs a kernel over shading points made by the caller and returns the moments of the last sample count.
 Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,

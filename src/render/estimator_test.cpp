@@ -155,19 +155,24 @@ TEST(LargestSamples, MatchTheSamplesInDescendingOrder) {
     ProgressMonitor monitor;
     constexpr std::uint64_t n = 40;
     const Box box = {0, 0, scene.image().width - 1, scene.image().height - 1};  // many tiles
-    std::vector<float> all;
-    for (const ShadingPoints& shading_points :
-        shading_points_of(scene, {box.x0, box.y0, box.x1 + 1, box.y1 + 1}, nullptr)) {
-        std::vector<float> x(shading_points.count * n);
-        estimate_points(shading_points, "phong", n, 4, "", nullptr, x.data());
-        all.insert(all.end(), x.begin(), x.end());
+    for (const int surface : {any_surface, 0}) {
+        std::vector<float> all;
+        for (const ShadingPoints& shading_points :
+            shading_points_of(scene, {box.x0, box.y0, box.x1 + 1, box.y1 + 1}, nullptr)) {
+            std::vector<float> x(shading_points.count * n);
+            estimate_points(shading_points, "phong", n, 4, "", nullptr, x.data());
+            for (std::size_t k = 0; k < x.size(); ++k)
+                if (surface == any_surface || static_cast<int>(shading_points.shape[k / n]) == surface)
+                    all.push_back(x[k]);
+        }
+        std::sort(all.begin(), all.end(), std::greater<>());
+        std::uint64_t drawn = 0;
+        const std::vector<float> largest =
+            largest_samples(scene, "phong", n, 4, {box, surface}, 100, "", monitor, drawn);
+        EXPECT_EQ(drawn, all.size());
+        all.resize(100);
+        EXPECT_EQ(largest, all);
     }
-    std::sort(all.begin(), all.end(), std::greater<>());
-    std::uint64_t drawn = 0;
-    const std::vector<float> largest = largest_samples(scene, "phong", n, 4, box, 100, "", monitor, drawn);
-    EXPECT_EQ(drawn, all.size());
-    all.resize(100);
-    EXPECT_EQ(largest, all);
 }
 
 TEST(InstructionSets, UnknownNameSuggestsTheNearest) {

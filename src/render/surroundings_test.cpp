@@ -139,12 +139,50 @@ TEST(Surroundings, OfOneRadianceAreAFill) {
     e.fill = {};
     e.sky = test::constant_sky(0.25f, 0.3f, 0.35f);
     e.sky->scale = 2;
+    e.sky->visible = false;  // like the fill
     const Film sky = films(Scene(e), "phong", 64)[0];
     for (std::size_t k = 0; k < fill.size(); ++k) {
         EXPECT_NEAR(double(sky.r[k]), double(fill.r[k]), 1e-6 * double(fill.r[k]));
         EXPECT_NEAR(double(sky.b[k]), double(fill.b[k]), 1e-6 * double(fill.b[k]));
         EXPECT_NEAR(double(sky.var[k]), double(fill.var[k]), 1e-4 * double(fill.var[k]) + 1e-12);
     }
+}
+
+/// Where no surface is, the camera sees the texel behind the pixel's centre, in films and in the reference.
+TEST(Surroundings, AreSeenByTheCamera) {
+    Experiment e = under_sky();
+    e.sky->visible = true;
+    const Scene scene(e);
+    const Film film = films(scene, "cosine", 8)[0];
+    const ReferenceFilm reference = paired(scene, 16);
+    e.sky->visible = false;
+    const Film hidden = films(Scene(e), "cosine", 8)[0];
+    const Image& image = scene.image();
+    const SkyTable sky(*e.sky);
+    const Vec3d forward = normalize(e.camera.target - e.camera.eye), right = normalize(cross(forward, e.camera.up));
+    const double size = 2 * std::tan(e.camera.vfov_deg * pi / 360) / image.height;
+    std::size_t seen = 0;
+    for (int j = 0; j < image.height; ++j)
+        for (int i = 0; i < image.width; ++i) {
+            const auto k = static_cast<std::size_t>(j * image.width + i);
+            if (scene.primary(i, j)) {
+                EXPECT_EQ(film.y[k], hidden.y[k]);
+                continue;
+            }
+            ++seen;
+            const Vec3d d = forward +
+                size * ((i + 0.5 - 0.5 * image.width) * right + (j + 0.5 - 0.5 * image.height) * cross(right, forward));
+            const Rgb expected = sky.radiance(sky.texel_at(d));
+            EXPECT_EQ(film.r[k], static_cast<float>(expected[0]));
+            EXPECT_EQ(film.b[k], static_cast<float>(expected[2]));
+            EXPECT_EQ(film.var[k], 0);
+            EXPECT_EQ(film.largest[k], 0);
+            EXPECT_EQ(reference.y[k], film.y[k]);
+            EXPECT_EQ(reference.error[k], 0);
+            EXPECT_EQ(hidden.y[k], 0);
+        }
+    EXPECT_GT(seen, 10u);
+    EXPECT_LT(seen, film.size());
 }
 
 /// A plane below a ball, under an even sky: the ball covers (r/d)^2 cos of the projected hemisphere.

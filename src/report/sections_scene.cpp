@@ -165,12 +165,24 @@ std::vector<const LobeInfo*> lobes_of(const Experiment& e) {
 
 }  // namespace
 
+namespace {
+
+/// Returns "170 × 50 pixels", or "8,123 pixels of body".
+std::string pixels_of(const Page& page, const Region& region) {
+    if (region.object().empty()) return fmt::format("{} × {} pixels", region.box.width(), region.box.height());
+    const auto& runs = page.in.metrics.runs;
+    const RegionMetrics* measured = runs.empty() ? nullptr : runs.front().region(region.name);
+    const std::string of_object = "pixels of " + escape(region.object());
+    return measured ? fmt::format("{} {}", measured->pixels, of_object) : of_object;
+}
+
+}  // namespace
+
 Json question(const Page& page) {
     const Experiment& e = page.in.experiment;
     std::vector<Json> names, regions;
     for (const ArmPlan& arm : e.arms) names.push_back({{"name", arm.name}});
-    for (const Region& r : e.regions)
-        regions.push_back({{"name", r.name}, {"width", r.box.width()}, {"height", r.box.height()}});
+    for (const Region& r : e.regions) regions.push_back({{"name", r.name}, {"pixels", pixels_of(page, r)}});
     return {{"count_of_arms", spelled(names.size())}, {"names", separated(names)}, {"rays", ray_words(e)},
         {"bias", bias_words(e)}, {"one_region", regions.size() == 1}, {"regions", separated(regions)}};
 }

@@ -58,7 +58,8 @@ void add_tails(
     std::vector<std::optional<Tail>> tails(jobs.size() * regions.size());
     parallel_for(std::size_t{0}, tails.size(), [&](std::size_t k) {
         const Job job = with_sampler(jobs[k / regions.size()], prepared);
-        tails[k] = region_tail(prepared.scene.with_s(job.s), job, regions[k % regions.size()].box, isa, monitor);
+        tails[k] = region_tail(prepared.scene.with_s(job.s), job,
+            AreaPixels(regions[k % regions.size()].area(), prepared.shapes), isa, monitor);
     });
     for (std::size_t k = 0; k < tails.size(); ++k) {
         const Job& job = jobs[k / regions.size()];
@@ -85,11 +86,13 @@ void add_hashes(Measured& out) {
 void add_references_compared(Measured& out) {
     const Experiment& experiment = out.experiment;
     Metrics& metrics = out.metrics;
-    std::ranges::move(paired_quality(out.paired, experiment, metrics.runs), std::back_inserter(metrics.references));
+    std::ranges::move(
+        paired_quality(out.paired, experiment, metrics.runs, out.shapes), std::back_inserter(metrics.references));
     for (std::size_t e = 0; e < out.quadrature.size(); ++e)
         for (const Region& region : experiment.regions)
-            metrics.references.push_back(compare(out.quadrature[e],
-                out.monte_carlo.empty() ? nullptr : &out.monte_carlo[e], region, out.films, experiment.reference.kind));
+            metrics.references.push_back(
+                compare(out.quadrature[e], out.monte_carlo.empty() ? nullptr : &out.monte_carlo[e], region, out.films,
+                    experiment.reference.kind, out.shapes));
 }
 
 void add_view(Prepared& prepared, Measured& out) {
@@ -97,6 +100,7 @@ void add_view(Prepared& prepared, Measured& out) {
         out.metrics.shape_pixels[out.experiment.surface_name(k)] = prepared.shape_pixels[k];
     out.metrics.geometry_pixels = prepared.geometry_pixels;
     out.shapes = std::move(prepared.shapes);
+    for (Region& region : out.experiment.regions) region.box = AreaPixels(region.area(), out.shapes).bounds();
     out.outside = std::move(prepared.outside);
     out.quadrature = std::move(prepared.quadrature);
     out.monte_carlo = std::move(prepared.monte_carlo);
@@ -113,8 +117,8 @@ const Film* Measured::film(const RunKey& key) const {
 const ReferenceFilm* Measured::reference(double s) const { return reference_of(experiment, *this, s); }
 
 std::optional<Tail> region_tail(
-    const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& monitor) {
-    return region_tail(scene, SamplerRef{job.sampler, job.outside.get()}, job.seed, box, isa, monitor);
+    const Scene& scene, const Job& job, const AreaPixels& pixels, const std::string& isa, ProgressMonitor& monitor) {
+    return region_tail(scene, SamplerRef{job.sampler, job.outside.get()}, job.seed, pixels, isa, monitor);
 }
 
 void add_spreads(Measured& out) {

@@ -42,10 +42,10 @@ struct CollectOptions {
 Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> results, const Engine& engine,
     ProgressMonitor& monitor, const CollectOptions& options = {});
 
-/// Returns the tail index of one arm's samples X in a box, from at most about four million samples; none if too few
+/// Returns the tail index of one arm's samples X in an area, from at most about four million samples; none if too few
 /// vary. May throw Interrupted.
 std::optional<Tail> region_tail(
-    const Scene& scene, const Job& job, const Box& box, const std::string& isa, ProgressMonitor& monitor);
+    const Scene& scene, const Job& job, const AreaPixels& pixels, const std::string& isa, ProgressMonitor& monitor);
 
 /// Computes what follows from the metrics of all seeds: bands, ladders, and the assertions that need no plate.
 void add_spreads(Measured& measured);

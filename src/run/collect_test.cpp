@@ -87,9 +87,11 @@ TEST(Collect, TailsAreOfTheSamplesOfARegion) {
     const Experiment e = test::small_experiment();
     const Scene scene(e);
     const Job cosine{"cosine", "cosine", {4}, 24, 11, {}};
-    const auto tail = region_tail(scene, cosine, {0, 0, 3, 3}, "", monitor);
+    const ShapeMap shapes = shape_map(scene);
+    const AreaPixels pixels({{0, 0, 3, 3}}, shapes);
+    const auto tail = region_tail(scene, cosine, pixels, "", monitor);
     ASSERT_TRUE(tail);
-    const auto same = region_tail(scene, cosine, {0, 0, 3, 3}, "", monitor);
+    const auto same = region_tail(scene, cosine, pixels, "", monitor);
     EXPECT_EQ(tail->k, same->k);
     EXPECT_GT(tail->exceedances, 0u);
 }

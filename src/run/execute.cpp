@@ -62,14 +62,14 @@ Flips flips_of(const RunPlan& plan, const Prepared& prepared, const Job& job, co
     Flips out;
     out.film = found == films.end() ? films.size() - 1 : static_cast<std::size_t>(found - films.begin());
     const FlipImage test[] = {flip_image(films[out.film])};
-    std::vector<Box> boxes;
-    for (const Region& region : experiment.regions) boxes.push_back(region.box);
+    std::vector<AreaPixels> areas;
+    for (const Region& region : experiment.regions) areas.emplace_back(region.area(), prepared.shapes);
     const auto exponent = static_cast<std::size_t>(std::ranges::find(plan.exponents, job.s) - plan.exponents.begin());
     // A part of a run brings its references along, and has no exposures.
     const FlipImage image = flip_image(reference);
     const FlipExposures exposures =
         exponent < prepared.flip_exposures.size() ? prepared.flip_exposures[exponent] : flip_exposures(image);
-    out.values = mean_hdr_flips(image, exposures, test, boxes, flip_pixels_per_degree, isa)[0];
+    out.values = mean_hdr_flips(image, exposures, test, areas, flip_pixels_per_degree, isa)[0];
     return out;
 }
 
@@ -159,6 +159,18 @@ std::vector<std::uint64_t> count_in_view(const Experiment& experiment, const Sha
     return out;
 }
 
+namespace {
+
+void check_regions(const Experiment& experiment, const ShapeMap& shapes) {
+    for (const Region& region : experiment.regions)
+        if (AreaPixels(region.area(), shapes).count() == 0)
+            throw InputError(region.at,
+                fmt::format("regions.{}: the camera sees '{}' in no pixel of the {}", region.name, region.object(),
+                    region.has_box ? "box" : "image"));
+}
+
+}  // namespace
+
 Prepared look(const RunPlan& plan, const Engine& engine) {
     const Experiment& experiment = plan.experiment;
     if (engine.backend) engine.backend->check(experiment);
@@ -169,6 +181,7 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
         out.shapes = shape_map(out.scene);
     });
     out.shape_pixels = count_in_view(experiment, out.shapes);
+    check_regions(experiment, out.shapes);
     for (const std::uint64_t pixels : out.shape_pixels) out.geometry_pixels += pixels;
     out.outside = open_external(experiment, engine.timeout_s, engine.samplers);
     TiledScene view = out.scene;

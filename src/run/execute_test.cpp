@@ -56,8 +56,8 @@ TEST(Execute, MeasuresTheFilmsOfItsBackEnd) {
     EXPECT_DOUBLE_EQ(kept.metrics[1].y_mean, 2);
     EXPECT_EQ(kept.metrics[1].regions[0].rmse, measured.metrics[1].regions[0].rmse);
     const ReferenceFilm& reference = *reference_of(all.experiment, prepared, 24);
-    EXPECT_DOUBLE_EQ(
-        kept.metrics[0].regions[0].rmse, rms_difference(std::vector<float>(8 * 6, 2.0f), reference.y, 8, {0, 0, 7, 5}));
+    EXPECT_DOUBLE_EQ(kept.metrics[0].regions[0].rmse,
+        rms_difference(std::vector<float>(8 * 6, 2.0f), reference.y, AreaPixels({{0, 0, 7, 5}}, ShapeMap{8, 6, {}})));
     EXPECT_EQ(kept.samples, static_cast<double>(prepared.geometry_pixels * 16));
 }
 

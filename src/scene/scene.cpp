@@ -160,6 +160,19 @@ std::optional<Hit> Scene::primary(int i, int j) const {
     return made_->hit(shape, d, intersect(shapes()[static_cast<std::size_t>(shape)], camera().eye, d));
 }
 
+bool Scene::sees_surface(int i, int j) const {
+    const std::size_t index =
+        static_cast<std::size_t>(j) * static_cast<std::size_t>(image().width) + static_cast<std::size_t>(i);
+    if (hits_) return (*hits_)[index].shape >= 0;
+    return shapes_ ? (*shapes_)[index] >= 0 : made_->trace(i, j).has_value();
+}
+
+Rgb Scene::background(int i, int j) const {
+    if (!has_background()) return {};
+    const SkyTable& sky = *made_->around->sky;
+    return sky.radiance(sky.texel_at(made_->towards(i, j)));
+}
+
 Vec3d Scene::Made::towards(int i, int j) const {
     const Image& image = data.image;
     return normalize(forward + (i + 0.5 - 0.5 * image.width) * right + (j + 0.5 - 0.5 * image.height) * up);

@@ -45,6 +45,13 @@ public:
 
     /// Traces the ray through the centre of pixel (i, j), counted from the bottom-left.
     std::optional<Hit> primary(int i, int j) const;
+    /// Returns whether the camera sees a surface in pixel (i, j).
+    bool sees_surface(int i, int j) const;
+    /// Returns the radiance of the sky in the direction of pixel (i, j), as the camera sees it where no surface is; 0
+    /// without a visible sky.
+    Rgb background(int i, int j) const;
+    /// Returns whether there is a sky that the camera sees.
+    bool has_background() const { return made_->data.sky && made_->data.sky->visible; }
     /// Traces every pixel once and stores the hits for as long as the scene and its copies live: whole hits if the
     /// image has at most whole_hits pixels, else only the shape, 4 bytes per pixel, which primary() then tests alone.
     void remember_primaries();

@@ -175,6 +175,14 @@ struct Box {
     bool operator==(const Box&) const = default;
 };
 
+inline constexpr int any_surface = -1;
+
+/// The pixels of a box, or those of them in which the camera sees one surface.
+struct Area {
+    Box box{};
+    int surface = any_surface;  // an index of a surface, as in Hit::shape
+};
+
 struct Camera {
     Vec3d eye{}, target{}, up{};
     double vfov_deg = 0;  // vertical field of view

@@ -32,6 +32,7 @@ struct SkyLight {
     std::string file;
     double rotation = 0;                   // degrees about +y
     double scale = 1;                      // of the radiance
+    bool visible = true;                   // to the camera, where it sees no surface
     std::optional<std::string> content{};  // 16 hexadecimal digits of RgbImage::hash; none: not known
     SourceLocation at{};
     std::shared_ptr<const RgbImage> image{};  // none before the file is read

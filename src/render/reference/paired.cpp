@@ -65,12 +65,21 @@ void write_paired(const Scene& scene, const ShadingPoints& points, const PairedP
     }
 }
 
+void write_background(const Scene& scene, const TileBox& box, ReferenceFilm& film) {
+    for_each_background(scene, box, [&](int i, int j, const Rgb& radiance) {
+        const std::size_t index =
+            static_cast<std::size_t>(j) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(i);
+        store_pixel(film, index, radiance, 0);
+    });
+}
+
 std::vector<ReferenceFilm> paired_reference(
     const std::vector<TiledScene>& views, const PairedPlan& plan, ProgressMonitor& monitor) {
     std::vector<double> exponents;
     for (const TiledScene& view : views) exponents.push_back(view.scene().s());
     return by_tiles(views.at(0).scene().image(), exponents, monitor,
-        [&](std::size_t k, const TileBox&, std::vector<ReferenceFilm>& films) {
+        [&](std::size_t k, const TileBox& tile, std::vector<ReferenceFilm>& films) {
+            for (ReferenceFilm& film : films) write_background(views[0].scene(), tile, film);
             for (std::size_t e = 0; e < views.size(); ++e) {
                 const std::shared_ptr<const TiledScene::Points> groups = views[e].points(k);
                 for (const ShadingPoints& points : *groups) {

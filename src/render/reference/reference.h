@@ -137,6 +137,8 @@ struct PairedPlan {
 std::vector<ReferenceFilm> paired_reference(
     const std::vector<TiledScene>& views, const PairedPlan& plan, ProgressMonitor& monitor);
 
+/// Writes the pixels of a box that see the sky into a film of the scene's size; they have no error.
+void write_background(const Scene& scene, const TileBox& box, ReferenceFilm& film);
 /// Writes the pixels of these points into a film of the scene's size. May end early if `stop` is set.
 void write_paired(const Scene& scene, const ShadingPoints& points, const PairedPlan& plan,
     const std::atomic<bool>* stop, ReferenceFilm& film);

@@ -49,12 +49,12 @@ bool within(const Box& b, const Box& box) {
 }
 
 // Returns the RMSE of each region that is fully shown, and how much of the crop is above the scale.
-std::string reading(const Residual& r, const Box& box, double top, const Experiment& e) {
+std::string reading(const Residual& r, const Box& box, double top, const PlateInputs& in) {
     std::vector<std::string> parts;
-    for (const Region& region : e.regions) {
+    for (const Region& region : in.experiment.regions) {
         if (!within(region.box, box)) continue;
         parts.push_back(fmt::format("RMSE<sub>{}</sub> {}", escaped(region.name),
-            figure(rms_difference(r.film->y, r.reference->y, r.film->width, region.box))));
+            figure(rms_difference(r.film->y, r.reference->y, AreaPixels(region.area(), in.shapes)))));
     }
     std::vector<double> v = values(r, box);
     auto above = std::count_if(v.begin(), v.end(), [&](double x) { return x > top; });
@@ -90,7 +90,7 @@ void draw_run(Sheet& sheet, const Residual& r, const Box& box, const Fit& f, dou
     double y = slot.bottom() + 8;
     sheet.canvas.text({col.x, y, col.w, 28}, runs_label({r.key}, e), with(with_px(title_text, 22), Align::centre));
     if (r.there()) {
-        sheet.canvas.text({col.x, y + 29, col.w, 23}, reading(r, box, top, e),
+        sheet.canvas.text({col.x, y + 29, col.w, 23}, reading(r, box, top, sheet.in),
             with(with(with_px(body_text, 17), muted), Align::centre));
     }
 }

@@ -16,14 +16,6 @@ void outline_region(Sheet& sheet, const Rect& picture, const View& v, const Regi
     name_tag(sheet, picture, r, region.name, c);
 }
 
-double mean(const View& v, const Box& box) {
-    double sum = 0;
-    for (int y = box.y0; y <= box.y1; ++y) {
-        for (int x = box.x0; x <= box.x1; ++x) sum += v.y[std::size_t(y) * std::size_t(v.width) + std::size_t(x)];
-    }
-    return sum / (double(box.width()) * box.height());
-}
-
 void region_facts(Sheet& sheet, const View& v, double y) {
     const auto& regions = sheet.experiment().regions;
     Rect line{facts_slot.x, y + 18, facts_slot.w, 24};
@@ -33,16 +25,20 @@ void region_facts(Sheet& sheet, const View& v, double y) {
             break;
         }
         const Box& b = regions[i].box;
+        const AreaPixels pixels(regions[i].area(), sheet.in.shapes);
         sheet.canvas.fill({line.x, line.y + 3, 18, 18}, region_colour(i));
         sheet.canvas.text({line.x + 28, line.y, line.w - 28, 24}, "region " + escaped(regions[i].name),
             with(body_text, Weight::semibold));
         sheet.canvas.text(
             {line.x, line.y + 27, line.w, 20}, fmt::format("x {}–{}, y {}–{}", b.x0, b.x1, b.y0, b.y1), small_text);
         sheet.canvas.text({line.x, line.y + 47, line.w, 20},
-            count(std::uint64_t(b.width()) * std::uint64_t(b.height())) + " pixels", small_text);
+            count(pixels.count()) + " pixels" +
+                (regions[i].object().empty() ? "" : " of " + escaped(regions[i].object())),
+            small_text);
         if (v.width > 0) {
-            sheet.canvas.text({line.x, line.y + 67, line.w, 20},
-                "mean Y " + figure(mean(v, inside(b, v))) + " " + radiance_unit, small_text);
+            const double mean = pixels.mean([&](std::size_t index) { return double(v.y[index]); });
+            sheet.canvas.text(
+                {line.x, line.y + 67, line.w, 20}, "mean Y " + figure(mean) + " " + radiance_unit, small_text);
         }
         line.y += 104;
     }
