@@ -20,6 +20,11 @@
 
 namespace crescent::plates {
 
+double DensityScale::share(double p) const {
+    if (decades == 0) return std::min(p / top, 1.0);
+    return p > 0 ? std::clamp(1 + math::log10(p / top) / decades, 0.0, 1.0) : 0;
+}
+
 namespace {
 
 struct Frame {
@@ -57,7 +62,19 @@ void draw_rays(Canvas& c, const Frame& f, double tilt) {
     c.line(f.x, f.y, r.x, r.y, muted, 1.5, 5);
 }
 
-void draw_circles(Canvas& c, const Frame& f, double step, int rings) {
+/// The circles of a polar plot: the numbers at them, from the centre.
+std::vector<std::string> ring_labels(const DensityScale& scale, double step) {
+    std::vector<std::string> out;
+    if (scale.decades == 0)
+        for (int k = 0; k * step < scale.top * (1 + 1e-6); ++k) out.push_back(number(k * step, 3));
+    else
+        for (int k = 0; k <= scale.decades; ++k)
+            out.push_back((k > 0 ? "" : "≤ ") + number(scale.top * math::pow(10.0, k - scale.decades), 3));
+    return out;
+}
+
+void draw_circles(Canvas& c, const Frame& f, const std::vector<std::string>& labels) {
+    const int rings = static_cast<int>(labels.size()) - 1;
     Text how = with(with_px(small_text, 16), Align::centre);
     for (int k = 0; k <= rings; ++k) {
         double fraction = double(k) / rings;
@@ -66,17 +83,17 @@ void draw_circles(Canvas& c, const Frame& f, double step, int rings) {
         if (k > 0) c.polyline(arc, rule, 1);
         double x = f.x + f.radius * fraction;
         c.line(x, f.y, x, f.y + 5, muted, 1.5);
-        c.text({x - 28, f.y + 7, 56, 20}, number(k * step, 3), how);
+        c.text({x - 28, f.y + 7, 56, 20}, labels[static_cast<std::size_t>(k)], how);
     }
     c.line(f.x - f.radius, f.y, f.x + f.radius, f.y, muted, 1.5);
     if (f.radius >= 100) c.text({f.x - f.radius, f.y + 7, f.radius - 30, 20}, "p, 1/sr", with_px(small_text, 16));
 }
 
-void draw_curve(Canvas& c, const Frame& f, const PolarCurve& curve, double top) {
+void draw_curve(Canvas& c, const Frame& f, const PolarCurve& curve, const DensityScale& scale) {
     std::vector<Canvas::Point> path;
     for (int k = -360; k <= 360; ++k) {
         double a = k * 0.25 * radians_per_degree;
-        path.push_back(f.at(a, std::min(curve.value(a) / top, 1.0)));
+        path.push_back(f.at(a, scale.share(curve.value(a))));
     }
     if (curve.filled) {
         Colour wash = curve.ink;
@@ -101,13 +118,19 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot) {
     double w = plot.slot.w - plot.legend_w;
     double radius = std::min(w / 2 - 40, plot.slot.h - 30 - 28);
     if (radius < 20) return;
-    double step =
-        round_up(plot.peak / std::max(1, static_cast<int>(radius / 44)), {1, 2, 2.5, 3, 4, 5});  // a label needs 44 px
-    int rings = static_cast<int>(std::ceil(plot.peak / step - 1e-6));
+    DensityScale scale = plot.scale;
+    double step = 0;
+    if (scale.decades == 0) {
+        step = round_up(
+            scale.top / std::max(1, static_cast<int>(radius / 44)), {1, 2, 2.5, 3, 4, 5});  // a label needs 44 px
+        scale.top = step * std::ceil(scale.top / step - 1e-6);
+    } else {
+        scale.top = math::pow(10.0, std::ceil(math::log10(scale.top) - 1e-6));
+    }
     Frame f{std::floor(plot.slot.x + w / 2), plot.slot.bottom() - 30, radius};
-    draw_circles(canvas, f, step, rings);
+    draw_circles(canvas, f, ring_labels(scale, step));
     draw_rays(canvas, f, plot.tilt);
-    for (const PolarCurve& curve : plot.curves) draw_curve(canvas, f, curve, step * rings);
+    for (const PolarCurve& curve : plot.curves) draw_curve(canvas, f, curve, scale);
     if (plot.legend_w > 0) draw_legend(canvas, plot);
 }
 
@@ -274,6 +297,26 @@ void Density::query_at_a_pixel(const Experiment& e, const std::string& sampler, 
 std::vector<double> Density::at(std::span<const Vec3d> wi) const {
     std::vector<double> out(wi.size());
     ask_(wi, out);
+    return out;
+}
+
+DensityScale Density::scale() const {
+    DensityScale out{.top = peak_};
+    if (where_.empty()) return out;
+    constexpr int rings = 32, spokes = 64;
+    std::vector<Vec3d> directions;  // of equal solid angle
+    for (int k = 0; k < rings; ++k)
+        for (int m = 0; m < spokes; ++m) {
+            const double z = (k + 0.5) / rings, phi = 2 * pi * (m + 0.5) / spokes, r = std::sqrt(1 - z * z);
+            directions.push_back({r * math::cos(phi), r * math::sin(phi), z});
+        }
+    std::vector<double> positive = at(directions);
+    std::erase_if(positive, [](double p) { return !(p > 0); });
+    if (2 * positive.size() < directions.size()) return out;
+    std::ranges::sort(positive);
+    if (positive[positive.size() / 2] > peak_ / 100) return out;
+    const double low = positive[positive.size() / 20];
+    out.decades = std::clamp(static_cast<int>(std::ceil(math::log10(peak_ / low))), 2, 6);
     return out;
 }
 

@@ -16,6 +16,14 @@
 
 namespace crescent::plates {
 
+/// The scale of a density: linear from 0 to `top`, or logarithmic over decades below it.
+struct DensityScale {
+    double top = 1;   // 1/sr
+    int decades = 0;  // 0: linear
+    /// Returns the place of a density between 0 and 1.
+    double share(double p) const;
+};
+
 /// A curve of r over the polar angle.
 struct PolarCurve {
     bool filled = false;
@@ -26,7 +34,7 @@ struct PolarCurve {
 struct PolarPlot {
     Rect slot;
     double legend_w = 0;  // at the right of the slot
-    double peak = 1;      // the largest value; the outer circle is the next round one
+    DensityScale scale;   // its top is the largest value; the outer circle is the next round one
     double tilt = 0;      // of R, radians
     std::vector<PolarCurve> curves;
 };
@@ -56,6 +64,10 @@ public:
     double in_plane(double angle) const;
     /// Returns the largest density in that plane, or at the draws for a pixel.
     double peak() const { return peak_; }
+    /// Returns its scale with the peak as its top: logarithmic if most directions have a density, and most of those
+    /// less than a hundredth of the peak, as under a sky with a sun. The lobe of a surface is linear: its width is its
+    /// shape.
+    DensityScale scale() const;
     /// Returns the radians from n to R.
     double tilt() const { return tilt_; }
     /// Returns "pixel (12, 34)" for a sampler that aims at lights; else "".

@@ -40,7 +40,7 @@ Direction from_angles(double theta, double phi) {
 }
 
 // Returns the dome's pixels: the part of the sphere towards the viewer and above the surface.
-Block dome_block(const Density& p, double peak, int r, const Srgb8& nothing) {
+Block dome_block(const Density& p, const DensityScale& scale, int r, const Srgb8& nothing) {
     Block block(2 * r, static_cast<int>(std::ceil(r * (1 + up))));
     std::vector<Direction> seen;
     std::vector<std::pair<int, int>> pixels;
@@ -58,7 +58,7 @@ Block dome_block(const Density& p, double peak, int r, const Srgb8& nothing) {
     }
     const std::vector<double> density = p.at(seen);
     for (std::size_t k = 0; k < seen.size(); ++k)
-        block.set(pixels[k].first, pixels[k].second, turbo(density[k] / peak));
+        block.set(pixels[k].first, pixels[k].second, turbo(scale.share(density[k])));
     return block;
 }
 
@@ -110,6 +110,7 @@ struct Part {
     RunKey key;
     Density p;
     double peak = p.peak();
+    DensityScale scale = p.scale();
 };
 
 void draw_dome(Sheet& sheet, const Part& part, const Rect& slot) {
@@ -118,13 +119,13 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot) {
     if (r < 8) return;
     Dome dome{std::floor(slot.x + (slot.w - scale_room) / 2), slot.y + head + r, double(r)};
     sheet.canvas.paint(
-        dome_block(part.p, part.peak, r, ground_pixel(sheet.canvas.theme())), int(dome.x) - r, int(slot.y + head));
+        dome_block(part.p, part.scale, r, ground_pixel(sheet.canvas.theme())), int(dome.x) - r, int(slot.y + head));
     draw_grid(sheet.canvas, dome);
     draw_arrow(sheet.canvas, dome, {0, 0, 1}, "n", -1);
     draw_arrow(sheet.canvas, dome, {math::sin(part.p.tilt()), 0, math::cos(part.p.tilt())}, "R", 1);
     Rect bar{slot.right() - scale_room + 24, slot.y + head + 8, 22, std::floor(dome.radius * (1 + up)) - 8};
     sheet.canvas.text({bar.x, slot.y - 2, scale_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
-    colour_bar(sheet, bar, part.peak, false);
+    colour_bar(sheet, bar, part.peak, false, part.scale.decades);
 }
 
 /// Returns null if the sampler is built in, or if there is none to evaluate.
@@ -203,7 +204,7 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i) {
     PolarPlot plot;
     plot.slot = {col.x, content_band.y + 300, col.w, 240};
     plot.legend_w = narrow ? 0 : scale_room;
-    plot.peak = peak_in_plane(part);
+    plot.scale = {.top = peak_in_plane(part), .decades = part.scale.decades};
     plot.tilt = part.p.tilt();
     for (std::size_t k = 0; k < parts.size(); ++k) {
         bool lower = parts[k].peak < part.peak && parts[k].peak > 0;
@@ -221,8 +222,10 @@ void draw_rose(Sheet& sheet) {
     std::vector<Part> parts = parts_of(sheet, tilt);
     std::vector<RunKey> keys;
     for (const Part& p : parts) keys.push_back(p.key);
+    const bool logarithmic = std::ranges::any_of(parts, [](const Part& p) { return p.scale.decades > 0; });
     backend_header(sheet, "PDF ROSE",
-        "linear pdf in 1/sr / " + (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)),
+        (logarithmic ? "pdf in 1/sr / " : "linear pdf in 1/sr / ") +
+            (keys.empty() ? "no arms" : runs_label(keys, sheet.experiment(), false)),
         "nothing sampled", false);
     for (std::size_t i = 0; i < parts.size(); ++i) draw_part(sheet, parts, i);
     if (sheet.in.backend == "CPU") sheet.notes.clear();  // nothing was measured
@@ -239,8 +242,8 @@ void draw_rose(Sheet& sheet) {
     }
     for (const Part& p : parts)
         if (!p.p.where().empty())
-            sheet.notes.push_back(fmt::format(
-                "{}: {}, R at {}°", escaped(p.key.arm), p.p.where(), number(p.p.tilt() / radians_per_degree, 3)));
+            sheet.notes.push_back(fmt::format("{}: {}, R at {}°{}", escaped(p.key.arm), p.p.where(),
+                number(p.p.tilt() / radians_per_degree, 3), p.scale.decades > 0 ? ", logarithmic" : ""));
 }
 
 }  // namespace crescent::plates

@@ -292,7 +292,7 @@ void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std:
 
 // ---- The colour bar of turbo scales.
 
-void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended) {
+void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended, int decades) {
     Canvas& c = sheet.canvas;
     int w = static_cast<int>(bar.w), h = static_cast<int>(bar.h);
     Block block(w, h);
@@ -303,15 +303,20 @@ void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended) {
     c.paint(block, static_cast<int>(x0), static_cast<int>(y0));
     c.outline({x0 - 0.5, y0 - 0.5, w + 1.0, h + 1.0}, rule, 1);
     Text how = with(with(with_px(small_text, 16), bright), Vertical::middle);
-    auto tick = [&](double v, const std::string& text) {
-        double y = y0 + h * (1 - v / top);
+    auto tick = [&](double share, const std::string& text) {
+        double y = y0 + h * (1 - share);
         c.line(x0 + w, y, x0 + w + 6, y, muted, 1.5);
         c.text({x0 + w + 11, y - 12, 80, 24}, text, how);
     };
-    tick(top, (open_ended ? "≥ " : "") + number(top, 3));
+    tick(1, (open_ended ? "≥ " : "") + number(top, 3));
+    if (decades > 0) {
+        for (int k = 1; k <= decades; ++k)
+            tick(1 - double(k) / decades, (k < decades ? "" : "≤ ") + number(top * math::pow(10.0, -k), 2));
+        return;
+    }
     double step = round_up(top / std::clamp(h / 24, 1, 7));
     for (int k = 0; k * step < top; ++k) {
-        if (h * (1 - k * step / top) >= 24) tick(k * step, number(k * step, 3));
+        if (h * (1 - k * step / top) >= 24) tick(k * step / top, number(k * step, 3));
     }
 }
 

@@ -206,7 +206,8 @@ Rect on_picture(const Rect& picture, const Box& shown, const Box& box);
 void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std::string& name, const Colour& c);
 
 /// Draws a vertical turbo bar from 0 to `top` with ticks at round numbers, on `bar`; the labels are to its right.
-void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended);
+/// With `decades` it is logarithmic and begins that many powers of ten below `top`.
+void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended, int decades = 0);
 
 // The painters of the list in experiment/experiment.h; several kinds may share one.
 #define CRESCENT_PAINTER(name, painter, ...) void draw_##painter(Sheet& sheet);
