@@ -182,7 +182,10 @@ def crescent_film(program: str, experiment: Path, n: int, seed: int, out: Path) 
     the film."""
     before = os.times().children_user
     run = out.with_suffix("")
-    changes = [f"--set={key}" for key in (f"arms.both.n={n}", f"seed={seed}", "reference.n=1")]
+    keys = [f"arms.both.n={n}", f"seed={seed}", "reference.n=1"]
+    if "sky" in tomllib.loads(experiment.read_text()):
+        keys.append("sky.visible=false")  # as Mitsuba's hidden emitters
+    changes = [f"--set={key}" for key in keys]
     words = [program, "run", str(experiment), "--only", "films", "--quiet", "--out", str(run), *changes]
     subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
     (run / "films" / "both.exr").replace(out)

@@ -134,8 +134,22 @@ def mi():
     return library
 
 
-def test_a_mitsuba_scene_has_mitsubas_radiance(mi, tmp_path):
-    given = _mitsuba_scene(mi)
+def _with_z_up(mi, scene):
+    """The same scene in other coordinates."""
+    turn = mi.ScalarTransform4f().rotate([1, 0, 0], 90)
+    for part in scene.values():
+        if isinstance(part, dict) and part["type"] == "sphere":
+            part["to_world"] = turn @ mi.ScalarTransform4f().translate(part.pop("center")).scale(part.pop("radius"))
+        elif isinstance(part, dict) and "to_world" in part:
+            part["to_world"] = turn @ part["to_world"]
+    return scene
+
+
+@pytest.mark.parametrize("up", ["y", "z"])
+@pytest.mark.parametrize("hidden", [True, False])
+def test_a_mitsuba_scene_has_mitsubas_radiance(mi, tmp_path, up, hidden):
+    given = _mitsuba_scene(mi) if up == "y" else _with_z_up(mi, _mitsuba_scene(mi))
+    given["integrator"]["hide_emitters"] = hidden
     e = crescent.adapters.mitsuba.scene(given, tmp_path / "made", n=(16,))
     assert [name for name in ("cosine", "sky", "light-triangle") if f"arms.{name}" in e] == [
         "cosine",

@@ -211,7 +211,7 @@ const std::vector<QuantityWord>& quantity_words() {
             .means = "Y that a white furnace reads"},
         {"furnace_error", false, QuantityOf::furnace, "how far it is from what is expected, without sign"},
         {"shape_pixels", false, QuantityOf::shape, "pixels in which the camera sees a shape"},
-        {"region_pixels", false, QuantityOf::region, "pixels of a region's box"},
+        {"region_pixels", false, QuantityOf::region, "pixels of a region"},
         {"geometry_pixels", false, QuantityOf::none, "pixels in which the camera sees any shape"},
         {"plate_bytes", false, QuantityOf::plate, "size of a plate's PNG file"},
     };

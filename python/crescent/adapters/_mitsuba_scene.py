@@ -39,6 +39,8 @@ class _Made:
     tables: dict[str, Table] = field(default_factory=dict)
     files: dict[str, Callable[[Path], None]] = field(default_factory=dict)
     replaced: list[str] = field(default_factory=list)
+    #: A rotation of the whole scene, so that the sky's poles are on the y axis (in a scene with z up they are on z).
+    upright: Any = field(default_factory=lambda: np.eye(3))
 
     def refuse(self, what: str, instead: str) -> None:
         self.replaced.append(f"{what}; with approximate=True {instead}")
@@ -182,7 +184,21 @@ def _radiance(made: _Made, emitter: Any) -> list[float] | None:
 
 
 def _matrix(made: _Made, thing: Any) -> Any:
-    return np.array(made.mi.traverse(thing)["to_world"].matrix, float).reshape(4, 4)
+    """Where a thing is in the upright scene."""
+    to_world = np.array(made.mi.traverse(thing)["to_world"].matrix, float).reshape(4, 4)
+    to_world[:3] = made.upright @ to_world[:3]
+    return to_world
+
+
+def _turn_of_sky(made: _Made, emitters: Any) -> Any:
+    """The rotation that stands the poles of the sky upright; none if they are, or if the sky is mirrored or sheared."""
+    for emitter in emitters:
+        if _kind(emitter) == "EnvironmentMapEmitter":
+            turn = _matrix(made, emitter)[:3, :3]
+            is_rotation = np.allclose(turn @ turn.T, np.eye(3), atol=1e-4) and np.linalg.det(turn) > 0
+            if is_rotation and not np.allclose(turn[:, 1], [0, 1, 0], atol=1e-4):
+                return turn.T
+    return np.eye(3)
 
 
 def _add_mesh(made: _Made, shape: Any, name: str) -> None:
@@ -192,6 +208,9 @@ def _add_mesh(made: _Made, shape: Any, name: str) -> None:
         triangles = np.array(params["faces"], np.int64).reshape(-1, 3)
         normals = np.array(params["vertex_normals"], np.float32).reshape(-1, 3) if "vertex_normals" in params else None
         uv = np.array(params["vertex_texcoords"], np.float32).reshape(-1, 2) if "vertex_texcoords" in params else None
+        positions = positions @ made.upright.T.astype(np.float32)
+        if normals is not None:
+            normals = normals @ made.upright.T.astype(np.float32)
         if uv is not None and len(uv) != len(positions):
             uv = None
         if normals is not None and (len(normals) != len(positions) or not (np.linalg.norm(normals, axis=1) > 0).all()):
@@ -245,7 +264,7 @@ def _add_sky(made: _Made, emitter: Any) -> None:
     degrees = math.degrees(math.atan2(turn[0, 2], turn[0, 0]))
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     if not np.allclose(turn, np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]), atol=1e-4):
-        made.refuse("envmap: a rotation that is not about the y axis", "only the part about it is used")
+        made.refuse("envmap: it is mirrored or scaled", "only its rotation about the y axis is used")
     pixels = np.array(params["data"], np.float32)[..., :3]
     resolution = re.search(r"res = \"?\[(\d+), \d+\]", str(emitter))
     repeated = pixels.shape[1] - int(resolution[1]) if resolution else 0  # columns about the seam: at both ends, or the last
@@ -311,6 +330,8 @@ def mitsuba_scene(
     factor and phong, also two-sided; on meshes, bitmaps of the nearest texel, repeated, for the diffuse reflectance and
     alpha; a perspective sensor. Anything else raises :class:`UnsupportedScene`, which lists
     every such part, and nothing is written; with `approximate` each is replaced, with a warning that says by what.
+    A scene whose envmap is turned about another axis than y (z up) is turned as a whole, with its camera. The camera
+    sees the sky unless the integrator hides emitters.
     Mitsuba interpolates between the texels of an envmap; here each texel is constant. `samplers` that the scene has no
     light for are left out.
     """
@@ -324,6 +345,7 @@ def mitsuba_scene(
     elif isinstance(scene, dict):
         scene = mi.load_dict(scene)
     made = _Made(mi)
+    made.upright = _turn_of_sky(made, scene.emitters())
     image, camera = _camera(made, scene.sensors()[0])
     for k, shape in enumerate(scene.shapes()):
         name, kind = _name_of(shape, k, made.tables), _kind(shape)
@@ -343,6 +365,8 @@ def mitsuba_scene(
         raise UnsupportedScene(made.replaced)
     for line in made.replaced:
         warnings.warn(line, stacklevel=2)
+    if "sky" in made.tables and getattr(scene.integrator(), "hide_emitters", False):
+        made.tables["sky"]["visible"] = False
     there = {"sky": "sky" in made.tables, "light-triangle": any("emission" in t for t in made.tables.values())}
     arms = {f"arms.{name}": {"n": list(n)} for name in samplers if there.get(name, True)}
     target = Path(folder)

@@ -62,14 +62,18 @@ void draw_rays(Canvas& c, const Frame& f, double tilt) {
     c.line(f.x, f.y, r.x, r.y, muted, 1.5, 5);
 }
 
-/// The circles of a polar plot: the numbers at them, from the centre.
-std::vector<std::string> ring_labels(const DensityScale& scale, double step) {
+constexpr double label_room = 44;  // pixels between two labels
+
+/// The circles of a polar plot: the numbers at them, from the centre; "": there is no room for one.
+std::vector<std::string> ring_labels(const DensityScale& scale, double step, double radius) {
     std::vector<std::string> out;
-    if (scale.decades == 0)
+    if (scale.decades == 0) {
         for (int k = 0; k * step < scale.top * (1 + 1e-6); ++k) out.push_back(number(k * step, 3));
-    else
-        for (int k = 0; k <= scale.decades; ++k)
-            out.push_back((k > 0 ? "" : "≤ ") + number(scale.top * math::pow(10.0, k - scale.decades), 3));
+        return out;
+    }
+    const int stride = static_cast<int>(std::ceil(label_room * scale.decades / radius));
+    for (int k = -scale.decades; k <= 0; ++k)
+        out.push_back(k % stride == 0 ? number(scale.top * math::pow(10.0, k), 3) : "");
     return out;
 }
 
@@ -121,14 +125,13 @@ void draw_polar(Canvas& canvas, const PolarPlot& plot) {
     DensityScale scale = plot.scale;
     double step = 0;
     if (scale.decades == 0) {
-        step = round_up(
-            scale.top / std::max(1, static_cast<int>(radius / 44)), {1, 2, 2.5, 3, 4, 5});  // a label needs 44 px
+        step = round_up(scale.top / std::max(1, static_cast<int>(radius / label_room)), {1, 2, 2.5, 3, 4, 5});
         scale.top = step * std::ceil(scale.top / step - 1e-6);
     } else {
         scale.top = math::pow(10.0, std::ceil(math::log10(scale.top) - 1e-6));
     }
     Frame f{std::floor(plot.slot.x + w / 2), plot.slot.bottom() - 30, radius};
-    draw_circles(canvas, f, ring_labels(scale, step));
+    draw_circles(canvas, f, ring_labels(scale, step, radius));
     draw_rays(canvas, f, plot.tilt);
     for (const PolarCurve& curve : plot.curves) draw_curve(canvas, f, curve, scale);
     if (plot.legend_w > 0) draw_legend(canvas, plot);
