@@ -79,6 +79,9 @@ for python in "${pythons[@]}"; do
     expect 0 inside "python -m crescent check phong --wo 30 --set s=128 --allow-inconclusive --expect 'support=wrong: known'"
     expect 0 inside "crescent compare --arm old='old/*.exr' --arm new='new/*.exr' --layer n=16 --out out/compare --quiet"
     [ -s "$root/out/compare/report.html" ] || die "$python: no report of compare"
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$root/model.obj"
+    expect 0 inside "crescent import model.obj --out out/model"
+    expect 0 inside "crescent run out/model/experiment.toml --quiet --set n=1 --out out/model/run"
     expect 0 inside "crescent list"
     expect 0 inside "crescent schema --json"
     # What cannot be in a wheel is named.
