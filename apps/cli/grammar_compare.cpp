@@ -27,7 +27,8 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
     const auto file = [&](const char* flag, std::string& to, const char* means) {
         c.add_option(flag, to, means)->type_name("FILE")->check(not_empty);
     };
-    c.add_option("--baseline", f->baseline, "folder with VIEW/*.exr or VIEW-SEED.exr, in place of the suite's pattern")
+    c.add_option("--baseline", f->baseline,
+         "folder with VIEW/*.exr or VIEW-SEED.exr, or other images, in place of the suite's pattern")
         ->type_name("DIR")
         ->check(not_empty);
     c.add_option("--candidate", f->candidate, "the same of the renders to be compared")

@@ -102,6 +102,15 @@ expect 0 "$CRESCENT" compare part/moments.toml --accept --store moments --quiet
 expect 0 "$CRESCENT" compare part/moments.toml --json moments.json --out nothing --quiet
 grep -q '"moments": true' moments.json || die "the baseline was not read from its moments"
 
+# A baseline in a folder elsewhere, of the images that the suite compares; what is accepted keeps their format.
+part same changed
+mkdir part/bucket && cp part/base/* part/bucket/
+expect 1 "$CRESCENT" compare part/suite.toml --baseline part/bucket --out nothing --quiet
+expect 0 "$CRESCENT" compare part/suite.toml --baseline part/bucket --accept changed --because 'new sampler' --quiet
+[ -e part/bucket/changed/0.pfm ] && [ ! -e part/bucket/changed-0.pfm ] || die "accepted otherwise: $(ls part/bucket)"
+expect 0 "$CRESCENT" compare part/suite.toml --baseline part/bucket --out nothing --quiet
+expect 1 "$CRESCENT" compare part/suite.toml --out nothing --quiet
+
 # Folders without a file.
 mkdir -p folders/a/crown folders/b/crown
 bad() {

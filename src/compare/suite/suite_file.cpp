@@ -1,11 +1,13 @@
 // Reads a suite file: the table of its keys, and the files of each view.
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "compare/suite/suite.h"
 #include "experiment/parser.h"
@@ -230,10 +232,47 @@ void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baselin
     suite.views = std::move(views);
 }
 
-/// Returns the patterns of a folder with VIEW/*.exr or VIEW-SEED.exr.
-std::vector<std::string> patterns_in(const std::string& folder, const char* flag) {
-    if (!fs::is_directory(folder)) throw InputError({fmt::format("{} {}", flag, folder), 0, 0}, "expected a folder");
-    return {pattern_in(folder, "{view}/*.exr"), pattern_in(folder, "{view}-*.exr")};
+constexpr std::array image_endings = {".exr", ".pfm", ".hdr", ".png", ".jpg", ".jpeg", ".bmp", ".tga", ".ppm"};
+
+/// Adds the endings of images that files in a folder, or in its folders, have.
+void add_endings(const std::string& folder, std::vector<std::string>& endings) {
+    for (const char* ending : image_endings) {
+        if (std::ranges::find(endings, ending) != endings.end()) continue;
+        for (const char* file : {"{view}/*", "{view}-*"})
+            if (!FilePattern(pattern_in(folder, file + std::string(ending)), {}, true).find().empty()) {
+                endings.emplace_back(ending);
+                break;
+            }
+    }
+}
+
+/// Returns the patterns of a folder with VIEW/*.exr or VIEW-SEED.exr, and those of other endings.
+std::vector<std::string> patterns_in(const std::string& folder, const std::vector<std::string>& endings) {
+    std::vector<std::string> out;
+    for (const std::string& ending : endings)
+        for (const char* file : {"{view}/*", "{view}-*"}) out.push_back(pattern_in(folder, file + ending));
+    return out;
+}
+
+/// Replaces patterns by those of the folders that are given. Renders of the candidate come first: they are stored under
+/// the first pattern. Moments are OpenEXR.
+void use_folders(const SuiteFlags& flags, SuiteOptions& options) {
+    std::vector<std::string> endings;
+    const auto add = [&](const std::string& ending) {
+        const bool is_plain = !ending.empty() && ending.find_first_of("*?[{%") == std::string::npos;
+        if (is_plain && std::ranges::find(endings, ending) == endings.end()) endings.push_back(ending);
+    };
+    for (const auto& [flag, folder, patterns] : {std::tuple("--candidate", flags.candidate, &options.candidate),
+             std::tuple("--baseline", flags.baseline, &options.baseline)}) {
+        if (!folder.empty() && !fs::is_directory(folder))
+            throw InputError({fmt::format("{} {}", flag, folder), 0, 0}, "expected a folder");
+        if (!folder.empty()) add_endings(folder, endings);
+        else
+            for (const std::string& pattern : *patterns) add(fs::path(pattern).extension().string());
+    }
+    add(".exr");
+    if (!flags.baseline.empty()) options.baseline = patterns_in(flags.baseline, endings);
+    if (!flags.candidate.empty()) options.candidate = patterns_in(flags.candidate, endings);
 }
 
 /// Returns the folder that all paths of the patterns are in; nothing if there is none.
@@ -288,8 +327,7 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     SuiteOptions& o = suite.options;
     for (std::vector<std::string>* patterns : {&o.baseline, &o.candidate})
         for (std::string& pattern : *patterns) pattern = pattern_in(folder, pattern);
-    if (!flags.baseline.empty()) o.baseline = patterns_in(flags.baseline, "--baseline");
-    if (!flags.candidate.empty()) o.candidate = patterns_in(flags.candidate, "--candidate");
+    if (!flags.baseline.empty() || !flags.candidate.empty()) use_folders(flags, o);
     if (o.baseline.empty()) throw InputError(baseline_at, "expected suite.baseline, or --baseline DIR");
     if (o.candidate.empty() && !flags.baseline_only)
         throw InputError(candidate_at, "expected suite.candidate, or --candidate DIR");
