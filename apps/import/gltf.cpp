@@ -181,11 +181,11 @@ struct UvUse {
     bool operator==(const UvUse&) const = default;
 };
 
-class Reader {
+class GltfReader {
 public:
     Model model;
 
-    Reader(std::string_view file, std::filesystem::path folder, const ReadingScope& scope)
+    GltfReader(std::string_view file, std::filesystem::path folder, const ReadingScope& scope)
         : folder_(std::move(folder)),
           scope_(scope),
           container_(container_of(file)),
@@ -754,7 +754,7 @@ private:
 }  // namespace
 
 Model read_gltf(const std::filesystem::path& file, const ReadingScope& scope) {
-    return Reader(bytes_of(file), std::filesystem::absolute(file).parent_path(), scope).model;
+    return GltfReader(bytes_of(file), std::filesystem::absolute(file).parent_path(), scope).model;
 }
 
 }  // namespace crescent::importer

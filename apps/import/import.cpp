@@ -28,7 +28,7 @@ namespace {
 
 using namespace crescent;
 using namespace crescent::importer;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 void limit(int what, rlim_t most) {
     const rlimit value{most, most};
@@ -135,19 +135,20 @@ private:
 
 /// JSON has no numbers that are not finite: from 0 to 1e6, and 0 for NaN.
 float number_of(float x) { return x > 0 ? std::min(x, 1e6f) : 0; }
-Json numbers_of(Vec3f v) { return {number_of(v.x), number_of(v.y), number_of(v.z)}; }
-Json numbers_of(Vec3d v) { return {v.x, v.y, v.z}; }
+OrderedJson numbers_of(Vec3f v) { return {number_of(v.x), number_of(v.y), number_of(v.z)}; }
+OrderedJson numbers_of(Vec3d v) { return {v.x, v.y, v.z}; }
 
-Json materials_of(const Model& model) {
+OrderedJson materials_of(const Model& model) {
     std::vector<std::size_t> triangles(model.materials.size());
     for (const Part& part : model.parts) triangles[part.material] += part.triangles.size();
-    Json all = Json::array();
+    OrderedJson all = OrderedJson::array();
     for (std::size_t m = 0; m < model.materials.size(); ++m) {
         if (triangles[m] == 0) continue;
         const importer::Material& from = model.materials[m];
-        Json one = {{"name", from.name}, {"index", m}, {"triangles", triangles[m]}, {"rho_d", numbers_of(from.rho_d)},
-            {"emission", numbers_of(from.emission)}, {"rho_s", numbers_of(from.rho_s)},
-            {"metal", number_of(from.metal)}, {"alpha", number_of(from.alpha)}, {"two_sided", from.two_sided}};
+        OrderedJson one = {{"name", from.name}, {"index", m}, {"triangles", triangles[m]},
+            {"rho_d", numbers_of(from.rho_d)}, {"emission", numbers_of(from.emission)},
+            {"rho_s", numbers_of(from.rho_s)}, {"metal", number_of(from.metal)}, {"alpha", number_of(from.alpha)},
+            {"two_sided", from.two_sided}};
         if (!from.texture.empty()) one["texture"] = from.texture;
         if (from.colours) one["colours"] = *from.colours;
         if (from.surface) one["surface"] = *from.surface;
@@ -181,7 +182,7 @@ std::vector<const Part*> parts_of(const Model& model, const std::string& materia
 // ---- The parts of a folder.
 
 /// What descriptor 3 has of one thing.
-Json written(std::size_t& end, std::string_view bytes) {
+OrderedJson written(std::size_t& end, std::string_view bytes) {
     write_all(3, bytes);
     end += bytes.size();
     return {{"begin", end - bytes.size()}, {"size", bytes.size()}};
@@ -199,16 +200,17 @@ bool are_instances(const std::vector<Transform>& placements, const Transform& to
 }
 
 /// Rows of a matrix, the translation last in each.
-Json matrix_of(const Transform& to) {
-    Json out = Json::array();
+OrderedJson matrix_of(const Transform& to) {
+    OrderedJson out = OrderedJson::array();
     for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z})
         out.push_back({to.columns[0].*axis, to.columns[1].*axis, to.columns[2].*axis, to.origin.*axis});
     return out;
 }
 
 /// Writes a mesh for each material, of all parts without copies, and one for each part with copies.
-Json write_meshes(const Model& model, const ModelPlacement& placement, const std::string& material, std::size_t& end) {
-    Json out = Json::array();
+OrderedJson write_meshes(
+    const Model& model, const ModelPlacement& placement, const std::string& material, std::size_t& end) {
+    OrderedJson out = OrderedJson::array();
     const Transform to_scene = transform_of(placement);
     std::vector<std::vector<const Part*>> of_material(model.materials.size());
     std::vector<const Part*> copied;
@@ -220,11 +222,11 @@ Json write_meshes(const Model& model, const ModelPlacement& placement, const std
     const auto add = [&](const std::vector<const Part*>& parts, bool shared) {
         const Gatherer gathered(parts, placement, shared);
         if (gathered.result.triangles.empty()) return;
-        Json one = written(end, mesh_file(gathered.result));
+        OrderedJson one = written(end, mesh_file(gathered.result));
         one["material"] = parts[0]->material;
         if (shared) {
             one["name"] = parts[0]->names.empty() ? "" : parts[0]->names.front();
-            one["instances"] = Json::array();
+            one["instances"] = OrderedJson::array();
             for (const Transform& copy : parts[0]->placements)
                 one["instances"].push_back(matrix_of(to_scene.then(copy)));
         }
@@ -236,26 +238,26 @@ Json write_meshes(const Model& model, const ModelPlacement& placement, const std
     return out;
 }
 
-Json write_pictures(const Model& model, const Json& materials, std::size_t& end) {
+OrderedJson write_pictures(const Model& model, const OrderedJson& materials, std::size_t& end) {
     std::vector<bool> is_used(model.pictures.size());
-    for (const Json& material : materials)
+    for (const OrderedJson& material : materials)
         for (const char* key : {"colours", "surface"})
             if (material.contains(key)) is_used[material[key].get<std::size_t>()] = true;
-    Json out = Json::array();
+    OrderedJson out = OrderedJson::array();
     for (std::size_t k = 0; k < model.pictures.size(); ++k) {
-        Json one = written(end, is_used[k] ? std::string_view(model.pictures[k].bytes) : "");
+        OrderedJson one = written(end, is_used[k] ? std::string_view(model.pictures[k].bytes) : "");
         one["name"] = model.pictures[k].name;
         out.push_back(std::move(one));
     }
     return out;
 }
 
-Json camera_of(const ModelCamera& camera, const ModelPlacement& placement) {
+OrderedJson camera_of(const ModelCamera& camera, const ModelPlacement& placement) {
     return {{"eye", numbers_of(placement.placed(camera.eye))}, {"view", numbers_of(camera.view)},
         {"up", numbers_of(camera.up)}, {"vfov_deg", camera.vfov_deg}, {"aspect", camera.aspect}};
 }
 
-Json import(const std::string& file, const Json& options) {
+OrderedJson import(const std::string& file, const OrderedJson& options) {
     const bool folder = options.value("folder", false);
     const std::string material = options.value("material", "");
     Model model = read_model(file, {.whole_scene = folder || options.contains("select")});
@@ -263,7 +265,7 @@ Json import(const std::string& file, const Json& options) {
     turn_and_scale(model, options.value("up", "y") == "z", options.value("scale", 1.0));
     if (options.contains("smooth")) smooth(model, options["smooth"].get<double>());
     const ModelPlacement placement = placement_of(model);
-    Json out = {{"materials", materials_of(model)}, {"left_out", model.left_out}};
+    OrderedJson out = {{"materials", materials_of(model)}, {"left_out", model.left_out}};
     if (placement.is_needed()) {
         out["moved"] = {-placement.from.x, -placement.from.y, -placement.from.z};
         out["scaled"] = placement.by;
@@ -288,15 +290,15 @@ Json import(const std::string& file, const Json& options) {
     return out;
 }
 
-int ended_with(int code, const Json& what) {
-    std::puts(what.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
+int ended_with(int code, const OrderedJson& what) {
+    std::puts(what.dump(-1, ' ', false, OrderedJson::error_handler_t::replace).c_str());
     return code;
 }
 
 }  // namespace
 
 int main(int count, char** words) {
-    const Json options = count == 5 ? Json::parse(words[4], nullptr, false) : Json();
+    const OrderedJson options = count == 5 ? OrderedJson::parse(words[4], nullptr, false) : OrderedJson();
     if (!options.is_object()) {
         std::fputs("crescent-import: `crescent import` starts this program; see docs/scenes.md\n", stderr);
         return 2;

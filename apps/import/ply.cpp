@@ -176,11 +176,11 @@ private:
 constexpr std::pair<std::string_view, int> vertex_names[] = {{"x", 0}, {"y", 1}, {"z", 2}, {"nx", 3}, {"ny", 4},
     {"nz", 5}, {"u", 6}, {"v", 7}, {"s", 6}, {"t", 7}, {"texture_u", 6}, {"texture_v", 7}};
 
-class Reader {
+class PlyReader {
 public:
     Model model;
 
-    explicit Reader(std::string_view file)
+    explicit PlyReader(std::string_view file)
         : header_(read_header(file)), in_(file.substr(header_.size), header_.format) {
         model.materials.push_back({});
         model.parts.emplace_back();
@@ -320,6 +320,6 @@ private:
 
 }  // namespace
 
-Model read_ply(const std::filesystem::path& file) { return Reader(bytes_of(file)).model; }
+Model read_ply(const std::filesystem::path& file) { return PlyReader(bytes_of(file)).model; }
 
 }  // namespace crescent::importer
