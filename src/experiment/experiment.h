@@ -128,6 +128,7 @@ struct Region {
     std::string mesh, shape;  // whose pixels they are; "": those of any
     int surface = any_surface;
 
+    /// Returns the pixels that are measured.
     Area area() const { return {box, surface}; }
     /// Returns the name of the object whose pixels they are; "": all pixels of the box.
     const std::string& object() const { return mesh.empty() ? shape : mesh; }
