@@ -4,6 +4,7 @@
 
 #include "report/plates/charts.h"
 #include "samplers/all.h"
+#include "tests/support/skies.h"
 #include "tests/support/test_scene.h"
 
 namespace crescent::plates {
@@ -47,6 +48,23 @@ TEST(Density, LightArmsAreEvaluatedAtALitPixel) {
     e.disks.clear();
     e.lights.clear();
     EXPECT_EQ(Density(e, "light-area", e.s(), 0.5).peak(), 0);
+}
+
+TEST(Density, HasALogarithmicScaleUnderASkyWithASun) {
+    Experiment e = test::small_scene();
+    e.disks.clear();
+    e.fill = {};
+    for (const char* arm : {"phong", "ggx-d"}) EXPECT_EQ(Density(e, arm, e.s(), 0.5).scale().decades, 0) << arm;
+    e.sky = test::constant_sky(1, 1, 1);
+    EXPECT_EQ(Density(e, "sky", e.s(), 0.5).scale().decades, 0);
+    std::vector<float> texels(3 * 64 * 32, 1);
+    for (std::size_t c = 0; c < 3; ++c) texels[3 * (10 * 64 + 20) + c] = 1e5f;
+    e.sky = test::sky_of(64, std::move(texels));
+    const DensityScale scale = Density(e, "sky", e.s(), 0.5).scale();
+    EXPECT_EQ(scale.decades, 5);
+    EXPECT_DOUBLE_EQ(scale.share(scale.top), 1);
+    EXPECT_NEAR(scale.share(scale.top * 1e-2), 0.6, 1e-12);
+    EXPECT_EQ(scale.share(0), 0);
 }
 
 TEST(Density, UsesTheShapeOfTheExperimentsExponent) {
