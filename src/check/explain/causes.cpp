@@ -103,7 +103,8 @@ std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std:
     std::string times;
     if (greatest < 1.02 * least && std::fabs(least - 1) > 0.01) {
         const std::string name = number_name(least, 0.01, places[0].traits);
-        times = fmt::format(" and a constant {:.4g}{}", least, name.empty() ? "" : " = " + name);
+        const bool is_same = name.empty() || name == fmt::format("{:g}", std::round(least));
+        times = fmt::format(" and a constant {:.4g}{}", least, is_same ? "" : " = " + name);
     } else if (greatest > 1.02 * least) times = " and a constant at each w_o";
     std::string meaning = f.name == "cosine at the light" ? plane_words(-exponent) : "";
     if (meaning.empty())
@@ -211,6 +212,26 @@ Candidate candidate_of(const FittedMove& move) {
     return out;
 }
 
+/// A lobe or another entry is chosen with another probability than p says.
+Candidate candidate_of(const EntryShares& found) {
+    Candidate out{.hypothesis = found.hypothesis, .make_cause = {}, .in_part = enough_for_fit, .preference = 1};
+    out.make_cause = [shares = found.shares](const Hypothesis&) {
+        constexpr std::size_t most_said = 4;
+        std::string text;
+        for (std::size_t k = 0; k < std::min(shares.size(), most_said); ++k)
+            text += fmt::format("{}entry {} with {}, p says {:.3g}", k > 0 ? "; " : "", k,
+                with_error(shares[k].drawn, 1.96 * shares[k].error), shares[k].claimed);
+        return Cause{.factor = "shares of entries",
+            .exponent = shares[0].drawn,
+            .error = shares[0].error,
+            .text =
+                fmt::format("Within each entry draws follow p, but the entries are chosen with other probabilities: "
+                            "{}{}.",
+                    text, shares.size() > most_said ? "; and more" : "")};
+    };
+    return out;
+}
+
 /// The frame of the surface is turned about n in sample and not in pdf, or by another angle.
 Candidate candidate_of_frame(const FoundTurn& turn) {
     Candidate out{turn.hypothesis, {}, enough_for_frame};
@@ -256,6 +277,7 @@ Candidates fitted_candidates(std::span<const Place> places, std::span<const Leak
     if (!directions) {
         for (const FittedMove& move : domain_moves(places))
             if (move.is_clear()) out.push_back(candidate_of(move));
+        if (const auto shares = entry_shares(places)) out.push_back(candidate_of(*shares));
     } else if (places[0].traits.wo == Traits::WoDomain::none) {
         if (const auto turn = azimuth_hypothesis(places); turn && turn->is_clear())
             out.push_back(candidate_of(*turn, places, true));

@@ -128,6 +128,15 @@ struct FittedMove {
     }
 };
 std::vector<FittedMove> domain_moves(std::span<const Place> places);
+/// Draws are those of p with other shares of the entries of a set, in a product with other parts.
+struct EntryShares {
+    struct Share {
+        double drawn = 0, claimed = 0, error = 0;  // of the draws and of p, and of `drawn`
+    };
+    Hypothesis hypothesis;
+    std::vector<Share> shares;  // by entry
+};
+std::optional<EntryShares> entry_shares(std::span<const Place> places);
 
 // ---- Causes that the derivatives of sample(u) show without noise.
 

@@ -58,6 +58,29 @@ Hypothesis by_moving(std::string name, Move move, double change, bool at_zero) {
     return h;
 }
 
+/// The entry beside entry i taken for entry i, and the last one (first, for -1) for itself: what a search does that
+/// ends one place off, cut off at the end of its table.
+Hypothesis by_next_entry(std::size_t c, double count, int shift, bool at_zero) {
+    Hypothesis h;
+    h.name = fmt::format("entry i {} 1 taken for entry i, but for the {} (off by one)", shift > 0 ? '+' : '-',
+        shift > 0 ? "last" : "first");
+    const double end = shift > 0 ? count - 1 : 0;  // drawn for itself and for the entry before it
+    h.density = [=](const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out) {
+        const Move back = [=](std::span<double> x) { x[c] -= shift; };  // the entry that this one is drawn for
+        moved_density(s, technique, pairs, out, back, 1);
+        std::vector<double> p(pairs.size());
+        s.exact_pdf(technique, pairs, p);
+        const DomainChart& chart = *s.traits().domain;
+        Coordinates x{};
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            chart.point(pairs[i].wi, std::span(x).first(chart.domain().coordinates()));
+            if (x[c] == end) out[i] += p[i];
+            if (!at_zero && !(p[i] > 0)) out[i] = 0;
+        }
+    };
+    return h;
+}
+
 struct NamedMove {
     std::string name;
     Move move;
@@ -97,7 +120,7 @@ void add_moves(std::vector<NamedMove>& to, const DomainPart& part, std::size_t c
             for (const int shift : {1, -1})
                 to.push_back({fmt::format("entry i {} 1 taken for entry i (off by one)", shift > 0 ? '+' : '-'),
                     [=, count = static_cast<double>(part.count)](
-                        std::span<double> x) { x[c] = std::fmod(x[c] + shift + count, count); }});
+                        std::span<double> x) { x[c] = std::fmod(x[c] - shift + count, count); }});
             add_reflection(to, "the entries in reverse order", c, part.count - 1.0);
             break;
         default: break;
@@ -177,15 +200,127 @@ std::vector<Factor> domain_factors(const std::shared_ptr<const DomainChart>& cha
     return out;
 }
 
+namespace {
+
+/// Two entries of a set exchanged: those that are drawn most too often and most too rarely.
+std::optional<NamedMove> exchanged_entries(const Place& place) {
+    const DomainChart& chart = *place.traits.domain;
+    constexpr std::uint32_t most_entries = 4096;  // each is evaluated
+    constexpr double clear_deviations = 6;
+    const std::uint32_t entries = chart.domain().parts()[0].count;
+    if (chart.domain().parts().size() != 1 || entries < 2 || entries > most_entries) return {};
+    std::vector<Vec3d> w;
+    constexpr std::array<double, 2> middle = {0.5, 0.5};
+    for (std::uint32_t k = 0; k < entries; ++k) {
+        const double entry = k;
+        w.push_back(chart.direction(std::span(&entry, 1), std::span(middle).first(chart.spreads())));
+    }
+    std::vector<double> p(entries), drawn(entries), deviation(entries);
+    place.source().density(w, p);
+    for (std::uint32_t k = 0; k < entries; ++k) p[k] = chart.density(w[k], p[k]);
+    double entry = 0;
+    for (const Vec3d& d : place.w) {
+        chart.point(d, std::span(&entry, 1));
+        ++drawn[static_cast<std::size_t>(entry)];
+    }
+    for (std::uint32_t k = 0; k < entries; ++k)
+        deviation[k] = (drawn[k] - place.of * p[k]) / std::sqrt(place.of * p[k] + 1);
+    const auto [low, high] = std::ranges::minmax_element(deviation);
+    if (*low > -clear_deviations || *high < clear_deviations) return {};
+    const double a = static_cast<double>(std::min(low, high) - deviation.begin()),
+                 b = static_cast<double>(std::max(low, high) - deviation.begin());
+    return NamedMove{fmt::format("entries {} and {} exchanged", a, b), [a, b](std::span<double> x) {
+                         x[0] = x[0] == a ? b : x[0] == b ? a : x[0];
+                     }};
+}
+
+}  // namespace
+
 std::vector<Hypothesis> domain_frames(std::span<const Place> places) {
+    const Domain& domain = places[0].traits.domain->domain();
+    std::vector<NamedMove> moves = moves_of(domain);
+    if (domain.parts()[0].kind == Kind::set)
+        if (auto exchange = exchanged_entries(places[0])) moves.push_back(std::move(*exchange));
+    std::vector<Hypothesis> all;
+    for (NamedMove& move : moves)
+        all.push_back(by_moving(std::move(move.name), std::move(move.move), 1, places[0].draws_at_zero()));
+    std::size_t c = 0;
+    for (const DomainPart& part : domain.parts()) {
+        for (const int shift : {1, -1})
+            if (part.kind == Kind::set && part.count > 1)
+                all.push_back(by_next_entry(c, part.count, shift, places[0].draws_at_zero()));
+        c += part.coordinates();
+    }
     std::vector<Hypothesis> out;
-    for (NamedMove& move : moves_of(places[0].traits.domain->domain())) {
-        Hypothesis h = by_moving(std::move(move.name), std::move(move.move), 1, places[0].draws_at_zero());
+    for (Hypothesis& h : all) {
         h.place = static_cast<int>(out.size());
         score(h, places);
         if (h.helps()) out.push_back(std::move(h));
     }
     return out;
+}
+
+// ---- The shares of the entries of a set beside other parts: the chance of a lobe, of a light. If the draws within an
+// entry follow p, their density is a p there, and E[1 / (p + q)] over them is a times the integral of p / (p + q).
+
+std::optional<EntryShares> entry_shares(std::span<const Place> places) {
+    constexpr std::uint32_t most_entries = 16;
+    const DomainChart& chart = *places[0].traits.domain;
+    const Domain& domain = chart.domain();
+    std::size_t c = 0;
+    const DomainPart* set = nullptr;
+    for (const DomainPart& part : domain.parts()) {
+        if (part.kind == Kind::set) {
+            set = &part;
+            break;
+        }
+        c += part.coordinates();
+    }
+    if (!set || domain.parts().size() < 2 || set->count < 2 || set->count > most_entries) return {};
+    const Place& place = places[0];
+    const auto entry_of = [&](Vec3d w) {
+        Coordinates x{};
+        chart.point(w, std::span(x).first(domain.coordinates()));
+        return static_cast<std::size_t>(x[c]);
+    };
+    constexpr double bridge = 1 / (2 * two_pi);  // q, 1/sr: that of even directions
+    std::vector<Sums> drawn(set->count), claimed(set->count);
+    std::vector<double> counts(set->count);
+    for (std::size_t i = 0; i < place.w.size(); ++i) {
+        const std::size_t k = entry_of(place.w[i]);
+        drawn[k].add(1 / (place.p[i] + bridge));
+        ++counts[k];
+    }
+    const auto points = static_cast<std::uint32_t>(place.w.size());
+    std::vector<Vec3d> even;
+    constexpr double golden = 0.6180339887498949;
+    for (std::uint32_t i = 0; i < points; ++i)
+        even.push_back(from_chart({2 * (i + 0.5) / points, two_pi * std::fmod(i * golden, 1)}));
+    std::erase_if(even, [&](Vec3d w) { return !chart.has_point(w); });
+    std::vector<double> p(even.size());
+    place.source().density(even, p);
+    for (std::size_t i = 0; i < even.size(); ++i) claimed[entry_of(even[i])].add(p[i] / (p[i] + bridge));
+    EntryShares out;
+    std::vector<double> ratio;
+    for (std::size_t k = 0; k < set->count; ++k) {
+        const double a = drawn[k].sum / place.of, b = claimed[k].sum * 2 * two_pi / points;
+        ratio.push_back(b > 0 ? a / b : 0);
+        const double share = counts[k] / place.of;
+        out.shares.push_back({share, ratio[k] > 0 ? share / ratio[k] : 0, std::sqrt(share * (1 - share) / place.of)});
+    }
+    out.hypothesis.name = "other shares of the entries";
+    out.hypothesis.density = [ratio, c](const SamplerAdapter& s, int technique, std::span<const Pair> pairs,
+                                 std::span<double> to) {
+        s.exact_pdf(technique, pairs, to);
+        const DomainChart& own = *s.traits().domain;
+        Coordinates x{};
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            own.point(pairs[i].wi, std::span(x).first(own.domain().coordinates()));
+            to[i] *= ratio[static_cast<std::size_t>(x[c])];
+        }
+    };
+    score(out.hypothesis, places);
+    return out.hypothesis.helps() ? std::optional(out) : std::nullopt;
 }
 
 // ---- A parameter of a move, by the likelihood of the draws: a coarse search, then golden sections.
