@@ -1,3 +1,4 @@
+// The words of a command that starts the host of shaders, crescent_shader.
 #include "check/sources/shader.h"
 
 #include <fmt/format.h>
