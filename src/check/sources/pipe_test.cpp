@@ -44,7 +44,7 @@ TEST(Pipes, SayWhatAProgramDidWrongAndWhere) {
 TEST(Pipes, ThatBreakTouchNoSignal) {
     const auto before = std::signal(SIGPIPE, SIG_DFL);
     try {
-        const auto pipe = start_pipe("read hello; echo hello 2 x; read f; echo -; exec <&-; sleep 0.2");
+        const auto pipe = start_pipe("read hello; echo hello 2 x; read f; echo -; exec <&-; sleep 10");
         std::vector<PrimarySample> u(100000, {0.5, 0.5});
         std::vector<Draw> out(u.size());
         pipe->sample(0, {0, 0, 1}, u, out);
