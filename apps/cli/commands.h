@@ -123,6 +123,14 @@ struct CompareFlags {
     bool makes_renders() const { return !render.empty() || !a.empty() || !b.empty(); }
 };
 int compare(const CompareFlags& flags);
+/// "0.04" of "4 %", as TOML; another text as it is.
+inline std::string number_of_share(std::string text) {
+    if (!text.ends_with('%')) return text;
+    text.pop_back();
+    text.resize(text.find_last_not_of(' ') + 1);
+    return text + "e-2";
+}
+
 /// The keys that say how files are read, with the values of their flags ("": not given).
 inline std::array<std::pair<const char*, std::string>, 4> reading_keys(const CompareFlags& f) {
     return {{{"encoding", f.encoding}, {"space", f.space}, {"channels", f.channels}, {"channel", f.channel}}};

@@ -100,9 +100,7 @@ std::vector<CompareFlag> flags_of(const CompareFlags& f) {
     for (const auto& [key, text] : numbers)
         if (!text.empty()) out.push_back({{key}, text, true, std::string("--") + key + " " + text});
     if (!f.smallest.empty()) {
-        const bool share = f.smallest.back() == '%';
-        const std::string digits = share ? f.smallest.substr(0, f.smallest.size() - 1) + "e-2" : f.smallest;
-        out.push_back({{"smallest"}, digits, true, "--smallest " + f.smallest});
+        out.push_back({{"smallest"}, number_of_share(f.smallest), true, "--smallest " + f.smallest});
     }
     return out;
 }
@@ -146,7 +144,7 @@ void forbid_suite_flags(const CompareFlags& f) {
 
 int compare_arms(const CompareFlags& flags, const std::string& out) {
     const ComparePlan plan = plan_of(flags_of(flags), flags.file);
-    if (!flags.sarif.empty()) can_write(flags.sarif);
+    claim_outputs({{"--sarif", flags.sarif}}, {flags.file});
     Provenance provenance;
     provenance.version = crescent::version();
     provenance.commit = commit();

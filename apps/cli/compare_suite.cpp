@@ -31,9 +31,7 @@ SuiteFlags suite_flags(const CompareFlags& f) {
     add("store", f.store, false);
     for (const auto& [key, text] : reading_keys(f)) add(key, text, false);
     if (!f.smallest.empty()) {
-        const bool percent = f.smallest.back() == '%';
-        const std::string digits = percent ? f.smallest.substr(0, f.smallest.size() - 1) + "e-2" : f.smallest;
-        out.keys.push_back({{"suite", "smallest"}, digits, true, "--smallest " + f.smallest});
+        out.keys.push_back({{"suite", "smallest"}, number_of_share(f.smallest), true, "--smallest " + f.smallest});
     }
     for (const std::string& layer : f.layers) add("layer", layer, false);
     return out;
@@ -108,7 +106,7 @@ int accept_suite(const CompareFlags& flags, Progress& progress) {
 }
 
 int plan_suite(const CompareFlags& flags, const Suite& suite, Progress& progress) {
-    if (!flags.json.empty()) can_write(flags.json);
+    claim_outputs({{"--json", flags.json}}, {flags.file});
     const std::vector<ViewPlan> plans = plan_renders(suite, progress);
     progress.clear();
     if (!flags.json.empty()) write_whole(flags.json, render_plan_json(suite, plans));
@@ -136,8 +134,9 @@ int test_suite(const CompareFlags& flags) {
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);
     if (flags.plan) return plan_suite(flags, suite, progress);
-    for (const std::string& path : {flags.json, flags.junit, flags.markdown, flags.sarif})
-        if (!path.empty()) can_write(path);
+    claim_outputs(
+        {{"--json", flags.json}, {"--junit", flags.junit}, {"--markdown", flags.markdown}, {"--sarif", flags.sarif}},
+        {flags.file});
     Staging staging(flags.out.empty() ? "out/compare" : flags.out);
     const SuiteResult result =
         flags.makes_renders() ? make_renders_of(flags, suite, progress) : crescent::compare_suite(suite, progress);

@@ -59,6 +59,7 @@ int report(const ReportFlags& flags) {
             out = std::filesystem::path(flags.file).replace_extension(".html");
             if (kind.name) out.replace_filename(kind.name);
         }
+        claim_outputs({{"--out", out.string()}}, {flags.file});
         write_whole(out.string(), kind.page(json, flags.file));
         print(out.string() + "\n");
     } catch (const Json::exception& error) {

@@ -101,6 +101,14 @@ std::shared_ptr<Backend> backend(const RunFlags& flags) {
 int join(const JoinFlags& flags) {
     std::string command = "crescent join";
     for (const std::string& part : flags.parts) command += " " + shell_word(part);
+    for (const std::string& part : flags.parts) {
+        std::error_code unknown;
+        const std::filesystem::path folder =
+            std::filesystem::is_directory(part, unknown) ? part : std::filesystem::path(part).parent_path() / ".";
+        if (std::filesystem::equivalent(folder, flags.out, unknown))
+            throw InputError({fmt::format("--out {}", flags.out), 0, 0},
+                fmt::format("expected another folder than that of the part {}", part));
+    }
     const Measured joined = crescent::join(flags.parts, command);
     ProgressMonitor monitor;
     write_metrics(joined, flags.out, monitor);

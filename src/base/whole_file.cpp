@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <filesystem>
 #include <fmt/format.h>
 #include <functional>
 #include <sys/stat.h>
@@ -101,6 +102,25 @@ void write_all(int file, const std::string& path, std::string_view text) {
 
 void can_write(const std::string& path) {
     if (!is_stream(path)) UnnamedFile{path};
+}
+
+void claim_outputs(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs) {
+    std::error_code unknown;
+    const auto is_same = [&](const std::string& a, const std::string& b) {
+        return std::filesystem::equivalent(a, b, unknown) ||
+            std::filesystem::weakly_canonical(a, unknown) == std::filesystem::weakly_canonical(b, unknown);
+    };
+    for (const OutputFile& output : outputs) {
+        if (output.path.empty()) continue;
+        const std::string named = fmt::format("{} {}", output.flag, printable(output.path));
+        for (const std::string& input : inputs)
+            if (!is_stream(output.path) && std::filesystem::equivalent(output.path, input, unknown))
+                throw InputError({named, 0, 0}, "expected another file than one that is read");
+        for (const OutputFile& other : outputs)
+            if (&other < &output && !other.path.empty() && !is_stream(output.path) && is_same(output.path, other.path))
+                throw InputError({named, 0, 0}, fmt::format("expected another file than that of {}", other.flag));
+        can_write(output.path);
+    }
 }
 
 void write_whole(const std::string& path, const std::string& text) {

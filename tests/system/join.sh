@@ -62,6 +62,8 @@ grep -q wrong printed || die "the assertion that fails is not named: $(cat print
 expect 1 "$CRESCENT" join c/metrics.json whole b --out again
 same whole again
 expect 1 "$CRESCENT" join joined --out again
+expect 2 "$CRESCENT" join a/metrics.json b --out a
+grep -q 'expected another folder than that of the part a/metrics.json' said || die "a part is overwritten: $(cat said)"
 same whole again
 
 # Whole runs of fewer seeds are parts too: the number of seeds does not change the experiment.

@@ -24,6 +24,14 @@ for large in 4294967296 9223372036854775807 -1; do
     expect 2 "$CRESCENT" run "$tiny" --set "seed=$large"
     expect 2 "$CRESCENT" check cosine --seed "$large"
 done
+# An output is neither a file that is read nor another output.
+printf 'numbers = 2\n' >mine.py
+cp mine.py before.py
+expect 2 "$CRESCENT" check mine.py --wo 30 --json mine.py
+grep -q -- '--json .*mine.py: expected another file than one that is read' said || die "no reason: $(cat said)"
+cmp mine.py before.py || die "the sampler's file was written"
+expect 2 "$CRESCENT" check cosine --wo 30 --json one --junit ./one
+grep -q -- 'expected another file than that of --json' said || die "no reason: $(cat said)"
 # Nothing that the terminal would interpret.
 for command in "run absent$(printf '\033[31m\007').toml" "run $tiny --set a$(printf '\033\302\233')=3" \
     "list $(printf 'a\033\302\2332J')" "rnu$(printf '\033')" "run $tiny --isa $(printf '\033x')"; do

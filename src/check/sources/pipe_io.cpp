@@ -188,6 +188,7 @@ void PipeConnection::blocks(const Rows& rows) {
         if (ready.output) {
             if (!take_block(x, rows, rows_from(x.answered), answer_head, payload_read)) {
                 incoming_ = answer_head;
+                read_from_ = 0;
                 fault(x, x.answered, end_of_output());
             }
             last = Clock::now();

@@ -37,6 +37,8 @@ TEST(Pipes, SayWhatAProgramDidWrongAndWhere) {
     EXPECT_NE(fault_of("exit 3").find("exit code 3"), std::string::npos);
     EXPECT_NE(fault_of("echo hello 2 x; echo 1; exit 0").find("request"), std::string::npos);
     EXPECT_NE(fault_of("yes").find("got 'y'"), std::string::npos);
+    EXPECT_NE(fault_of("read h; echo hello 2 x block=f64; head -c 9 >/dev/null; exit 5").find("exit code 5"),
+        std::string::npos);
     EXPECT_NE(fault_of("tr -d '\\n' < /dev/zero").find("more than 4096 bytes"), std::string::npos);
 }
 

@@ -232,7 +232,7 @@ void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baselin
     suite.views = std::move(views);
 }
 
-constexpr std::array image_endings = {".exr", ".pfm", ".hdr", ".png", ".jpg", ".jpeg", ".bmp", ".tga", ".ppm"};
+constexpr std::array image_endings = {".exr", ".pfm", ".hdr", ".png", ".jpg", ".jpeg", ".bmp", ".tga", ".ppm", ".npy"};
 
 /// Adds the endings of images that files in a folder, or in its folders, have.
 void add_endings(const std::string& folder, std::vector<std::string>& endings) {
