@@ -106,6 +106,12 @@ private:
 /// The difference of two means, or of a mean and a number, with its error.
 struct MeanDifference {
     double value = 0, error = 0, expected = 0;
+    double spread = 0;  // standard deviation of one value
+    /// What sizes are relative to: the expected value, or the spread if 0 is expected.
+    double unit() const { return std::max(expected != 0 ? std::fabs(expected) : spread, 1e-300); }
+    const char* unit_words() const { return expected != 0 ? "" : " of the standard deviation of a value"; }
+    /// Differences up to this are rounding.
+    double rounding() const { return 64 * ulp * std::max(std::fabs(expected), std::fabs(expected + value)); }
     double errors() const { return error > 0 ? value / error : value == 0 ? 0 : std::copysign(1e300, value); }
 };
 
@@ -164,9 +170,10 @@ private:
     MeanDifference difference(const NumberDraws& a, const NumberDraws* b, int channel) const {
         const auto c = static_cast<std::size_t>(channel);
         const Moments& x = a.channels[c];
-        if (!b) return {x.mean() - (*expected_.value)[c], x.error(), (*expected_.value)[c]};
+        const double spread = std::sqrt(x.variance());
+        if (!b) return {x.mean() - (*expected_.value)[c], x.error(), (*expected_.value)[c], spread};
         const Moments& y = b->channels[c];
-        return {x.mean() - y.mean(), math::hypot(x.error(), y.error()), y.mean()};
+        return {x.mean() - y.mean(), math::hypot(x.error(), y.error()), y.mean(), spread};
     }
     static bool settled(const NumberDraws& draws, int channel) {
         return draws.channels[static_cast<std::size_t>(channel)].is_settled();
@@ -196,8 +203,7 @@ private:
                 decision_.state = State::inconclusive;
                 continue;
             }
-            const double rounding = 64 * ulp * std::max(std::fabs(d.expected), std::fabs(d.expected + d.value));
-            if (std::fabs(d.value) <= rounding) continue;
+            if (std::fabs(d.value) <= d.rounding()) continue;
             if (normal_two_sided(d.errors()) > screening / channels()) continue;
             if (!is_confirmed(k, c, d)) continue;
             ++confirmed_;
@@ -207,10 +213,10 @@ private:
         if (decision_.state == State::right && decision_.hidden > most_bias) decision_.state = State::inconclusive;
     }
 
-    /// A bias of this size, relative to the expected value, passes both stages with a probability of 90 %.
+    /// A bias of this relative size passes both stages with a probability of 90 %.
     static double size_of(const MeanDifference& d) {
         constexpr double errors = 3.09 + 1.3;  // of the screening level, and of 90 %
-        return errors * d.error / std::max(std::fabs(d.expected), 1e-300);
+        return (errors * d.error + d.rounding()) / d.unit();
     }
 
     bool is_confirmed(std::size_t k, int channel, const MeanDifference& first) {
@@ -294,7 +300,7 @@ private:
         }
         const std::string channel = channels() == 3 ? fmt::format(" in channel {}", d.channel + 1) : "";
         const std::string mean = with_error(x.mean(), half_width_95 * x.error());
-        const double bias = d.difference.value / std::max(std::fabs(d.difference.expected), 1e-300);
+        const double bias = d.difference.value / d.difference.unit();
         v.evidence["bias"] = bias;
         if (d.state == State::inconclusive && heavy()) {
             v.message = fmt::format(
@@ -309,16 +315,17 @@ private:
         if (d.state == State::wrong) {
             v.size = std::fabs(bias);
             v.message += fmt::format(" That is {} too {}.",
-                percent_with_error(std::fabs(bias),
-                    half_width_95 * d.difference.error / std::max(std::fabs(d.difference.expected), 1e-300)),
+                percent_with_error(std::fabs(bias), half_width_95 * d.difference.error / d.difference.unit()) +
+                    d.difference.unit_words(),
                 bias > 0 ? "large" : "small");
         } else if (d.state == State::right) {
             v.hidden["bias"] = d.hidden;
             v.evidence["would_have_found"] = {{"bias", d.hidden}};
-            v.message += fmt::format(" A bias of {:.2g} % would have been found.", 100 * d.hidden);
+            v.message +=
+                fmt::format(" A bias of {:.2g} %{} would have been found.", 100 * d.hidden, d.difference.unit_words());
         } else {
-            v.message += fmt::format(" Only a bias of {:.2g} % would have been found. Right requires at most {:g} %.",
-                100 * d.hidden, 100 * most_bias);
+            v.message += fmt::format(" Only a bias of {:.2g} %{} would have been found. Right requires at most {:g} %.",
+                100 * d.hidden, d.difference.unit_words(), 100 * most_bias);
             v.next = {NextStep::Kind::more_draws, std::max(sqr(d.hidden / (most_bias)), 4.0)};
         }
     }

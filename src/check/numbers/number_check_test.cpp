@@ -67,6 +67,24 @@ TEST(NumberCheck, FindsTheStatedBias) {
     EXPECT_GE(found, 15);
 }
 
+/// Of an estimator of 0, sizes are relative to the spread of its values, which is 1 / sqrt(12) here.
+TEST(NumberCheck, OfZeroIsRelativeToTheSpread) {
+    const auto centred = [](double u) { return u - 0.5; };
+    const auto shifted = [](double u) { return u - 0.45; };
+    const CheckResult right = checked(centred, 0), wrong = checked(shifted, 0);
+    EXPECT_EQ(right.state, State::right);
+    EXPECT_LE(std::ranges::find(right.verdicts, "mean", &Verdict::name)->hidden.at("bias"), 0.01);
+    const auto mean = std::ranges::find(wrong.verdicts, "mean", &Verdict::name);
+    EXPECT_EQ(mean->state, State::wrong);
+    EXPECT_NEAR(mean->size, 0.05 * std::sqrt(12), 0.01);
+    EXPECT_NE(mean->message.find("of the standard deviation of a value"), std::string::npos) << mean->message;
+}
+
+TEST(NumberCheck, StatesTheRoundingOfAConstant) {
+    const CheckResult result = checked([](double) { return 3.0; }, 3.00001);
+    EXPECT_GT(std::ranges::find(result.verdicts, "mean", &Verdict::name)->hidden.at("bias"), 3.3e-6);
+}
+
 TEST(NumberCheck, GivesNoMeanForAHeavyTail) {
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
         const CheckResult result = checked(heavy, 1, seed);

@@ -467,6 +467,9 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
         out.tolerated = view.tolerance && out.exact_difference && out.exact_difference->beyond == 0;
         out.mean_p = out.means->identical || out.tolerated ? 1 : 0;
     } else {
+        if (view.tolerance)
+            out.notes.push_back(
+                "The tolerance is not used: it is for views without noise, with one render on each side.");
         if (!out.means->identical && out.noise != NoiseDemand::ignore) {
             out.outliers = view_outliers(stats, suite.options.alpha);
             if (suite.outliers(view) == OutlierDemand::ignore) out.outliers.p = std::nan("");
