@@ -103,8 +103,8 @@ int join(const JoinFlags& flags) {
     for (const std::string& part : flags.parts) command += " " + shell_word(part);
     for (const std::string& part : flags.parts) {
         std::error_code unknown;
-        const std::filesystem::path folder =
-            std::filesystem::is_directory(part, unknown) ? part : std::filesystem::path(part).parent_path() / ".";
+        std::filesystem::path folder = part;
+        if (!std::filesystem::is_directory(folder, unknown)) folder = folder.parent_path() / ".";
         if (std::filesystem::equivalent(folder, flags.out, unknown))
             throw InputError({fmt::format("--out {}", flags.out), 0, 0},
                 fmt::format("expected another folder than that of the part {}", part));
