@@ -91,8 +91,7 @@ TEST(DomainCauses, NameOtherChancesOfLobes) {
             },
         .pdf = density,
         .parallel = true});
-    EXPECT_NE(cause.find("the entries are chosen with other probabilities: entry 0 with "), std::string::npos)
-        << cause;
+    EXPECT_NE(cause.find("the entries are chosen with other probabilities: entry 0 with "), std::string::npos) << cause;
 }
 
 /// A lens without the root of its radius, with a distance.
