@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Against = Literal["n", "time", "rays"]
 
 #: metric ~ cost^power for independent samples of finite variance
-_POWER = {"rmse": -0.5, "rmse_frame": -0.5, "var": -1.0, "mse": -1.0, "rel_mse": -1.0, "relmse": -1.0}
+_POWER = {"rmse": -0.5, "rmse_frame": -0.5, "var": -1.0, "mse": -1.0, "relmse": -1.0}
 
 
 def checked(against: str) -> Against:

@@ -95,6 +95,11 @@ class _Sheet:
         return self.figure
 
 
+def lines_of(text: str, width: float, size: float) -> list[str]:
+    """A text as lines of so many mm at a size in points."""
+    return _Sheet(width).lines(text, width, size)
+
+
 def _boxes(r: Measured, insets: Any, size: tuple[int, int]) -> list[tuple[int, int, int, int]]:
     """Boxes [x0, y0, x1, y1) of boxes, or of names of regions; by default of every region."""
     width, height = size

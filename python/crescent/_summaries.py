@@ -9,7 +9,8 @@ import numpy as np
 
 from ._cost import seconds_a_sample
 from ._intervals import Values, half_width, rounded
-from ._metric_names import ALIASES
+from ._metric_names import listed
+from ._values import arms_of
 
 if TYPE_CHECKING:
     from .experiments import Measured
@@ -49,9 +50,14 @@ def _rows(result: Measured, metric: str, arm: str, n: int, region: str, s: float
 def _values(result: Measured, metric: str, arm: str, n: int, region: str, s: float) -> Values:
     rows = _rows(result, metric, arm, n, region, s)
     if not rows:
-        there = sorted({(r["metric"], r["region"]) for r in result.records() if r["arm"] == arm and r["n"] == n})
+        arms_of(result, [arm] if result.records() else None)
+        of_arm = [r for r in result.records() if r["arm"] == arm]
         what = f"{metric} of {region or 'the frame'}, {arm} n={n} s={s:g}"
-        raise KeyError(f"no {what}: there are {there or 'no metrics of this arm at this n'}")
+        if of_arm and not any(r["n"] == n and r["s"] == s for r in of_arm):
+            there = ", ".join(sorted({f"n={r['n']} s={r['s']:g}" for r in of_arm}))
+        else:
+            there = listed(of_arm, metric, region)
+        raise KeyError(f"no {what}: there are {there}")
     return np.array([r["value"] for r in rows], float)
 
 
@@ -68,7 +74,6 @@ def _flip(result: Measured, arm: str, n: int, region: str, s: float) -> Values:
 
 
 def summary(result: Measured, metric: str, arm: str, n: int, region: str, s: float) -> Summary:
-    metric = ALIASES.get(metric, metric)
     tail = _rows(result, "tail_k", arm, n, region, s)
     heavy = bool(tail) and float(tail[0]["value"]) >= 0.5 and metric not in ("tail_k", "flip")
     if metric == "flip" and not _rows(result, "flip", arm, n, region, s):

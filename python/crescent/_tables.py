@@ -9,7 +9,7 @@ import numpy as np
 
 from ._cost import Costs, at_cost, budget_of
 from ._intervals import Values, half_width, rounded
-from ._metric_names import ALIASES, NAMES, UNITS
+from ._metric_names import NAMES, UNITS
 from ._values import arms_of, best_in, heavy_arms, only_region, values_of
 
 if TYPE_CHECKING:
@@ -46,7 +46,6 @@ def latex(
     budgets: Sequence[float] | None = None, arms: Sequence[str] | None = None, labels: Mapping[str, str] | None = None,
 ) -> str:  # fmt: skip
     """See :meth:`crescent.Measured.to_latex`."""
-    metric = ALIASES.get(metric, metric)
     region = only_region(result, metric, region)
     by_arm = values_of(result, metric, region, s)
     costs = Costs(result, against, s)

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _crescent
 from ._cost import Costs, at_cost, budget_of, seconds_a_sample
 from ._intervals import best_of, half_width, rounded
-from ._metric_names import ALIASES, LARGEST_IS_BEST, RANKED
+from ._metric_names import LARGEST_IS_BEST, RANKED, listed
 
 if TYPE_CHECKING:
     from .experiments import Film, Measured
@@ -24,14 +25,15 @@ def arms_of(r: Measured, arms: Sequence[str] | None) -> list[str]:
     known = known or list(dict.fromkeys(row["arm"] for row in r.records()))
     for arm in arms or ():
         if arm not in known:
-            raise KeyError(f"no arm {arm!r}: there are {', '.join(known)}")
+            near = _crescent.nearest(str(arm), known)
+            hint = f"; did you mean '{near}'?" if near else ""
+            raise KeyError(f"no arm {arm!r}: there are {', '.join(known)}{hint}")
     return list(arms) if arms else known
 
 
 def values_of(r: Measured, metric: str, region: str, s: float | None) -> dict[str, dict[int, list[float]]]:
     """By arm and N, the metric's values over seeds. KeyError where the result has no such metric or region."""
     at = r.s if s is None else s
-    metric = ALIASES.get(metric, metric)
     if metric in LARGEST_IS_BEST:
         of_arms = values_of(r, "var", region, s)
         cost = {arm: 1.0 if metric == "efficiency_n" else seconds_a_sample(r, arm, at) for arm in of_arms}
@@ -46,8 +48,8 @@ def values_of(r: Measured, metric: str, region: str, s: float | None) -> dict[st
         if row["metric"] == metric and row["region"] == region and row["s"] == at and row["value"] is not None:
             out.setdefault(row["arm"], {}).setdefault(row["n"], []).append(row["value"])
     if not out:
-        there = sorted({f"{row['metric']} of {row['region']}" if row["region"] else row["metric"] for row in rows})
-        raise KeyError(f"no {metric} of {region or 'the frame'} at s = {at:g}: there are {', '.join(there)}")
+        there = listed(rows, metric, region)
+        raise KeyError(f"no {metric} of {region or 'the frame'} at s = {at:g}: there are {there}")
     return out
 
 
@@ -55,7 +57,7 @@ def only_region(r: Measured, metric: str, region: str | None) -> str:
     """`region`, or the first of the experiment's where the metric has regions and none is named."""
     if region is not None:
         return region
-    metric = "var" if metric in LARGEST_IS_BEST else ALIASES.get(metric, metric)
+    metric = "var" if metric in LARGEST_IS_BEST else metric
     return next((row["region"] for row in r.records() if row["metric"] == metric), "")
 
 
@@ -99,7 +101,6 @@ def compared_at(
     budget: float | None,
 ) -> Compared:  # fmt: skip
     """`n` with against="n", and `budget` else: by default the largest that every arm has."""
-    metric = ALIASES.get(metric, metric)
     costs = Costs(r, against, r.s if s is None else s)
     if against == "n" and budget is not None or against != "n" and n is not None:
         raise TypeError(f"against is {against!r}: expected {'n=' if against == 'n' else 'budget='}, the amount of it")

@@ -25,7 +25,7 @@ from ._arrays import channels
 from ._cost import Against, Costs
 from ._html import tone
 from ._intervals import differ, fitted_slope, half_width, t_of
-from ._metric_names import ALIASES, LARGEST_IS_BEST, NAMES, RADIANCE, UNITS
+from ._metric_names import LARGEST_IS_BEST, NAMES, RADIANCE, UNITS
 from ._values import arms_of, compared_at, film_at, heavy_arms, only_region, values_of, with_interval
 
 if TYPE_CHECKING:
@@ -138,7 +138,6 @@ def _look(
 
 def _label(metric: str, region: str) -> str:
     """The name of a metric with its unit, in a second line if it is long."""
-    metric = ALIASES.get(metric, metric)
     name, unit = NAMES.get(metric, metric) + (f", region {region}" if region else ""), UNITS.get(metric, "")
     return name + (f"{chr(10) if len(name) > 22 else ' '}[{unit}]" if unit else "")
 
@@ -379,6 +378,34 @@ def _picture(ax: Axes, image: NDArray[Any], title: str, **how: Any) -> Any:
     return drawn
 
 
+_MOST_IN_A_ROW = 6  # pictures, so that each has 27 mm or more of a page
+
+
+def _rows_of_pictures(count: int, aspect: float, more: float) -> list[Axes]:
+    """The axes of a new figure, in rows of equal length; `aspect`: height over width of a picture, `more`: the height
+    in inches of the texts of a row."""
+    import matplotlib.pyplot as plt
+
+    rows = -(-count // _MOST_IN_A_ROW)
+    columns = -(-count // rows)
+    width = min(2 * COLUMN_MM + 5, 42.0 * columns) / 25.4
+    size = (width, rows * (width / columns * aspect + more))
+    made = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)[1]
+    axes = list(made.ravel())
+    for unused in axes[count:]:
+        unused.set_visible(False)
+    return axes[:count]
+
+
+def _broken(text: str, ax: Axes) -> str:
+    """A title in lines that are not wider than its picture's part of the figure."""
+    from ._page import lines_of
+
+    figure: Any = ax.figure
+    columns = ax.get_subplotspec().get_gridspec().ncols  # type: ignore[union-attr]
+    return "\n".join(lines_of(text, figure.get_size_inches()[0] * 25.4 / columns - 3, float(ax.title.get_fontsize())))
+
+
 def _scale(ax: Axes, drawn: Any, label: str, extend: str) -> None:
     """A colour scale as high as the picture."""
     ax.figure.colorbar(drawn, cax=ax.inset_axes((1.03, 0, 0.04, 1)), label=label, extend=extend)
@@ -400,7 +427,8 @@ def heat(
     """The error |Y - reference|, or `what` = "relative", the error over the reference, or "var", the variance of Y, of
     each pixel, with a colour scale in its unit.
 
-    Several arms are drawn in a row on one scale. `top`: the end of the scale; the 99th percentile where none is given.
+    Several arms are drawn on one scale, six in a row. `top`: the end of the scale; the 99th percentile where none is
+    given.
     `background`: light for paper, where 0 is the lightest, or dark.
     """
     arms = [arm] if isinstance(arm, str) else list(arm)
@@ -419,17 +447,12 @@ def heat(
     limit = float(np.nanpercentile(np.stack(images), 99)) if top is None else top
     with style():
         if ax is None and len(arms) > 1:
-            import matplotlib.pyplot as plt
-
-            width, height = (
-                2 * COLUMN_MM / 25.4,
-                2 * COLUMN_MM / 25.4 / len(arms) * images[0].shape[0] / images[0].shape[1],
-            )
-            axes = list(plt.subplots(1, len(arms), figsize=(width, height + 0.35), layout="constrained")[1])
+            axes = _rows_of_pictures(len(arms), images[0].shape[0] / images[0].shape[1], 0.35)
         else:
             axes = [_axes(ax)]
         for at, name, image in zip(axes, arms, images, strict=True):
             title = f"{_look(r, name, labels).label}, N = {n}"
+            title = _broken(title, at) if len(arms) > 1 else title
             drawn = _picture(
                 at, image, title, cmap="inferno" if background == "dark" else "magma_r", vmin=0, vmax=limit or 1.0
             )
@@ -542,15 +565,13 @@ def crops(
     budget: float | None = None,
     labels: Mapping[str, str] | None = None,
 ) -> list[Axes]:
-    """The same crop of the reference and of several arms in a row; below each the mean of its metric over seeds, with
-    the half width of its 95 % interval.
+    """The same crop of the reference and of several arms, six in a row; below each the mean of its metric over seeds,
+    with the half width of its 95 % interval.
 
     `box`: [x0, y0, x1, y1) in pixels, y upwards. With `against="time"` or "rays" `n` is None, and each arm's film is that
     of the N nearest to `budget`, by default what every arm reaches; the title has its N, and the metric is that of
     :func:`bars`.
     """
-    import matplotlib.pyplot as plt
-
     at = r.s if s is None else s
     region = only_region(r, metric, region)
     compared = compared_at(r, metric, region, s, arms_of(r, arms), against, n, budget)
@@ -565,21 +586,17 @@ def crops(
     name = NAMES.get(metric, metric) + (f", region {region}" if region else "")
     count = len(films) + (reference is not None)
     with style():
-        aspect = (box[3] - box[1]) / (box[2] - box[0])
-        width = min(2 * COLUMN_MM + 5, 42.0 * count) / 25.4
-        figure, row = plt.subplots(1, count, figsize=(width, width / count * aspect + 0.6), layout="constrained")
-        axes = list(np.atleast_1d(row))
+        axes = _rows_of_pictures(count, (box[3] - box[1]) / (box[2] - box[0]), 0.6)
         if reference is not None:
             rgb = np.stack([reference[c] for c in "rgb"], -1)
             _picture(axes[0], tone(_cut(rgb, box), exposure), "reference")
             unit = UNITS.get(metric, "")
-            axes[0].set_xlabel(
-                f"{name}" + (f"\n[{unit}]" if unit else "") + ("" if against == "n" else f"\n{compared.where()}")
-            )
+            cost = "" if against == "n" else f"\n{compared.where()}"
+            axes[0].set_xlabel(_broken(name, axes[0]) + (f"\n[{unit}]" if unit else "") + cost)
         for ax, (arm, film) in zip(axes[count - len(films) :], films.items()):
             label = _look(r, arm, labels).label
             cost = "" if against == "n" else f"\n{compared.costs.text(compared.costs.of(arm, film.n))}"
-            _picture(ax, tone(_cut(film.rgb, box), exposure), f"{label}, N = {film.n}{cost}")
+            _picture(ax, tone(_cut(film.rgb, box), exposure), _broken(f"{label}, N = {film.n}", ax) + cost)
             text = with_interval(compared.values[arm])
             ax.set_xlabel(text if reference is not None else f"{name}\n{text}")
     return axes

@@ -203,7 +203,7 @@ def test_times_and_efficiencies_have_values():
     r = crescent.run(e, repeats=3)
     assert all(t > 0 for t in r.times.values()) and "cosine" in r.times
     region = next(row["region"] for row in r.records() if row["region"])
-    for metric in ("rmse", "bias_sq", "efficiency_n", "efficiency_time"):
+    for metric in ("rmse", "bias2", "efficiency_n", "efficiency_time"):
         found = r.metric(metric, "cosine", 16, region)
         assert len(found.values) == 3 and found.half is not None
     by_hand = r.metric("var", "cosine", 16, region).values[0] * 16

@@ -133,7 +133,8 @@ def test_a_table_at_equal_time_has_every_arm_and_says_how_it_was_measured(nine):
     assert len([line for line in text.splitlines() if line.endswith(r"\\")]) == 4
     values = values_of(nine, "efficiency_time", "ball", None)["cosine"][16]
     np.testing.assert_allclose(values, nine.metric("efficiency_time", "cosine", 16, "ball").values)
-    assert nine.to_latex("relmse") == nine.to_latex("rel_mse")
+    with pytest.raises(KeyError, match="bias2 of ball, .*did you mean 'relmse'"):
+        nine.to_latex("rel_mse")
     assert plot.bars(nine, "relmse").get_xlabel().startswith("relMSE, region ball at N")
     assert nine.to_latex("efficiency_time", against="n").count("efficiency at equal time") == 1
 
@@ -232,3 +233,16 @@ def test_maps_share_a_scale_and_show_what_they_say(nine):
     for wrong in ({"what": "err"}, {"background": "grey"}):
         with pytest.raises(ValueError, match="expected"):
             plot.heat(nine, "cosine", 4, **wrong)
+
+
+def test_rows_of_pictures_with_long_names_do_not_overlap(nine):
+    names = list(dict.fromkeys(film.arm for film in nine.films.values()))
+    assert len(names) > 9
+    for axes in (plot.crops(nine, 16, [0, 0, 24, 16]), plot.heat(nine, names, 4)):
+        figure = axes[0].figure
+        figure.canvas.draw()
+        boxes = [box for ax in axes for box in (ax.title.get_window_extent(), ax.xaxis.label.get_window_extent())]
+        boxes = [box for box in boxes if box.width > 1]
+        assert len(boxes) >= len(axes) > 9
+        for k, box in enumerate(boxes):
+            assert not any(box.overlaps(other) for other in boxes[k + 1 :]), (k, box)

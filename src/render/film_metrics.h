@@ -73,7 +73,7 @@ struct VarMetric {
     }
 };
 
-/// rel_mse: relative mean square error of Y against the reference, over a region: the mean of
+/// relmse: relative mean square error of Y against the reference, over a region: the mean of
 /// (Y - R)^2 / (R^2 + 0.01) (Rousselle, Knaus, Zwicker 2011, "Adaptive Sampling and Reconstruction using Greedy Error
 /// Minimization", sec. 5, with their epsilon).
 struct RelMseMetric {
@@ -101,7 +101,7 @@ struct SmapeMetric {
     double value(const FilmFacts& f) const { return sum / f.pixels; }
 };
 
-/// bias_sq: squared bias of Y against the reference, over a region: the mean of (Y - R)^2 minus the variance of the
+/// bias2: squared bias of Y against the reference, over a region: the mean of (Y - R)^2 minus the variance of the
 /// mean of Y. Its expectation is the mean of (E[Y] - R)^2, so that of an unbiased sampler is around 0, on either side.
 struct BiasSqMetric {
     static constexpr MetricInfo info = {
@@ -204,9 +204,9 @@ struct FEvaluationsMetric {
 #define CRESCENT_REGION_METRICS(metric) \
     metric(rmse, RmseMetric)            \
     metric(var, VarMetric)              \
-    metric(rel_mse, RelMseMetric)       \
+    metric(relmse, RelMseMetric)        \
     metric(smape, SmapeMetric)          \
-    metric(bias_sq, BiasSqMetric)
+    metric(bias2, BiasSqMetric)
 
 #define CRESCENT_FRAME_METRICS(metric)       \
     metric(fireflies, FirefliesMetric)       \

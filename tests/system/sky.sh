@@ -84,7 +84,7 @@ run 0 --threads 1 --out best
 same_outputs scalar best
 cat >>sky.toml <<'END'
 [assertions.mean]
-check = "bias_sq.ball(sky) < 0.05"
+check = "bias2.ball(sky) < 0.05"
 [assertions.better]
 check = "rmse.ball(both) < rmse.ball(uniform)"
 [assertions.valid]
