@@ -27,8 +27,8 @@ Call = Callable[..., Any]
 KNOWN = {"torch": "torch", "jax": "jax", "jaxlib": "jax", "cupy": "cupy", "drjit": "drjit", "mitsuba": "drjit"}
 _KEPT = 4  # arrays per thread: w_o, the numbers, drawn directions, queried directions
 _COMPILING = ("jax", "drjit")  # libraries that compile code for each shape
-#: Rows of a filled batch. Most batches of a check have 1 to 64 or 4,096 to 5,600 rows; a longer one has a multiple of the
-#: last.
+#: Rows of a filled batch. Most batches of a check have 1 to 64 or 4,096 to 5,600 rows; a longer one has a multiple of
+#: the last.
 _LENGTHS = (64, 512, 2048, 8192, 32768, 131072)
 
 
@@ -64,7 +64,8 @@ class Library:
             return self._module.from_numpy(np.require(rows, requirements="W")).to(device=self._device or "cpu", dtype=kind)
         if self.name == "jax":
             # Converted by NumPy: JAX would compile the conversion.
-            return self._module.device_put(np.ascontiguousarray(rows, np.dtype(self._dtype or np.float32)), self._device)
+            kind = np.dtype(self._dtype or np.float32)
+            return self._module.device_put(np.ascontiguousarray(rows, kind), self._device)
         more = {key: value for key, value in (("dtype", self._dtype), ("device", self._device)) if value is not None}
         return self._module.asarray(rows, **more)
 
@@ -93,8 +94,8 @@ class Library:
         return own
 
     def _cut(self, answer: Any, n: int) -> Any:
-        """Returns the requested rows of a result with more, which are on the host if the library compiles code: JAX would
-        compile the cut."""
+        """Returns the requested rows of a result with more, which are on the host if the library compiles code: JAX
+        would compile the cut."""
         if isinstance(answer, Mapping):
             return {key: self._cut(part, n) for key, part in answer.items()}
         if isinstance(answer, (tuple, list)):

@@ -180,17 +180,18 @@ RunResult assemble(
     return result_of(std::move(out));
 }
 
-using ReferencesState = std::tuple<nb::object, nb::object>;
+using ReferencesState = std::tuple<nb::object, nb::object, nb::object>;
 
 ReferencesState state_of(nb::handle self) {
     const References& r = nb::cast<const References&>(self);
-    return {reference_list(r.quadrature, self), reference_list(r.monte_carlo, self)};
+    return {reference_list(r.quadrature, self), reference_list(r.monte_carlo, self), reference_list(r.paired, self)};
 }
 
 void restore(References& into, const ReferencesState& state) {
     References* const r = new (&into) References;
     restore_references(nb::cast<nb::list>(std::get<0>(state)), r->quadrature);
     restore_references(nb::cast<nb::list>(std::get<1>(state)), r->monte_carlo);
+    restore_references(nb::cast<nb::list>(std::get<2>(state)), r->paired);
 }
 
 }  // namespace

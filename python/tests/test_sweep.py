@@ -550,6 +550,16 @@ def test_a_full_disk_fails_tasks_and_leaves_whole_files(tiny, tmp_path):
         json.loads(path.read_text())
 
 
+def test_the_references_of_a_pair_reach_the_workers(tmp_path):
+    e = crescent.parse(SCENE)
+    e["reference"] = {"kind": "paired"}
+    swept = crescent.sweep(e, over={"key.radius": [0.4]}, seeds=2, out=tmp_path / "out", workers=1, verify=0)
+    assert not swept.failed
+    whole = crescent.run(e.with_({"key.radius": 0.4}), seeds=2, studies=True)
+    values = [(r["metric"], r["seed"], r["value"]) for r in swept.measured().records()]
+    assert values == [(r["metric"], r["seed"], r["value"]) for r in whole.records()]
+
+
 # ---- without the extra
 
 

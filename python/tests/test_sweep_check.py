@@ -132,6 +132,22 @@ def test_all_arms_are_checked_and_each_is_stored(tmp_path):
     assert one.stdout.startswith("cosine of a ball: 2 points"), one.stdout
 
 
+def test_a_script_without_a_guard_is_run_once(tmp_path):
+    (tmp_path / "tiny.toml").write_text(TINY)
+    (tmp_path / "script.py").write_text("""
+import sys
+import crescent
+
+print("begins")
+sweep = crescent.sweep("tiny.toml", over={"key.radius": [0.3, 0.6]}, check="cosine", pixels=1, out="out", workers=1)
+print(sweep.computed, __file__.endswith(sys.argv[0]))
+""")
+    ended = subprocess.run(
+        [sys.executable, "script.py"], cwd=tmp_path, text=True, capture_output=True, timeout=240
+    )
+    assert ended.stdout.split() == ["begins", "2", "True"], ended.stderr
+
+
 def test_what_has_no_effect_is_refused(tmp_path):
     (tmp_path / "tiny.toml").write_text(TINY)
     over = ["--over", "key.radius=0.3"]
@@ -142,6 +158,7 @@ def test_what_has_no_effect_is_refused(tmp_path):
         (["tiny.toml", "--check", *over, "--seeds", "2"], "--seeds"),
         (["tiny.toml", "--check", *over, "--films"], "--films"),
         (["tiny.toml", "--check", "--over", "key.radus=0.3"], "did you mean 'radius'"),
+        (["tiny.toml", "--check", "--over", "n=4,16"], "does not depend on it"),
         (["tiny.toml", *over, "--alpha", "0.1"], "expected --check too"),
         (["--check", "phong", "--over", "s=8", "--pixels", "4"], "expected FILE.toml --check"),
     ):

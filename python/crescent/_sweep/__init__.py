@@ -103,9 +103,9 @@ def sweep(
     `verify`: the share of tasks that a second worker repeats, to compare the bits; by default 1 %. `sampler_versions`:
     by arm, a version that identifies its sampler in place of the hash of its source.
 
-    `check`: an arm, several, or True for all: nothing is run, but these are checked at every point with the materials and
-    lights of the scene, as by ``crescent.check(e, sampler=NAME, pixels=K)``. `pixels`, `alpha` (0.001, shared by all tests
-    of all points), `full` and `seed` are those of :func:`crescent.check`.
+    `check`: an arm, several, or True for all: nothing is run, but these are checked at every point with the materials
+    and lights of the scene, as by ``crescent.check(e, sampler=NAME, pixels=K)``. `pixels`, `alpha` (0.001, shared by
+    all tests of all points), `full` and `seed` are those of :func:`crescent.check`.
 
     A task that fails is listed in `failed` of the result; the next call computes it again.
     """
@@ -115,7 +115,8 @@ def sweep(
     of_runs = {"seeds": seeds, "films": films or None, "verify": verify}
     of_checks = {"pixels": pixels, "alpha": alpha, "full": full, "seed": seed}
     if given := [key for key, value in (of_runs if check else of_checks).items() if value is not None]:
-        raise TypeError(f"{given[0]} is for {'runs, and check= is given' if check else 'checks: expected check=ARM too'}")
+        use = "runs, and check= is given" if check else "checks: expected check=ARM too"
+        raise TypeError(f"{given[0]} is for {use}")
     e = experiment_of(experiment)
     if check is not False:
         from .check_sweep import CheckOptions, run_arm_sweep

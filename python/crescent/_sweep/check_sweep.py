@@ -1,5 +1,5 @@
-"""Checks a sampler over a grid of its parameters, or arms over a grid of their experiment: a map of where they are wrong,
-heavy-tailed or inconclusive.
+"""Checks a sampler over a grid of its parameters, or arms over a grid of their experiment: a map of where they are
+wrong, heavy-tailed or inconclusive.
 
 All tests of all points share one alpha. Call k of a sweep (k = 1, 2, ...) spends alpha / 2^k, in equal shares of its
 new points, so that points can be added without checking the finished ones again: the sum over all calls is below alpha.
@@ -30,7 +30,7 @@ from .identity import NUMERICS, _of_python, arms_of, digest, scene_id
 from .plan import points_of
 from .progress import Progress
 from .store import Store, locked, read_json, write_whole
-from .sweep import Say, _check_axes, _folder, usable_points
+from .sweep import Say, _folder, usable_points
 
 KINDS = ("right", "heavy-tailed", "inconclusive", "wrong", "error")
 _COLOURS = {
@@ -207,7 +207,8 @@ def _names_of_arms(base: Experiment, given: bool | str | Sequence[str]) -> list[
     for name in names:
         if name not in known:
             near = _crescent.nearest(str(name), known)
-            raise UsageError(f"--check {name}: no arm or sampler '{name}': expected one of {', '.join(known)}{hint(near)}")
+            expected = f"expected one of {', '.join(known)}" + hint(near)
+            raise UsageError(f"--check {name}: no arm or sampler '{name}': {expected}")
     if not names:
         raise UsageError("--check: expected at least one arm")
     return names
@@ -219,6 +220,8 @@ def _of_arms(
 ) -> Checks:  # fmt: skip
     if clash := {"arm", "arms"} & set(values[0]):
         raise UsageError(f"--over {clash.pop()}: the map has an axis of this name: expected a whole path")
+    if unused := {"n", "seed", "seeds"} & set(values[0]):
+        raise UsageError(f"--over {unused.pop()}: a check of an arm does not depend on it")
     points, failed = usable_points(*points_of(base, values, int(base["seeds"]), versions))
     scene, arms = scene_id(base._with_arms()), arms_of(base, versions)
     out = []
@@ -228,8 +231,9 @@ def _of_arms(
             at = {"arm": name, **point.values}
             of_base = arms[name].id if name in arms else ["built in", name]
             task = point.task(
-                "check", [name] if name in point.arms else [], arm=name, pixels=pixels, seed=options.seed, full=options.full
-            )
+                "check", [name] if name in point.arms else [],
+                arm=name, pixels=pixels, seed=options.seed, full=options.full,
+            )  # fmt: skip
             out.append(
                 _Check(
                     digest(NUMERICS, point.key, arm, pixels, options.seed, options.full), at,

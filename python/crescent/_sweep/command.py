@@ -85,7 +85,7 @@ def _parser() -> _Parser:
         help="identifies a sampler in place of the hash of its source")  # fmt: skip
     add("--metric", metavar="NAME", help="of the report and the summary, such as rmse.H")
     add("--check", nargs="?", const=True, metavar="SAMPLER",
-        help="check an arm of FILE, or all; without FILE a sampler FILE.py:NAME or a built-in one over its parameters")  # fmt: skip
+        help="check an arm of FILE, or all; without FILE a sampler FILE.py:NAME or a built-in one")  # fmt: skip
     add("--pixels", type=_whole(4096), metavar="K",
         help="with FILE --check: at K pixels in view; default: over the grid of w_o on each material")  # fmt: skip
     add("--alpha", type=_probability, metavar="P", help="with --check: shared by all points; default 0.001")

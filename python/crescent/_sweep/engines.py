@@ -13,6 +13,7 @@ import logging
 import os
 import signal
 import queue
+import sys
 import threading
 import time
 import tomllib
@@ -160,6 +161,20 @@ def _queue_cluster(name: str) -> tuple[Any, int]:
     return cluster, jobs
 
 
+@contextlib.contextmanager
+def _without_script() -> Iterator[None]:
+    """Keeps new processes from running the user's script once more, whose call of a sweep would start others: tasks
+    bring along all that they need."""
+    main = vars(sys.modules["__main__"])
+    known: dict[str, Any] = {name: main[name] for name in ("__file__", "__spec__") if name in main}
+    main.pop("__file__", None)
+    main["__spec__"] = None
+    try:
+        yield
+    finally:
+        main.update(known)
+
+
 class DaskEngine:
     """A Dask client with a bounded window of tasks. Use as a context."""
 
@@ -170,10 +185,19 @@ class DaskEngine:
         self._lost = threading.Event()
         self._closing = False
         self.slots = 1
+        self._open = contextlib.ExitStack()
         self._call, self._numbers = uuid.uuid4().hex[:8], itertools.count()
         self.later: list[Job] = []  #: jobs that the caller adds while it reads results
 
     def __enter__(self) -> DaskEngine:
+        try:
+            self._start()
+        except BaseException:
+            self._open.close()
+            raise
+        return self
+
+    def _start(self) -> None:
         import dask
 
         distributed = _module("distributed")
@@ -189,6 +213,7 @@ class DaskEngine:
             "distributed.scheduler.dashboard.tasks.task-stream-length": 1000,
         })  # fmt: skip
         if self._engine == "local":
+            self._open.enter_context(_without_script())
             count = self._workers or usable_cores()
             self._cluster = distributed.LocalCluster(
                 n_workers=count, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
@@ -202,10 +227,10 @@ class DaskEngine:
         except (OSError, TimeoutError, ValueError) as error:
             raise EngineError(f"no Dask scheduler at {self._engine}: {error}") from None
         threading.Thread(target=self._watch, daemon=True).start()
-        return self
 
     def __exit__(self, kind: type[BaseException] | None, *rest: Any) -> None:
-        self.close(quick=kind is not None)
+        with self._open:
+            self.close(quick=kind is not None)
 
     def close(self, quick: bool = False) -> None:
         """Ends the client, and the cluster if it is this engine's own; `quick`: its workers are ended at once."""
