@@ -26,7 +26,7 @@ def toml(value: Any) -> str:
         return "{" + ", ".join(f"{json.dumps(str(key))} = {toml(v)}" for key, v in value.items()) + "}"
     if isinstance(value, Iterable):
         return "[" + ", ".join(toml(v) for v in value) + "]"
-    more = ""
+    more = "; e.remove(path) takes a key out" if value is None else ""
     if callable(value) or type(value).__name__ in ("Sampler", "Combination"):
         more = "; a sampler in Python is added by e.samplers[NAME] = sampler"
     raise TypeError(
@@ -57,6 +57,8 @@ def overrides(changes: Mapping[str, Any]) -> list[str]:
 
 def steps_of(path: str) -> list[str]:
     """Splits shapes.'a ball'.center[1] into shapes, a ball, center, 1, as --set reads a path."""
+    if not isinstance(path, str):
+        raise TypeError(f"{path!r} is no path: expected a text such as 'sphere.s' or 'shapes.sphere.s'")
     found = [next(filter(None, step)) for step in re.findall(r"\"([^\"]*)\"|'([^']*)'|([^.\[\]\"']+)", path)]
     if not found:
         raise KeyError(f"{path!r}: expected a path such as sphere.s or shapes.sphere.s")
@@ -103,9 +105,15 @@ def found(tree: Mapping[str, Any], path: str) -> tuple[list[str], Any]:
         raise KeyError(problem)
     tables = [value for value in tree.values() if isinstance(value, Mapping)]
     names = [name for table in tables for name, value in table.items() if isinstance(value, Mapping)]
-    near = _crescent.nearest(steps[0], [*tree, *names])
+    near = _crescent.nearest(steps[0], [*tree, *names]) or nearest_key(tree, steps[-1])
     hint = f"; did you mean '{near}'?" if near else ""
     raise KeyError(f"{path}: the experiment has {', '.join(tree)}, and the names {', '.join(names)}{hint}")
+
+
+def nearest_key(tree: Mapping[str, Any], word: str) -> str:
+    """The path of the key of a table of the file whose last step is nearest to a word: image.width; else nothing."""
+    keys = {key: f"{name}.{key}" for name, table in tree.items() if isinstance(table, Mapping) for key in table}
+    return keys.get(_crescent.nearest(word, list(keys)), "")
 
 
 def lines(table: Mapping[str, Any], path: str = "") -> Iterator[str]:

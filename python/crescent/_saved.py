@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,8 @@ ARRAYS = "arrays.npz"
 
 
 def core_of(state: Sequence[Any]) -> _crescent.RunResult:
-    """The result with this state: s, holds, json, csv, junit, attributes, boxes, films, references, times, threads."""
+    """The result with this state: s, holds, json, csv, junit, attributes, boxes, films, references, times, threads,
+    stages."""
     core = _crescent.RunResult.__new__(_crescent.RunResult)
     core.__setstate__(tuple(state))
     return core
@@ -25,7 +27,7 @@ def core_of(state: Sequence[Any]) -> _crescent.RunResult:
 def arrays_of(core: _crescent.RunResult, samplers: Mapping[str, str]) -> bytes:
     """The contents of arrays.npz: planes, and an index in JSON."""
     state: Any = core.__getstate__()
-    s, holds, _, _, _, attributes, boxes, films, references, times, threads = state
+    s, holds, _, _, _, attributes, boxes, films, references, times, threads, stages = state
     index = {
         "s": s,
         "holds": holds,
@@ -35,6 +37,7 @@ def arrays_of(core: _crescent.RunResult, samplers: Mapping[str, str]) -> bytes:
         "references": [s for s, _ in references],
         "times": times,
         "threads": threads,
+        "stages": stages,
         "samplers": dict(samplers),
     }
     planes = {f"film/{k}/{name}": plane for k, film in enumerate(films) for name, plane in film[4].items()}
@@ -54,12 +57,16 @@ def arrays_in(folder: Path) -> dict[str, Any] | None:
     path = folder / ARRAYS
     if not path.is_file():
         return None
-    with np.load(path, allow_pickle=False) as arrays:
-        index: dict[str, Any] = json.loads(arrays["index"].tobytes())
-        index["films"] = [(*film, _planes(arrays, "film", k)) for k, film in enumerate(index["films"])]
-        index["references"] = [(s, _planes(arrays, "reference", k)) for k, s in enumerate(index["references"])]
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            index: dict[str, Any] = json.loads(arrays["index"].tobytes())
+            index["films"] = [(*film, _planes(arrays, "film", k)) for k, film in enumerate(index["films"])]
+            index["references"] = [(s, _planes(arrays, "reference", k)) for k, s in enumerate(index["references"])]
+    except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise ValueError(f"{path}: is damaged: expected the arrays that Measured.write wrote ({error})") from None
     index["boxes"] = [tuple(box) for box in index["boxes"]]
     index["times"] = [tuple(row) for row in index["times"]]
+    index["stages"] = [tuple(row) for row in index.get("stages", [])]
     index["attributes"] = [tuple(pair) for pair in index["attributes"]]
     return index
 
@@ -69,7 +76,8 @@ def _text(path: Path) -> str:
 
 
 def opened(folder: Path) -> tuple[_crescent.RunResult, dict[str, str]]:
-    """The result in a folder, and the identities of its samplers; of a run of the program, which has no arrays.npz, without films and references."""
+    """The result in a folder, and the identities of its samplers; of a run of the program, which has no arrays.npz,
+    without films and references."""
     if not (folder / "metrics.json").is_file():
         raise ValueError(f"{folder}: expected a folder of a result, with metrics.json")
     index = arrays_in(folder)
@@ -80,18 +88,19 @@ def opened(folder: Path) -> tuple[_crescent.RunResult, dict[str, str]]:
     if index is None:
         joined = list(_crescent.join([str(folder)]).__getstate__())
         joined[2:5] = [text or other for text, other in zip(texts, joined[2:5], strict=True)]
-        joined[9:11] = _timing(folder)
+        joined[9:12] = _timing(folder)
         return core_of(joined), {}
-    rest = ("attributes", "boxes", "films", "references", "times", "threads")
+    rest = ("attributes", "boxes", "films", "references", "times", "threads", "stages")
     return core_of([index["s"], index["holds"], *texts, *(index[name] for name in rest)]), index["samplers"]
 
 
-def _timing(folder: Path) -> tuple[list[Any], int]:
-    """The times and threads of timing.json."""
+def _timing(folder: Path) -> tuple[list[Any], int, list[Any]]:
+    """The times, threads and stages of timing.json."""
     path = folder / "timing.json"
     timing = json.loads(_text(path)) if path.is_file() else {}
     rows = [(a["arm"], a["n"], a["s"], a["samples"], a["seconds"]) for a in timing.get("arms", [])]
-    return rows, int(timing.get("threads", 0))
+    stages = [(stage["name"], stage["seconds"]) for stage in timing.get("stages", [])]
+    return rows, int(timing.get("threads", 0)), stages
 
 
 def joined(parts: Sequence[str]) -> tuple[_crescent.RunResult, dict[str, str]]:
@@ -106,9 +115,15 @@ def joined(parts: Sequence[str]) -> tuple[_crescent.RunResult, dict[str, str]]:
     state[7] = [film for film in films if first[film[:3]] is film]
     state[8] = list({s: (s, of) for index in found for s, of in index["references"]}.values())
     timed = [
-        _timing(folder) if (index := arrays_in(folder)) is None else (index["times"], index["threads"])
+        _timing(folder)
+        if (index := arrays_in(folder)) is None
+        else (index["times"], index["threads"], index["stages"])
         for folder in folders
     ]
-    state[9] = [row for rows, _ in timed for row in rows]
-    state[10] = max((threads for _, threads in timed), default=0)
+    state[9] = [row for rows, _, _ in timed for row in rows]
+    state[10] = max((threads for _, threads, _ in timed), default=0)
+    seconds: dict[str, float] = {}
+    for name, more in (stage for _, _, stages in timed for stage in stages):
+        seconds[name] = seconds.get(name, 0.0) + more
+    state[11] = list(seconds.items())
     return core_of(state), {name: identity for index in found for name, identity in index["samplers"].items()}

@@ -30,7 +30,7 @@ from ._callable_arms import Samplers, all_counts, callable_arms, counts_of, tabl
 from ._cost import Against
 from ._installed import experiment_file
 from ._live import live
-from ._paths import found, inside, overrides, path_of, quoted
+from ._paths import found, inside, nearest_key, overrides, path_of, quoted, steps_of
 from ._progress import bar
 from ._resize import resize_hint, resized
 from ._sampler import whole
@@ -38,6 +38,24 @@ from ._source import Source, taken_out
 from ._summaries import Summary
 
 Progress = Callable[[str, float, float], None]
+
+#: What a stranger tries, and what does it.
+_INSTEAD = {
+    "keys": "list(e), the keys and tables of the file",
+    "values": "e[path] for path in e",
+    "items": "(path, e[path]) for path in e",
+    "get": "e[path], and `path in e` whether there is one",
+    "update": "e.with_(changes), another experiment, or e[path] = value",
+    "pop": "e.remove(path)",
+    "clear": "crescent.parse(text), another experiment",
+    "copy": "e.with_()",
+    "set": "e[path] = value",
+    "save": "Path(file).write_text(e.text)",
+    "write": "Path(file).write_text(e.text)",
+    "run": "crescent.run(e)",
+    "check": "crescent.check(e, sampler=NAME)",
+    "sweep": "crescent.sweep(e, over={path: values})",
+}
 
 
 class Experiment:
@@ -74,6 +92,8 @@ class Experiment:
         raise AttributeError(self._without_attribute(name, ""))
 
     def _without_attribute(self, name: str, rest: str) -> str:
+        if name in _INSTEAD:
+            return f"an experiment has no attribute '{name}': expected {_INSTEAD[name]}"
         if name in dir(type(self)):
             return f"'{name}' cannot be set: a change of a key changes it, such as e['seed'] = 7"
         return f"an experiment has no attribute '{name}': expected e[{name!r}]{rest}"
@@ -170,7 +190,7 @@ class Experiment:
 
     def with_(self, changes: Mapping[str, Any] | None = None, /, **more: Any) -> Experiment:
         """Another experiment, with these keys changed all at once: ``e.with_({"sphere.s": 8}, n=16)``."""
-        changed, removed = self._changed({**(changes or {}), **more})
+        changed, removed = self._changed({**_table_of(changes), **more})
         _warn_of(removed, 3)
         return changed
 
@@ -183,7 +203,12 @@ class Experiment:
         try:
             source, core, removed = taken_out(source, lost, self._source)
         except ValueError as error:
-            hint = resize_hint(self._tree(), source, str(error))
+            if "no key or name" in str(error):
+                near = [nearest_key(self._tree(), steps_of(path)[-1]) for path in changes]
+                hint = f"did you mean {' or '.join(map(repr, filter(None, near)))}?" if any(near) else ""
+                hint = "" if "did you mean" in str(error) else hint
+            else:
+                hint = resize_hint(self._tree(), source, str(error))
             raise (ValueError(f"{error}\n{hint}") if hint else error) from None
         return Experiment(core, self.samplers, source), [path_of(steps) for steps in removed]
 
@@ -216,6 +241,8 @@ class Experiment:
 
     def diff(self, other: Experiment) -> dict[str, tuple[Any, Any]]:
         """The keys whose values differ, by their paths: the value here and the value there, None where it has none."""
+        if not isinstance(other, Experiment):
+            raise TypeError(f"other is {other!r}: expected an experiment, such as crescent.load({str(other)!r})")
         here, there = (dict(_leaves({**e._tree(), "samplers": dict(e.samplers)})) for e in (self, other))
         paths = [*here, *(path for path in there if path not in here)]
         return {path: (here.get(path), there.get(path)) for path in paths if here.get(path) != there.get(path)}
@@ -274,6 +301,12 @@ def _sampler_ids(samplers: Mapping[str, Any]) -> dict[str, str]:
     return out
 
 
+def _table_of(changes: Any) -> Mapping[str, Any]:
+    if changes is not None and not isinstance(changes, Mapping):
+        raise TypeError(f"changes is {changes!r}: expected paths with their values, such as {{'sphere.s': 8}}")
+    return changes or {}
+
+
 def _warn_of(removed: Sequence[str], stacklevel: int) -> None:
     """Lists what was removed with a name."""
     if removed:
@@ -308,6 +341,9 @@ def _restored(source: Source, samplers: Mapping[str, Any]) -> Experiment:
 def load(path: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> Experiment:
     """An experiment file, or an installed experiment by its name, such as "gallery"; ValueError names every mistake with
     line and column."""
+    changes = _table_of(changes)
+    if not isinstance(path, (str, PathLike)):
+        raise TypeError(f"path is {path!r}: expected a file, or the name of an installed experiment, such as 'gallery'")
     name = experiment_file(path)
     if name != fspath(path):  # an installed one: messages and provenance have its name, not where it is
         source = Source(Path(name).read_text("utf-8"), f"{path}.toml", dirname(abspath(name)))
@@ -324,6 +360,9 @@ def load(path: str | PathLike[str], changes: Mapping[str, Any] | None = None) ->
 
 def parse(text: str, name: str = "text.toml") -> Experiment:
     """The same from text; `name` is the file's name in messages."""
+    if not isinstance(text, str):
+        kind = type(text).__name__
+        raise TypeError(f"text is {kind}: expected the text of an experiment; crescent.load reads a file")
     return Experiment(_crescent.parse(text, name, []), None, Source(text, name, dirname(abspath(name))))
 
 
@@ -338,9 +377,11 @@ class Film:
     planes: Mapping[str, NDArray[Any]]  #: r, g, b, y, y2, var, largest, horizon, hits
 
     def __getattr__(self, name: str) -> NDArray[Any]:
-        if name in ("r", "g", "b", "y", "y2", "var", "largest", "horizon", "hits", "error"):
+        if name.startswith("_") or name == "planes":
+            raise AttributeError(name)
+        if name in self.planes:
             return self.planes[name]
-        raise AttributeError(name)
+        raise AttributeError(f"a film has no plane '{name}': expected one of {', '.join(self.planes)}, or rgb")
 
     def __repr__(self) -> str:
         height, width = self.planes["y"].shape
@@ -436,12 +477,18 @@ class Measured:
         return {arm: float(np.median([t for a, t in rows if a == arm])) for arm in arms}
 
     @property
+    def stages(self) -> dict[str, float]:
+        """Seconds of wall-clock time of each stage: references, films, tails with furnaces and article checks, metrics.
+        They vary between equal runs."""
+        return dict(self._core.stages)
+
+    @property
     def threads(self) -> int:
         """The number of threads with which :attr:`times` were measured; 0: unknown."""
         return int(self._core.threads)
 
     def metric(self, name: str, arm: str, n: int, region: str = "", s: float | None = None) -> Summary:
-        """A metric of :meth:`records`, "tail_k", "bias_sq", "flip" (of the first `flip_seeds` seeds; of the frame of the
+        """A metric of :meth:`records`, "tail_k", "bias2", "flip" (of the first `flip_seeds` seeds; of the frame of the
         first seed), or "efficiency_n" and "efficiency_time": 1 / (variance of one sample) and 1 / (variance times
         seconds), as a mean over seeds with its 95 % interval (Student's t)."""
         from ._summaries import summary
@@ -558,6 +605,7 @@ def run(
     threads: int = 0,
     isa: str = "",
     studies: bool = False,
+    references: bool = True,
     out: str | PathLike[str] | None = None,
     progress: Progress | bool | None = None,
     code: bool = True,
@@ -571,13 +619,19 @@ def run(
     has the seeds that are complete; with `out` it is written there.
 
     `seeds`: the number of seeds, in place of the experiment's, as in :func:`sweep` and ``--seeds``; or the first and last
-    of its series, from 1, as in ``--seed-range``; 0: to the end. `studies`: tails, furnaces and evidence too.
-    `out`: a folder for metrics and films. Films have the same bits for any `threads` and `isa`.
+    of its series, from 1, as in ``--seed-range``; 0: to the end. `out`: a folder for metrics and films. Films have the
+    same bits for any `threads` and `isa`.
+
+    `studies`: beside the films and their metrics also tails, furnaces and article checks. The progress says their share
+    of the samples. ``references=False``: the films of the first seed alone, without a reference and so without metrics;
+    assertions are skipped. :attr:`Measured.stages` has the seconds of each.
 
     Each sampler of ``e.samplers`` is an arm of its name, at the sample counts of the other arms. What it raises is
     raised here. `code`: False refuses an experiment whose file names a plugin, a program or a Python file.
     """
     folder = None if out is None else abspath(out)
+    if studies and not references:
+        raise ValueError("studies=True, references=False: without references there are no metrics to study")
     e = experiment if isinstance(experiment, Experiment) else load(experiment)
     if not code:
         _crescent.refuse_code(e._core)
@@ -601,6 +655,7 @@ def run(
                 threads=threads,
                 isa=isa,
                 studies=studies,
+                references=references,
                 progress=shown,
                 callables=callable_arms(e.samplers, with_arms._tree()["arms"]),
                 repeats=repeats,
@@ -624,6 +679,8 @@ def join(parts: Sequence[str | PathLike[str]], out: str | PathLike[str] | None =
     films and references of those that :meth:`Measured.write` wrote.
     """
     folder = None if out is None else abspath(out)
+    if isinstance(parts, (str, PathLike)) or not parts:
+        raise ValueError(f"parts is {parts!r}: expected one or more folders of runs, such as ['part-1', 'part-2']")
     measured = Measured(*_saved.joined([fspath(part) for part in parts]))
     if folder is not None:
         measured.write(folder)

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include "module.h"
@@ -21,7 +22,7 @@ RunResult result_of(Measured&& m) {
     RunResult out{m.experiment.s(), m.metrics.all_hold(), metrics_json(in), metrics_csv(in), junit_xml(in),
         {{"crescent", p.version + " " + p.commit}, {"compiler", p.compiler},
             {"experiment", p.experiment_file + " " + p.experiment_hash}, {"instrument", p.backend}},
-        {}, {}, {}, m.timing.threads, {}};
+        {}, {}, {}, m.timing.threads, {}, m.timing.stages};
     for (const Region& r : m.experiment.regions) out.boxes.emplace_back(r.name, r.box.x0, r.box.y0, r.box.x1, r.box.y1);
     for (const ArmTiming& t : m.timing.arms) out.times.emplace_back(t.arm, t.n, t.s, t.samples, t.seconds);
     for (auto& [key, film] : m.films) out.films.emplace_back(key, std::move(film));
@@ -69,19 +70,19 @@ ReferenceList references_of(nb::handle self) {
 }
 
 using State = std::tuple<double, bool, std::string, std::string, std::string, Attributes, Boxes, nb::object, nb::object,
-    Times, int>;
+    Times, int, Stages>;
 
 State state_of(nb::handle self) {
     const RunResult& r = nb::cast<const RunResult&>(self);
     return {r.s, r.holds, r.json, r.csv, r.junit, r.attributes, r.boxes, films_of(self), references_of(self), r.times,
-        r.threads};
+        r.threads, r.stages};
 }
 
 void restore(RunResult& into, const State& state) {
     RunResult* const r = new (&into) RunResult;
     nb::object films, references;
     std::tie(r->s, r->holds, r->json, r->csv, r->junit, r->attributes, r->boxes, films, references, r->times,
-        r->threads) = state;
+        r->threads, r->stages) = state;
     for (const nb::handle entry : films) {
         const nb::tuple at = nb::cast<nb::tuple>(entry);
         const nb::dict planes = nb::cast<nb::dict>(at[4]);
@@ -95,13 +96,56 @@ void restore(RunResult& into, const State& state) {
     restore_references(nb::cast<nb::list>(references), r->references);
 }
 
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
 /// What a run has done so far.
 struct RunSoFar {
     RunPlan plan;
     Engine engine;
     std::optional<Prepared> prepared;
     std::vector<JobResult> results;
+    std::vector<std::pair<RunKey, Film>> films;  // without references, that no metric is measured of
 };
+
+/// What is computed beside the films.
+struct Beside {
+    bool references = true, studies = false;
+};
+
+/// Estimates the films of a job of the only seed; without references there are no metrics.
+void estimate_alone(RunSoFar& run, const Job& job, int repeats, ProgressMonitor& monitor) {
+    const Job opened = with_sampler(job, *run.prepared);
+    std::vector<double> seconds;
+    std::vector<Film> films;
+    for (int k = 0; k < repeats; ++k) {
+        monitor.check();
+        const Stopwatch start;
+        on_threads(threads_to_be_had(run.engine.threads),
+            [&] { films = run.engine.backend->films(view_at(*run.prepared, job.s), opened, monitor); });
+        seconds.push_back(start.seconds());
+    }
+    JobResult timed;
+    timed.job = job;
+    timed.samples = static_cast<double>(run.prepared->geometry_pixels * job.n.back());
+    timed.seconds = median(std::move(seconds));
+    run.results.push_back(std::move(timed));
+    for (Film& film : films) {
+        const RunKey key{job.arm, film.n, job.s, job.seed};
+        run.films.emplace_back(key, std::move(film));
+    }
+}
+
+/// Adds the films that no metric was measured of: assertions are skipped.
+void add_films_alone(RunSoFar& run, Measured& all) {
+    if (run.films.empty()) return;
+    std::ranges::move(run.films, std::back_inserter(all.films));
+    run.films.clear();
+    for (AssertionResult& a : all.metrics.assertions) a.skipped = "no reference was computed";
+}
 
 /// The wall-clock seconds of a job: the median over so many executions, of which the first is given.
 double median_seconds(const RunSoFar& run, const Job& job, double first, int repeats, ProgressMonitor& monitor) {
@@ -110,9 +154,7 @@ double median_seconds(const RunSoFar& run, const Job& job, double first, int rep
         monitor.check();
         seconds.push_back(execute(run.plan, *run.prepared, job, run.engine, monitor, false).seconds);
     }
-    std::ranges::sort(seconds);
-    const std::size_t half = seconds.size() / 2;
-    return seconds.size() % 2 ? seconds[half] : (seconds[half - 1] + seconds[half]) / 2;
+    return median(std::move(seconds));
 }
 
 /// The result of the seeds of which every job is done, without studies; empty if there is none.
@@ -132,13 +174,15 @@ std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& 
     std::erase_if(run.results, [&](const JobResult& r) { return !std::ranges::count(part.seeds, r.job.seed); });
     PolledMonitor monitor;
     const Work here(&monitor);
-    return result_of(
-        collect(part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", false}));
+    Measured done =
+        collect(part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", false});
+    add_films_alone(run, done);
+    return result_of(std::move(done));
 }
 
 /// `kept` receives the result of the complete seeds if the run is interrupted.
 RunResult run_experiment(const Experiment& experiment, int first, int last, int threads, const std::string& isa,
-    bool studies, const nb::object& progress, const CallableArms& callables, int repeats,
+    const Beside& beside, const nb::object& progress, const CallableArms& callables, int repeats,
     nb::typed<nb::list, RunResult> kept) {
     PolledMonitor monitor;
     Raised raised(monitor);
@@ -147,19 +191,32 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
     RunSoFar run;
     bool complete = false;
     const auto work = [&] {
-        run.plan = plan(experiment, {first, last});
+        run.plan = plan(experiment, {first, beside.references ? last : first});
         run.engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
-        run.prepared = prepare(run.plan, run.engine, monitor);
-        for (const Job& job : run.plan.jobs) {
+        run.prepared = look(run.plan, run.engine);
+        const Stopwatch start;
+        if (beside.references) add_references(run.plan, *run.prepared, run.engine, monitor);
+        monitor.check();
+        const double references = start.seconds();
+        for (std::size_t k = 0; k < run.plan.jobs.size(); ++k) {
+            const Job& job = run.plan.jobs[k];
             monitor.check();
+            begin_seed(run.plan, k, run.prepared->geometry_pixels * static_cast<std::uint64_t>(repeats), monitor);
+            if (!beside.references) {
+                estimate_alone(run, job, repeats, monitor);
+                continue;
+            }
             JobResult result =
                 execute(run.plan, *run.prepared, job, run.engine, monitor, job.seed == run.plan.seeds.front());
             result.seconds = median_seconds(run, job, result.seconds, repeats, monitor);
             run.results.push_back(std::move(result));
         }
         monitor.check();
-        Measured all = collect(
-            run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", studies});
+        const double films = start.seconds() - references;
+        Measured all = collect(run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor,
+            {"crescent.run", beside.studies});
+        all.timing.stages.insert(all.timing.stages.begin(), {{"references", references}, {"films", films}});
+        add_films_alone(run, all);
         run.results.clear();
         run.prepared.reset();
         out = result_of(std::move(all));
@@ -308,6 +365,7 @@ void add_experiments(nb::module_& m) {
         .def_ro("csv", &RunResult::csv)
         .def_ro("junit", &RunResult::junit)
         .def_ro("times", &RunResult::times)
+        .def_ro("stages", &RunResult::stages)
         .def_ro("boxes", &RunResult::boxes)
         .def_prop_ro("films", [](nb::handle self) { return films_of(self); })
         .def_prop_ro("references", [](nb::handle self) { return references_of(self); })
@@ -325,8 +383,16 @@ void add_experiments(nb::module_& m) {
             return result_of(join(parts, "crescent.join"));
         },
         "parts"_a);
-    m.def("run", &run_experiment, "experiment"_a, "first"_a, "last"_a, "threads"_a, "isa"_a, "studies"_a,
-        "progress"_a.none(), "callables"_a, "repeats"_a, "kept"_a);
+    m.def(
+        "run",
+        [](const Experiment& experiment, int first, int last, int threads, const std::string& isa, bool studies,
+            bool references, const nb::object& progress, const CallableArms& callables, int repeats,
+            nb::typed<nb::list, RunResult> kept) {
+            return run_experiment(experiment, first, last, threads, isa, {.references = references, .studies = studies},
+                progress, callables, repeats, std::move(kept));
+        },
+        "experiment"_a, "first"_a, "last"_a, "threads"_a, "isa"_a, "studies"_a, "references"_a, "progress"_a.none(),
+        "callables"_a, "repeats"_a, "kept"_a);
 }
 
 }  // namespace crescent::python

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -62,6 +63,9 @@ using Boxes = std::vector<std::tuple<std::string, int, int, int, int>>;
 
 using Times = std::vector<std::tuple<std::string, std::uint64_t, double, std::uint64_t, double>>;
 
+/// Name and seconds of wall-clock time of each stage of a run, in their order.
+using Stages = std::vector<std::pair<std::string, double>>;
+
 /// The results of a run, as plain data: texts, films and references.
 struct RunResult {
     double s = 0;  // the experiment's own
@@ -74,6 +78,7 @@ struct RunResult {
     Times times;
     int threads = 0;  // with which they were measured
     Boxes boxes;
+    Stages stages;
 };
 
 RunResult result_of(Measured&& m);

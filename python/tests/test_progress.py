@@ -1,10 +1,14 @@
 """The bar of a run: tqdm's where it is installed and somebody watches."""
 
+import pickle
 import sys
 import types
 
+import numpy as np
 import pytest
+from tiny import TINY
 
+import crescent
 from crescent._progress import bar
 
 
@@ -71,3 +75,37 @@ def test_without_tqdm_a_bar_must_not_be_wanted(monkeypatch):
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
     with pytest.raises(ImportError), bar(True):
         pass
+
+
+def test_a_run_announces_what_it_computes_beside_the_films_and_states_its_time():
+    e = crescent.parse(TINY)
+    stages = []
+
+    def noted(what, done, total):
+        assert done <= total, (what, done, total)
+        if not stages or stages[-1][0] != what:
+            stages.append((what, 0.0))
+        stages[-1] = (what, done / total if total else 1.0)
+
+    measured = crescent.run(e, studies=True, progress=noted)
+    assert stages[-1][0].startswith("tails, furnaces, article checks: ") and "% of all samples" in stages[-1][0]
+    assert stages[-1][1] == 1.0
+    assert list(measured.stages) == ["references", "films", "tails, furnaces and article checks", "metrics"]
+    assert all(seconds >= 0 for seconds in measured.stages.values()) and measured.stages["films"] > 0
+    assert list(crescent.run(e, seeds=1).stages) == ["references", "films", "metrics"]
+
+
+def test_without_references_there_are_films_alone(tmp_path):
+    e = crescent.parse(TINY)
+    whole, films = crescent.run(e, seeds=1), crescent.run(e, references=False, out=tmp_path / "out")
+    assert films.references == {} and films.records() == [] and films.holds
+    assert {film.seed for film in films.films.values()} == {7}
+    for key, film in whole.films.items():
+        assert np.array_equal(film.y, films.films[key].y)
+    with pytest.raises(KeyError, match="references=False"):
+        films.metric("rmse", "cosine", 4, "ball")
+    with pytest.raises(ValueError, match="without references"):
+        crescent.run(e, references=False, studies=True)
+    again = crescent.open(tmp_path / "out")
+    assert set(again.films) == set(films.films)
+    assert again.stages == films.stages == pickle.loads(pickle.dumps(films)).stages

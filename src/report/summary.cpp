@@ -149,6 +149,15 @@ std::string speed(const Timing& t) {
         "\n";
 }
 
+/// The stages that took 5 % of the time or more.
+std::string shares(const Timing& t) {
+    std::string out;
+    for (const auto& [name, seconds] : t.stages)
+        if (t.total_s > 0 && seconds >= 0.05 * t.total_s)
+            out += fmt::format("{}{:.0f} % {}", out.empty() ? "" : "; ", 100 * seconds / t.total_s, name);
+    return out.empty() ? out : clip("  " + out, columns) + "\n";
+}
+
 std::string where(const ReportInputs& in, const std::string& out_dir, const OutputParts& parts) {
     const std::string dir = out_dir.empty() ? "." : out_dir;
     const auto line = [](const char* what, const std::string& path) {
@@ -178,7 +187,7 @@ std::string terminal_summary(
                     "  {}: NaN, infinite or negative,\n  or a pdf that cannot be used", plural(bad, "bad sample"))));
     for (const std::string& warning : warnings_of(in.experiment))
         out += "\n" + clip("  warning: " + warning, columns) + "\n";
-    return out + "\n" + speed(timing) + where(in, out_dir, parts);
+    return out + "\n" + speed(timing) + shares(timing) + where(in, out_dir, parts);
 }
 
 }  // namespace crescent

@@ -65,6 +65,12 @@ TEST(Summary, PrintsHashesSpeedAndWhereToLook) {
     EXPECT_NE(text.find("out/here/report.html"), std::string::npos);
 }
 
+TEST(Summary, HasTheSharesOfTheStages) {
+    Sample s;
+    s.timing.stages = {{"references", 0.25}, {"films", 1.25}, {"metrics", 0.05}, {"report", 0.5}};
+    EXPECT_NE(summary(s).find("  10 % references; 50 % films; 20 % report\n"), std::string::npos) << summary(s);
+}
+
 TEST(Summary, FilmNameOmitsSIfItsArmIgnoresS) {
     Sample s;
     EXPECT_NE(summary(s).find("  cosine n=64  "), std::string::npos) << summary(s);

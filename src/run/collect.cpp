@@ -60,6 +60,7 @@ void add_tails(
         const Job job = with_sampler(jobs[k / regions.size()], prepared);
         tails[k] = region_tail(prepared.scene.with_s(job.s), job,
             AreaPixels(regions[k % regions.size()].area(), prepared.shapes), isa, monitor);
+        monitor.advance(1);
     });
     for (std::size_t k = 0; k < tails.size(); ++k) {
         const Job& job = jobs[k / regions.size()];
@@ -67,6 +68,24 @@ void add_tails(
             if (run.key.seed == plan.seeds.front() && run.key.arm == job.arm && run.key.s == job.s)
                 run.regions[k % regions.size()].tail = tails[k];
     }
+}
+
+/// Begins the stage of the tails, furnaces and article checks, with its share of the samples of the run: those that
+/// films have at geometry pixels, and those of tails and furnaces, at most.
+void begin_studies(const RunPlan& plan, const Prepared& prepared, ProgressMonitor& monitor) {
+    double films = 0, studies = 0;
+    for (const Job& job : plan.jobs)
+        films += static_cast<double>(job.n.back()) * static_cast<double>(prepared.geometry_pixels);
+    const std::size_t jobs = jobs_of(plan.whole, plan.whole.seed).size();
+    for (const Region& region : plan.experiment.regions) {
+        const std::uint64_t pixels = AreaPixels(region.area(), prepared.shapes).count();
+        studies += static_cast<double>(jobs) * static_cast<double>(tail_plan(pixels).n * pixels);
+    }
+    for (const FurnacePlan& furnace : plan.whole.furnaces) studies += static_cast<double>(furnace.n);
+    const double share = films + studies > 0 ? studies / (films + studies) : 0;
+    const std::size_t units = jobs * plan.experiment.regions.size() + plan.whole.furnaces.size() + 1;
+    monitor.begin(fmt::format("tails, furnaces, article checks: {:.0f} % of all samples", 100 * share),
+        static_cast<double>(units));
 }
 
 void add_hashes(Measured& out) {
@@ -165,18 +184,21 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
         out.timing.stages.emplace_back(name, start.seconds());
     };
     if (options.studies) {
+        begin_studies(plan, prepared, monitor);
         stage("tails, furnaces and article checks", [&] {  // these do not depend on each other
             side_by_side([&] { add_tails(plan, prepared, with.isa, monitor, out.metrics); },
                 [&] {
                     out.evidence = measure_evidence(plan.whole, with.isa, monitor);
+                    monitor.advance(1);
                     out.metrics.furnaces =
                         furnaces(plan.whole, figures_of(out.experiment), with.isa, monitor, prepared.outside);
+                    monitor.advance(static_cast<double>(plan.whole.furnaces.size()));
                 });
         });
     }
     add_view(prepared, out);
     out.metrics.series = seeds_of(plan.whole);
-    stage("meters", [&] {
+    stage("metrics", [&] {
         add_hashes(out);
         add_references_compared(out);
         add_spreads(out);

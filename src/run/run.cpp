@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -39,11 +40,9 @@ double samples_of(const RunPlan& plan, std::uint32_t seed, std::uint64_t pixels)
 std::vector<JobResult> execute_all(const RunPlan& plan, const Prepared& prepared, const Engine& engine,
     ProgressMonitor& monitor, Checkpoint* checkpoint) {
     std::vector<JobResult> results;
-    for (std::size_t k = 0, seed = 0; k < plan.jobs.size(); ++k) {
+    for (std::size_t k = 0; k < plan.jobs.size(); ++k) {
         const Job& job = plan.jobs[k];
-        if (k == 0 || job.seed != plan.jobs[k - 1].seed)
-            monitor.begin(fmt::format("seed {} of {}", plan.range.first + static_cast<int>(seed++), plan.whole.seeds),
-                samples_of(plan, job.seed, prepared.geometry_pixels));
+        begin_seed(plan, k, prepared.geometry_pixels, monitor);
         results.push_back(execute(plan, prepared, job, engine, monitor, job.seed == plan.seeds.front(), checkpoint));
         monitor.check();
     }
@@ -78,6 +77,14 @@ Engine engine_of(const RunOptions& options) {
 }
 
 }  // namespace
+
+void begin_seed(const RunPlan& plan, std::size_t job, std::uint64_t pixels, ProgressMonitor& monitor) {
+    const std::uint32_t seed = plan.jobs[job].seed;
+    if (job > 0 && seed == plan.jobs[job - 1].seed) return;
+    const auto place = std::ranges::find(plan.seeds, seed) - plan.seeds.begin();
+    monitor.begin(
+        fmt::format("seed {} of {}", plan.range.first + place, plan.whole.seeds), samples_of(plan, seed, pixels));
+}
 
 RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor) {
     const Stopwatch start;

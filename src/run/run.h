@@ -1,6 +1,8 @@
 // The steps of a run in one call: plan, execute, collect, write.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -34,6 +36,10 @@ struct RunResult {
     Provenance provenance;
     std::string summary;  // for the terminal
 };
+
+/// Begins the stage of a seed, "seed 3 of 16", if this job of the plan is its first; units are samples. `pixels`: those
+/// that show geometry.
+void begin_seed(const RunPlan& plan, std::size_t job, std::uint64_t pixels, ProgressMonitor& monitor);
 
 /// Runs `experiment` and writes nothing. Throws Interrupted if the monitor requests it.
 Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor);

@@ -46,6 +46,32 @@ TEST(RunSteps, AnyOrderOfJobsGivesTheSameNumbers) {
     EXPECT_TRUE(stepwise.monte_carlo.empty());
 }
 
+/// Keeps every stage: what, units done, their total.
+class Stages : public PolledMonitor {
+public:
+    std::vector<State> all;
+    void begin(std::string_view what, double total) override {
+        finish();
+        PolledMonitor::begin(what, total);
+    }
+    void finish() {
+        if (!state().what.empty()) all.push_back(state());
+    }
+};
+
+TEST(RunSteps, EndTheirStagesAtTheirTotals) {
+    Stages stages;
+    const Measured measured = measure_in_memory(tiny(), {}, stages);
+    stages.finish();
+    ASSERT_EQ(stages.all.size(), 4u);
+    EXPECT_EQ(stages.all[1].what, "seed 1 of 2");
+    EXPECT_THAT(
+        stages.all[3].what, ::testing::MatchesRegex("tails, furnaces, article checks: [0-9]+ % of all samples"));
+    for (const PolledMonitor::State& stage : stages.all) EXPECT_DOUBLE_EQ(stage.done, stage.total) << stage.what;
+    ASSERT_EQ(measured.timing.stages.size(), 4u);
+    EXPECT_EQ(measured.timing.stages[0].first, "references");
+}
+
 TEST(RunSteps, ComputeTheArticleReferenceOnRequest) {
     ProgressMonitor monitor;
     const RunPlan plan = crescent::plan(tiny({"reference.monte_carlo=true", "seeds=1"}));
