@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _arrays
+from . import _arrays, _crescent
 from ._arrays import Array, Parts
 from ._check import _of_library
 from ._context import Context, ContextCalls, arrays_of
@@ -27,6 +27,12 @@ CallableArm = tuple[
 class Samplers(dict[str, Sampler | Combination]):
     """Samplers by the name of their arm. A callable, or the text "FILE.py:NAME", becomes a :class:`crescent.Sampler`;
     :func:`crescent.mis`, :func:`crescent.mixture` and :func:`crescent.ris` combine samplers by their names."""
+
+    def __missing__(self, name: Any) -> Any:
+        """KeyError names those that there are, and the nearest."""
+        near = _crescent.nearest(str(name), list(self))
+        hint = f"; did you mean '{near}'?" if near else ""
+        raise KeyError(f"no sampler {name!r}: there are {', '.join(self) or 'none'}{hint}")
 
     def __setitem__(self, name: str, sampler: Any) -> None:
         super().__setitem__(name, _sampler_of(name, sampler))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ._paths import path_of
+from ._paths import inside, path_of
 
 if TYPE_CHECKING:
     from .experiments import Experiment
@@ -43,14 +43,34 @@ class Table(dict[str, Any]):
         super().clear()
         super().update({key: live(self._e, (*self._steps, key), v) for key, v in now.items()})
 
+    def __missing__(self, key: Any) -> Any:
+        """KeyError names the keys that there are, and the nearest."""
+        path = path_of([*self._steps, str(key)])
+        if self._steps == ("arms",) and key in self._e.samplers:
+            raise KeyError(f"{path}: is a sampler in Python: expected e.samplers[{key!r}]")
+        try:
+            return inside(dict(self), str(key))
+        except KeyError as error:
+            raise KeyError(f"{path}: {path_of(self._steps)} {error.args[0]}") from None
+
     def __setitem__(self, key: str, value: Any) -> None:
         self.update({key: value})
 
     def update(self, *given: Any, **named: Any) -> None:
         """Changes several keys, which are checked together."""
         changes = dict(*given, **named)
+        if len(self._steps) > 1:
+            self._must_be_there()
         self._e._set({(*self._steps, key): value for key, value in changes.items()})
         self._read()
+
+    def _must_be_there(self) -> None:
+        """KeyError if this table was taken out since it was read: a change would add another one of its name."""
+        try:
+            self._e._at(self._steps)
+        except KeyError:
+            path = path_of(self._steps)
+            raise KeyError(f"{path}: was removed from the experiment; e[{path!r}] = {{...}} adds one") from None
 
     def __ior__(self, other: Any) -> Table:  # type: ignore[override,misc]
         self.update(other)
@@ -64,14 +84,14 @@ class Table(dict[str, Any]):
 
     def __delitem__(self, key: str) -> None:
         if key not in self:
-            raise KeyError(key)
+            self.__missing__(key)
         self._e._take_out((*self._steps, key), stacklevel=3)
         self._read()
 
     def pop(self, key: str, *default: Any) -> Any:
         """Takes a key out, with what names it; returns its value."""
         if key not in self:
-            return super().pop(key, *default)
+            return super().pop(key, *default) if default else self.__missing__(key)
         value = plain(self[key])
         self._e._take_out((*self._steps, key), stacklevel=3)
         self._read()

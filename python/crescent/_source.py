@@ -136,23 +136,24 @@ def taken_out(
 ) -> tuple[Source, _crescent.Experiment, list[Steps]]:
     """`source`, from which these names were taken out, without the tables that need them: no others are taken out.
 
-    ValueError, as for `source` itself, where an experiment remains wrong without them."""
+    ValueError states what remains wrong without them."""
     try:
         return source, source.core(), []
     except ValueError as error:
-        refused = error
+        remains = error
     needed = _dependents(before.tree(), lost) if lost else []
     for _ in range(_ROUNDS if lost else 0):
         try:
             source.without(needed).core()
             break
         except ValueError as error:
+            remains = error
             wrong = [steps for steps in _in_message(before.tree(), str(error)) if steps not in needed]
             if not wrong:
-                raise refused from None
+                raise
             needed += wrong
     else:
-        raise refused
+        raise remains
     for steps in list(needed):
         kept = [other for other in needed if other != steps]
         try:

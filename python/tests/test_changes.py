@@ -4,6 +4,7 @@ raises with the way to say it."""
 import copy
 import json
 import pickle
+import re
 import warnings
 from pathlib import Path
 
@@ -198,3 +199,58 @@ def test_an_arm_of_python_has_its_own_sample_counts():
 def test_paths_are_read_as_they_are_written():
     for steps in (["arms", "a b"], ["arms", "o'brien", "n"], ["x", 'say "it"'], ["x", "a.b[1]"], ["x", "ä"]):
         assert steps_of(path_of(steps)) == steps
+
+
+@pytest.mark.parametrize(
+    ("use", "said"),
+    [
+        (lambda e: e["arms"].pop("phnog"), "did you mean 'phong'"),
+        (lambda e: e["image"]["widht"], "did you mean 'width'"),
+        (lambda e: e["widht"], "did you mean 'image.width'"),
+        (lambda e: e.with_(widht=3), "did you mean 'image.width'"),
+        (lambda e: e.with_({"arms": {}}), r"^--set arms=\{\}: arms: expected one or more tables"),
+        (lambda e: e["arms"].clear(), r"^--set arms=\{\}: arms: expected one or more tables"),
+        (lambda e: e["image", "width"], "is no path: expected a text such as"),
+        (lambda e: e.with_({"image.width": None}), r"e\.remove\(path\)"),
+        (lambda e: e.with_(["n=3"]), "expected paths with their values"),
+        (lambda e: e.diff("gallery"), r"crescent\.load\('gallery'\)"),
+        (lambda e: e.samplers["mien"], "did you mean 'mine'"),
+        (lambda e: e["arms"].pop("mine"), r"expected e\.samplers\['mine'\]"),
+        (lambda e: e.keys(), r"expected list\(e\)"),
+        (lambda e: e.save("x.toml"), r"expected Path\(file\)\.write_text\(e\.text\)"),
+        (lambda e: crescent.load(3), "the name of an installed experiment"),
+        (lambda e: crescent.load("gallery", "n=3"), "expected paths with their values"),
+        (lambda e: crescent.parse(None), "crescent.load reads a file"),
+        (lambda e: crescent.join([]), "expected one or more folders of runs"),
+        (lambda e: crescent.join("part-1"), "expected one or more folders of runs"),
+    ],
+)
+def test_what_a_stranger_tries_is_answered_by_the_way_to_say_it(use, said):
+    e = crescent.parse(TINY)
+    e.samplers["mine"] = lambda wo, u: None
+    before = e.text
+    with pytest.raises((KeyError, ValueError, TypeError, AttributeError)) as raised:
+        use(e)
+    message = raised.value.args[0]
+    assert re.search(said, message), message
+    assert e.text == before and len(message.splitlines()) <= 3
+
+
+def test_a_table_that_was_removed_is_not_added_by_an_older_reading_of_it():
+    e = crescent.parse(TINY)
+    phong = e["arms"]["phong"]
+    e.remove("arms.phong")
+    with pytest.raises(KeyError, match=r"arms.phong: was removed.*e\['arms.phong'\] = "):
+        phong["n"] = [4]
+    assert list(e["arms"]) == ["cosine"]
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_arm_and_light_of_a_shipped_experiment_can_be_removed(name):
+    whole = crescent.load(name)
+    for arm in whole["arms"]:
+        e = crescent.load(name)
+        removed = e.remove(f"arms.{arm}")
+        assert f"arms.{arm}" not in e and not any(path in e for path in removed)
+        e.resize(96, 54)
+    assert crescent.load(name).diff(pickle.loads(pickle.dumps(whole))) == {}

@@ -360,3 +360,27 @@ def test_flip_is_measured_of_the_first_seeds_and_joined(tmp_path):
     joined = crescent.join([tmp_path / "1", tmp_path / "3"])
     assert [r for r in joined.records() if r["metric"] == "flip"] == rows
     assert joined.metrics["bands"] == whole.metrics["bands"]
+
+
+@pytest.mark.parametrize(
+    ("use", "said"),
+    [
+        (lambda m: m.metric("rmes", "phong", 4, "ball"), "did you mean 'rmse'"),
+        (lambda m: m.metric("rmse", "phong", 4, "bal"), "did you mean 'ball'"),
+        (lambda m: m.metric("rmse", "phnog", 4, "ball"), "did you mean 'phong'"),
+        (lambda m: m.metric("rmse", "phong", 5, "ball"), "there are n=4 s=32"),
+        (lambda m: m.to_latex("rmes"), "did you mean 'rmse'"),
+        (lambda m: m.to_latex(arms=["phnog"]), "did you mean 'phong'"),
+        (lambda m: m.films["phong", 4].z, "expected one of r, g, b, y"),
+    ],
+)
+def test_a_number_or_plane_that_a_result_lacks_is_answered_by_the_nearest(use, said):
+    with pytest.raises((KeyError, AttributeError), match=said):
+        use(crescent.run(crescent.parse(TINY), seeds=1))
+
+
+def test_a_damaged_result_is_named(tmp_path):
+    crescent.run(crescent.parse(TINY), seeds=1, out=tmp_path / "out")
+    (tmp_path / "out" / "arrays.npz").write_bytes(b"xx")
+    with pytest.raises(ValueError, match="arrays.npz: is damaged"):
+        crescent.open(tmp_path / "out")

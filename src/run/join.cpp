@@ -192,6 +192,7 @@ std::vector<AssertionResult> backend_claims(const std::vector<Part>& parts) {
 }
 
 Measured join_parts(const std::vector<Part>& parts, const Rows& rows, const std::string& command) {
+    if (parts.empty()) throw InputError({"join", 0, 0}, "expected the folders of one or more runs, found none");
     const auto of_longest_series =
         std::ranges::max_element(parts, {}, [](const Part& part) { return part.file.provenance.series; });
     Measured out;

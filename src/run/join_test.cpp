@@ -39,6 +39,8 @@ TEST_F(Joined, PartsHaveTheNumbersOfOneRun) {
     EXPECT_TRUE(joined.films.empty());
 }
 
+TEST_F(Joined, NothingIsRefused) { EXPECT_THAT(mistake({}), HasSubstr("one or more runs, found none")); }
+
 TEST_F(Joined, MissingSeedsAreKnown) {
     const Measured joined = join({part("last", experiment, {3, 3})}, "join");
     EXPECT_THAT(joined.provenance.places, ElementsAre(3));
