@@ -18,7 +18,8 @@ export class EngineError extends Error {
 export interface Box { x0: number; y0: number; x1: number; y1: number }
 export const pixelsOf = (b: Box): number => (b.x1 - b.x0) * (b.y1 - b.y0);
 
-export type Call = (...numbers: number[]) => number;
+export type Call = (...numbers: number[]) => number | Promise<number>;
+type Export = (...numbers: number[]) => number;
 const text = new TextDecoder();
 
 /** The part of WASI that the C++ library needs: no files, no real clock, no input. */
@@ -44,15 +45,19 @@ function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
   return new Proxy(known, { get: (all, name) => all[String(name)] ?? nothing, has: () => true });
 }
 
-/** What the module calls of the user's sampler, apps/web/user_sampler.cpp. */
-export type UserCalls = (memory: () => WebAssembly.Memory) => { user_sample: Call; user_pdf: Call };
+/** What the module calls of the user's sampler, apps/web/user_sampler.cpp. `suspends`: the calls answer later, and the
+ *  module waits for them (JSPI). */
+export type UserCalls = ((memory: () => WebAssembly.Memory) => { user_sample: Call; user_pdf: Call }) & { suspends?: boolean };
+/** What TypeScript's library does not have. */
+const suspension = WebAssembly as unknown as { Suspending: new (call: Call) => Call; promising(call: Export): (...numbers: number[]) => Promise<number> };
 const noUser: UserCalls = () => {
   const none: Call = () => { throw new EngineError("bug", "there is no sampler of the user here"); };
   return { user_sample: none, user_pdf: none };
 };
 
 export class Api {
-  private readonly calls: Record<string, Call>;
+  private readonly calls: Record<string, Export>;
+  private readonly suspends: boolean;
   private readonly memory: WebAssembly.Memory;
 
   constructor(module: WebAssembly.Module, user: UserCalls = noUser) {
@@ -61,11 +66,13 @@ export class Api {
       throw new EngineError(this.words(kind, kindSize), this.words(at, size));
     };
     const system = wasi(memory);
-    const imports: WebAssembly.Imports = { api: { failed, ...user(memory) }, wasi_snapshot_preview1: {} };
+    this.suspends = user.suspends ?? false;
+    const given = Object.entries(user(memory)).map(([name, call]) => [name, this.suspends ? new suspension.Suspending(call) : call] as const);
+    const imports: WebAssembly.Imports = { api: { failed, ...Object.fromEntries(given) }, wasi_snapshot_preview1: {} };
     for (const { module: from, name } of WebAssembly.Module.imports(module))
       if (from === "wasi_snapshot_preview1") imports[from]![name] = system[name]!;
     const instance = new WebAssembly.Instance(module, imports);
-    this.calls = instance.exports as unknown as Record<string, Call>;
+    this.calls = instance.exports as unknown as Record<string, Export>;
     this.memory = instance.exports["memory"] as WebAssembly.Memory;
     this.calls["_initialize"]!();
   }
@@ -82,9 +89,22 @@ export class Api {
     try {
       return this.calls[name]!(...given);
     } catch (error) {
-      if (error instanceof EngineError) throw error;
-      const full = error instanceof RangeError || /memory|unreachable/.test(String(error));
-      throw new EngineError(full ? "memory" : "bug", String(error));
+      throw Api.fault(error);
+    }
+  }
+  private static fault(error: unknown): EngineError {
+    if (error instanceof EngineError) return error;
+    const full = error instanceof RangeError || /memory|unreachable/.test(String(error));
+    return new EngineError(full ? "memory" : "bug", String(error));
+  }
+
+  /** The same for a call that may reach the user's sampler. One at a time. */
+  private async later(name: string, ...given: number[]): Promise<number> {
+    if (!this.suspends) return this.number(name, ...given);
+    try {
+      return await suspension.promising(this.calls[name]!)(...given);
+    } catch (error) {
+      throw Api.fault(error);
     }
   }
 
@@ -99,6 +119,20 @@ export class Api {
     if (request !== undefined) this.request(request);
     this.number(name, ...given);
     return this.words(this.number("response_data"), this.number("response_size"));
+  }
+
+  /** Of a call that may reach the user's sampler. */
+  async sayLater(name: string, request?: unknown, ...given: number[]): Promise<string> {
+    if (request !== undefined) this.request(request);
+    await this.later(name, ...given);
+    return this.words(this.number("response_data"), this.number("response_size"));
+  }
+  async jsonLater(name: string, request?: unknown, ...given: number[]): Promise<unknown> {
+    return JSON.parse(await this.sayLater(name, request, ...given));
+  }
+  async bytesLater(name: string, size: number, ...given: number[]): Promise<ArrayBuffer> {
+    const at = await this.later(name, ...given);
+    return this.memory.buffer.slice(at, at + size);
   }
 
   json<T>(name: string, request?: unknown, ...given: number[]): T {

@@ -105,8 +105,9 @@ export function controlRows(d: Described, change: Change, only: readonly string[
   return [...knobs, ...regions];
 }
 
-export function choice(id: string, label: string, options: [string, string][], chosen: string, taken: (value: string) => void): HTMLElement {
+/** options: a value, its words, and whether it cannot be chosen. */
+export function choice(id: string, label: string, options: [string, string, boolean?][], chosen: string, taken: (value: string) => void): HTMLElement {
   const select = el("select", { id, onchange: (e): void => taken((e.target as HTMLSelectElement).value) },
-    ...options.map(([value, words]) => el("option", { value, selected: value === chosen }, words)));
+    ...options.map(([value, words, disabled = false]) => el("option", { value, selected: value === chosen, disabled }, words)));
   return el("div", { class: "choice" }, el("label", { for: id }, label), select);
 }

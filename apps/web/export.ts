@@ -1,8 +1,9 @@
 // The user's sampler elsewhere: a program for `crescent check --exec`, which runs the same code with the f of the surface
 // that it was checked on, unless the code has its own; and what is to be filled in to write it in C++ or Python.
 import { Ground, grounds } from "./templates";
+import { isShader } from "./wgsl";
 
-export const exports: [string, string][] = [["program", "a program for node, and its command"], ["cpp", "the frame of a C++ struct"], ["python", "the frame of a Python file"]];
+export const exports: [string, string][] = [["program", "a program, and its command"], ["cpp", "the frame of a C++ struct"], ["python", "the frame of a Python file"]];
 
 const rho_d = 0.5, rho_s = 0.4; // src/check/sources/cases.cpp, case_setup
 
@@ -74,7 +75,7 @@ process.stdin.setEncoding("utf8").on("data", (text) => {
 /** The code as comments, for who writes it in another language. */
 const commented = (code: string, mark: string): string => code.trimEnd().split("\n").map((line) => `${mark} ${line}`.trimEnd()).join("\n");
 
-const cpp = (code: string): string => `// sampler.h: the frame of a sampler, to be filled in. Check it by crescent/gtest.h or crescent/check.h:
+const cpp = (code: string, language: string): string => `// sampler.h: the frame of a sampler, to be filled in. Check it by crescent/gtest.h or crescent/check.h:
 //   EXPECT_THAT(Sampler{}, crescent::IsARightSampler());
 //   crescent::check_sampler("sampler", Sampler{});
 // Local frame, n = +z; w_o is given, w_i is drawn, both leave the surface; pdf in 1/sr.
@@ -97,11 +98,11 @@ struct Sampler {
     double f(const Vec3& wo, const Vec3& wi) const;
 };
 
-// The same in JavaScript:
+// The same in ${language}:
 ${commented(code, "//")}
 `;
 
-const python = (code: string): string => `# sampler.py: the frame of a sampler, to be filled in. Check it:
+const python = (code: string, language: string): string => `# sampler.py: the frame of a sampler, to be filled in. Check it:
 #   crescent check sampler.py:sampler
 # Local frame, n = +z; w_o is given, w_i is drawn, both leave the surface; pdf in 1/sr. Arrays have a row for each draw.
 import crescent
@@ -117,14 +118,15 @@ def pdf(wo, wi):  # wo[n, 3], wi[n, 3]: pdf[n]
 
 sampler = crescent.Sampler(sample, pdf, name="sampler")
 
-# The same in JavaScript:
+# The same in ${language}:
 ${commented(code, "#")}
 `;
 
 /** The sampler in this format, with the f of this ground (apps/web/templates.ts). */
 export function exported(format: string, code: string, ground: string): { name: string; text: string } {
-  const whole = withBrdf(code, ground);
-  if (format === "cpp") return { name: "sampler.h", text: cpp(whole) };
-  if (format === "python") return { name: "sampler.py", text: python(whole) };
+  const wgsl = isShader(code), whole = wgsl ? code : withBrdf(code, ground), language = wgsl ? "WGSL" : "JavaScript";
+  if (format === "cpp") return { name: "sampler.h", text: cpp(whole, language) };
+  if (format === "python") return { name: "sampler.py", text: python(whole, language) };
+  if (wgsl) return { name: "sampler.wgsl", text: `// crescent check sampler.wgsl\n${code}` };
   return { name: "sampler.mjs", text: program(whole) };
 }

@@ -1,5 +1,6 @@
 // The jobs of a worker, and their execution.
-import { Api, Box, EngineError, pixelsOf, UserCalls } from "./api";
+import { Api, Box, EngineError, pixelsOf } from "./api";
+import { UserSampler } from "./user";
 
 /** Files of the user, which an experiment names. `key`: another one for other files. */
 export interface Given { key: string; files: { name: string; bytes: Blob }[] }
@@ -31,11 +32,13 @@ const filmPlanes = 9, referencePlanes = 5;
 
 declare class FileReaderSync { readAsArrayBuffer(blob: Blob): ArrayBuffer }
 
-function perform(api: Api, job: Exclude<Job, { kind: "open" | "look" }>): Answer {
+async function perform(api: Api, job: Exclude<Job, { kind: "open" | "look" }>): Promise<Answer> {
   switch (job.kind) {
     case "tile": {
       const { x0, y0, x1, y1 } = job.box, pixels = pixelsOf(job.box);
-      return { bytes: job.arms.map((arm) => api.bytes("tile", 4 * ((filmPlanes + 1) * pixels + 1), arm, job.n, x0, y0, x1, y1)) };
+      const bytes: ArrayBuffer[] = [];
+      for (const arm of job.arms) bytes.push(await api.bytesLater("tile", 4 * ((filmPlanes + 1) * pixels + 1), arm, job.n, x0, y0, x1, y1));
+      return { bytes };
     }
     case "reference": {
       const { x0, y0, x1, y1 } = job.box;
@@ -57,7 +60,7 @@ function perform(api: Api, job: Exclude<Job, { kind: "open" | "look" }>): Answer
       }) };
     }
     case "json":
-      return { response: api.json(job.call, job.request, ...(job.given ?? [])) };
+      return { response: await api.jsonLater(job.call, job.request, ...(job.given ?? [])) };
     case "words":
       return { response: api.say(job.call, job.request) };
     case "call":
@@ -77,7 +80,7 @@ function perform(api: Api, job: Exclude<Job, { kind: "open" | "look" }>): Answer
       return { bytes: [api.bytes("paint", 4 * pixelsOf(job.box), picture, index, other, top, times, x0, y0, x1, y1)] };
     }
     case "disk":
-      api.json(job.call, job.request);
+      await api.jsonLater(job.call, job.request);
       return { bytes: [api.bytes("disk", 4 * job.size * job.size)] };
   }
 }
@@ -93,7 +96,7 @@ export class Answering {
   private given = ""; // the key of the files that the api has
 
   /** `kept`: the number of pixels for which it keeps the hits of primary rays. */
-  constructor(private readonly module: WebAssembly.Module, private readonly kept: number, private readonly user?: { calls: UserCalls; numbers: number; context: boolean }) {
+  constructor(private readonly module: WebAssembly.Module, private readonly kept: number, private readonly user?: UserSampler) {
     this.api = this.made();
   }
 
@@ -101,13 +104,14 @@ export class Answering {
     const { user } = this, api = new Api(this.module, user?.calls);
     this.given = "";
     api.number("keep_points", this.kept);
-    if (user) api.number("user_takes", user.numbers, user.context ? 1 : 0);
+    if (user) api.number("user_takes", user.numbers, user.context ? 1 : 0, user.bits);
     return api;
   }
 
   get size(): number { return this.api.size; }
 
-  answer(job: Job): Answer {
+  /** One at a time. */
+  async answer(job: Job): Promise<Answer> {
     if (job.kind === "open") this.last = job.opening;
     const about = ("opening" in job ? job.opening : undefined) ?? this.last;
     try {
@@ -117,7 +121,7 @@ export class Answering {
         this.api.json("prepare_reference");
         this.ready = true;
       }
-      return job.kind === "open" ? {} : perform(this.api, job);
+      return job.kind === "open" ? {} : await perform(this.api, job);
     } catch (error) {
       this.api = this.made(); // a failed call leaves its instance in an intermediate state
       this.here = undefined;

@@ -13,7 +13,9 @@ import { Faults, faultSheet } from "./faults";
 import { exercises } from "./exercises";
 import { FilmView } from "./film";
 import { packed, unpacked } from "./packed";
+import { shaderTemplates } from "./shader_templates";
 import { templates } from "./templates";
+import { isShader, missingForShaders } from "./wgsl";
 import { checkedCode, Work, Workshop } from "./workshop";
 import { choice } from "./controls";
 import { Described, Model, Shown, Viewer } from "./model";
@@ -330,16 +332,26 @@ export class Page implements Viewer {
     if (part === "faults") return found ? this.faults.show(at, found) : this.faults.list(at);
     if (part !== "write") return;
     at.replaceChildren(el("h2", {}, "Write a sampler"),
-      el("p", {}, "In JavaScript: ", el("code", {}, "sample(wo, u)"), " returns a direction w_i and its density, ", el("code", {}, "pdf(wo, wi)"), " the density of any direction. Local frame, n = +z; w_o is given, w_i is drawn, both leave the surface; pdf in 1/sr. A third argument, if the functions have one, has the surface and the lights."),
-      el("div", { class: "choices" }, choice("template", "start from", Object.entries(templates).map(([name, { title }]) => [name, title]), this.template, (value) => {
-        this.template = value;
-        Object.assign(this.state, { code: "", ground: "" });
-        this.loaded = "";
-        this.turn();
-        void this.loadCode();
-      })));
+      el("p", {}, "In JavaScript: ", el("code", {}, "sample(wo, u)"), " returns a direction w_i and its density, ", el("code", {}, "pdf(wo, wi)"), " the density of any direction. Local frame, n = +z; w_o is given, w_i is drawn, both leave the surface; pdf in 1/sr. A third argument, if the functions have one, has the surface and the lights. In WGSL: a file for ", el("code", {}, "crescent check FILE.wgsl"), ", whose comments call its functions; f is that of the surface."),
+      this.templateChoices(!this.state.code && this.template in shaderTemplates));
     this.workshop!.show(true);
     void this.loadCode();
+  }
+
+  /** The language of a sampler, and what it starts from. */
+  private templateChoices(wgsl: boolean): HTMLElement {
+    const open = (template: string): void => {
+      this.template = template;
+      Object.assign(this.state, { code: "", ground: "" });
+      this.loaded = "";
+      this.turn();
+      void this.loadCode();
+    };
+    const lacks = missingForShaders(), of = wgsl ? shaderTemplates : templates, names = Object.keys(of);
+    const language = wgsl ? "wgsl" : "javascript";
+    return el("div", { class: "choices", id: "templates", "data-language": language },
+      choice("language", "language", [["javascript", "JavaScript"], ["wgsl", lacks ? `WGSL: ${lacks}` : "WGSL", lacks !== ""]], language, (value) => open(value === "wgsl" ? "wgsl-cosine" : "cosine")),
+      choice("template", "start from", names.map((name) => [name, of[name]!.title]), names.includes(this.template) ? this.template : names[0]!, open));
   }
 
   private async openWorkshop(): Promise<void> {
@@ -354,7 +366,7 @@ export class Page implements Viewer {
 
   /** The code of the address, or a template. */
   private async loadCode(): Promise<void> {
-    const { code, ground } = this.state, { code: plain, ground: own } = templates[this.template]!;
+    const { code, ground } = this.state, { code: plain, ground: own } = { ...templates, ...shaderTemplates }[this.template]!;
     if (this.loaded === (code || "template")) return;
     this.loaded = code || "template";
     let text = plain;
@@ -363,12 +375,21 @@ export class Page implements Viewer {
     } catch {
       byId("wrong").append(el("p", {}, "The address has a sampler's code that cannot be read: a template is open."));
     }
-    if (this.state.part === "write") await this.workshop!.load({ code: text, ground: ground || own });
+    if (this.state.part !== "write") return;
+    this.showLanguage(text);
+    await this.workshop!.load({ code: text, ground: ground || own });
+  }
+
+  /** The choices are those of the code's language. */
+  private showLanguage(code: string): void {
+    const wgsl = isShader(code);
+    if (byId("templates").dataset["language"] !== (wgsl ? "wgsl" : "javascript")) byId("templates").replaceWith(this.templateChoices(wgsl));
   }
 
   /** The user has changed the code, or what it is shown on. */
   private async written({ code, ground }: Work): Promise<void> {
     if (this.state.part !== "write") return this.faults.forget();
+    this.showLanguage(code);
     const words = await packed(code);
     if (this.state.part !== "write") return;
     Object.assign(this.state, { code: words, ground });

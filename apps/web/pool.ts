@@ -2,6 +2,7 @@
 // worker, assembles the films; it processes its jobs in the order of their arrival.
 import { Box, EngineError } from "./api";
 import { Answer, Fault, Job, Opening, Reply } from "./jobs";
+import { isShader } from "./wgsl";
 
 type Done = (answer: Answer) => void;
 type Failed = (error: EngineError) => void;
@@ -88,6 +89,7 @@ export class FilmWorker {
 
 /** The user's code behind the script of a worker: see apps/web/user.ts. `first`: the line of the script before its first. */
 export function withUser(source: string, code: string): { source: string; first: number } {
+  if (isShader(code)) return { source: `${source}\ncrescentUser(() => ({ wgsl: ${JSON.stringify(code)} }));`, first: 0 };
   const before = `${source}\ncrescentUser(() => { "use strict";\n`;
   const names = ["sample", "pdf", "numbers"].map((name) => `${name}: typeof ${name} === "undefined" ? undefined : ${name}`);
   return { source: `${before}${code}\n;return { ${names.join(", ")} }; });`, first: before.split("\n").length - 1 };

@@ -1,6 +1,7 @@
 // The user's sampler in a worker: its functions, called for many rows of the module's memory. The page puts the code
 // behind the script of the worker, as the argument of crescentUser (apps/web/pool.ts).
 import { Call, EngineError, UserCalls } from "./api";
+import { openedShader } from "./wgsl";
 
 type Vector = [number, number, number];
 interface Light { kind: string; radius: number; radiance: Vector; position: Vector; normal: Vector; edge_u: Vector; edge_v: Vector; shines: boolean }
@@ -10,7 +11,10 @@ interface Functions {
   sample?: (wo: Vector, u: number[], context?: Context) => Drawn;
   pdf?: (wo: Vector, wi: Vector, context?: Context) => number;
   numbers?: unknown;
+  wgsl?: string; // in their place: a file of WGSL
 }
+/** `bits`: of the answers' precision. */
+export interface UserSampler { calls: UserCalls; numbers: number; context: boolean; bits: number }
 
 const kinds = ["disk", "sphere", "rectangle"];
 
@@ -100,7 +104,7 @@ function callsOf(sample: NonNullable<Functions["sample"]>, pdf: NonNullable<Func
 }
 
 /** Receives the user's code; the returned function gives its calls, undefined without code. Throws EngineError. */
-export function userSampler(): () => { calls: UserCalls; numbers: number; context: boolean } | undefined {
+export function userSampler(): () => UserSampler | Promise<UserSampler> | undefined {
   let functions: Functions | undefined, failed: EngineError | undefined;
   (self as unknown as { crescentUser: (make: () => Functions) => void }).crescentUser = (make) => {
     try {
@@ -112,11 +116,12 @@ export function userSampler(): () => { calls: UserCalls; numbers: number; contex
   return () => {
     if (failed) throw failed;
     if (!functions) return undefined;
-    const { sample, pdf, numbers = 2 } = functions;
+    const { sample, pdf, numbers = 2, wgsl } = functions;
+    if (wgsl !== undefined) return openedShader(wgsl);
     if (!sample) throw new EngineError("user", "there is no function sample(wo, u)");
     if (!pdf) throw new EngineError("user", "there is no function pdf(wo, wi)");
     if (typeof numbers !== "number" || !(numbers >= 1 && numbers <= 8 && Number.isInteger(numbers))) throw new EngineError("user", `numbers is ${shown(numbers)}; expected how many random numbers a sample takes, 1 to 8`);
     const context = sample.length > 2 || pdf.length > 2;
-    return { calls: callsOf(sample, pdf, context), numbers, context };
+    return { calls: callsOf(sample, pdf, context), numbers, context, bits: 53 };
   };
 }

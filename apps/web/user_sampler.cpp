@@ -25,6 +25,7 @@ namespace {
 
 std::size_t numbers_of_sample = 2;
 bool takes_context = false;
+int bits_of_answers = 53;
 
 const std::vector<std::string> all_of_context = {"s", "alpha", "rho_d", "rho_s", "lights"};
 
@@ -69,7 +70,7 @@ public:
     Traits traits() const override {
         Traits traits;
         traits.numbers = static_cast<int>(numbers_of_sample);
-        traits.bits = 53;
+        traits.bits = bits_of_answers;
         return traits;
     }
     bool serial() const override { return true; }
@@ -163,10 +164,12 @@ std::shared_ptr<const ExternalSampler> page_sampler() {
     return sampler;
 }
 
-/// What the user's functions take: so many random numbers a sample, and the context as third argument or not.
-CRESCENT_EXPORT(user_takes)(int numbers, int context)->void {
+/// What the user's functions take: so many random numbers a sample, and the context as third argument or not; and the
+/// precision of their answers, 24 or 53 bits.
+CRESCENT_EXPORT(user_takes)(int numbers, int context, int bits)->void {
     numbers_of_sample = static_cast<std::size_t>(std::clamp(numbers, 1, PrimarySample::most_numbers));
     takes_context = context != 0;
+    bits_of_answers = bits;
 }
 
 /// {sampler, surface, light, wo, evaluations} -> {state, verdicts: [{name, question, state, message, cause, theta,
@@ -244,10 +247,11 @@ CRESCENT_EXPORT(user_disk)()->void {
     const std::string what = query.at("what").get<std::string>();
     const int size = query.at("size").get<int>();
     const Disk disk = disk_of(at);
-    const auto pdf = [&](Vec3d wi) {
-        const Pair pair{at.wo, wi};
-        double p = 0;
-        at.adapter->exact_pdf(0, {&pair, 1}, {&p, 1});
+    const auto pdf = [&](const std::vector<Vec3d>& wi) {  // in one call: a graphics processor takes as long for one
+        std::vector<Pair> pairs;
+        for (const Vec3d w : wi) pairs.push_back({at.wo, w});
+        std::vector<double> p(wi.size());
+        at.adapter->exact_pdf(0, pairs, p);
         return p;
     };
     const auto f = [&](Vec3d wi) {
@@ -268,20 +272,34 @@ CRESCENT_EXPORT(user_disk)()->void {
         }
         constexpr int fine = 6;                                             // points of a bin, each way
         const double area = 2 * (2.0 / bins / fine) * (2.0 / bins / fine);  // sr; the disk's radius is 1
+        std::vector<Vec3d> points;
+        std::vector<std::size_t> bin_of;
         for (int j = 0; j < bins * fine; ++j)
             for (int i = 0; i < bins * fine; ++i)
                 if (const auto wi =
-                        disk.direction((2.0 * i + 1) / (bins * fine) - 1, (2.0 * j + 1) / (bins * fine) - 1))
-                    due[static_cast<std::size_t>((j / fine) * bins + i / fine)] +=
-                        pdf(*wi) * area * static_cast<double>(n);
+                        disk.direction((2.0 * i + 1) / (bins * fine) - 1, (2.0 * j + 1) / (bins * fine) - 1)) {
+                    points.push_back(*wi);
+                    bin_of.push_back(static_cast<std::size_t>((j / fine) * bins + i / fine));
+                }
+        const std::vector<double> p = pdf(points);
+        for (std::size_t k = 0; k < p.size(); ++k) due[bin_of[k]] += p[k] * area * static_cast<double>(n);
         return paint_ratio(disk, size, [&](double x, double y) {
             const auto k = static_cast<std::size_t>(bin(y) * bins + bin(x));
             return counts[k] + due[k] < 25 ? 1 : counts[k] / std::max(due[k], 1.0);  // too few to tell
         });
     }
+    if (what == "f") return paint_disk(disk, size, f);
+    std::vector<Vec3d> points;
     paint_disk(disk, size, [&](Vec3d wi) {
-        if (what == "pdf") return pdf(wi);
-        return what == "lost" && pdf(wi) > 0 ? 0 : f(wi);
+        points.push_back(wi);
+        return 0.0;
+    });
+    const std::vector<double> p = pdf(points);
+    std::size_t next = 0;
+    paint_disk(disk, size, [&](Vec3d wi) {
+        const double here = p[next++];
+        if (what == "pdf") return here;
+        return here > 0 ? 0 : f(wi);
     });
 }
 

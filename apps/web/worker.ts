@@ -12,19 +12,22 @@ const keptPixels = 300_000; // 60 MB
 const take = userSampler();
 let answering: Answering | undefined;
 
-scope.onmessage = ({ data }: MessageEvent): void => {
+async function respondTo(data: unknown): Promise<void> {
   let id = -1;
   try {
     if (!answering) {
-      answering = new Answering(data as WebAssembly.Module, keptPixels, take());
+      answering = new Answering(data as WebAssembly.Module, keptPixels, await take());
       post({ id, size: answering.size }, []);
       return;
     }
     const asked = data as { id: number; job: Job };
     id = asked.id;
-    const answer = answering.answer(asked.job);
+    const answer = await answering.answer(asked.job);
     post({ id, answer, size: answering.size }, answer.bytes ?? []);
   } catch (error) {
     post({ id, error: failure(error), size: answering?.size ?? 0 }, []);
   }
-};
+}
+
+let last = Promise.resolve(); // jobs in their order: one may wait for a graphics processor
+scope.onmessage = ({ data }: MessageEvent): void => { last = last.then(() => respondTo(data)); };

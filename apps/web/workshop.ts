@@ -13,6 +13,7 @@ import { FilmWorker, Pool, withUser } from "./pool";
 import { openingOf, Source } from "./state";
 import { grounds } from "./templates";
 import { figures, samplers } from "./text";
+import { isShader } from "./wgsl";
 import { evaluations, four } from "./workshop_settings";
 
 const faults: Record<string, string> = {
@@ -98,7 +99,7 @@ export class Workshop implements Viewer {
       el("div", { class: "columns" },
         el("div", {}, place, this.fault,
           el("div", { class: "row-wrap" }, button("check-yours", "Check", () => void this.check(), "main"), button("copy-address", "Copy the address", () => void this.copyAddress()), button("save-code", "Save as a file", () => this.save()),
-            el("label", { class: "file" }, "Open a file", el("input", { type: "file", id: "open-code", accept: ".js,.mjs,.txt", onchange: (e: Event) => void this.openFile(e) })))),
+            el("label", { class: "file" }, "Open a file", el("input", { type: "file", id: "open-code", accept: ".js,.mjs,.wgsl,.txt", onchange: (e: Event) => void this.openFile(e) })))),
         el("div", {}, this.views, el("figure", { class: "hemisphere" }, this.hemisphere, this.caption))),
       this.verdicts,
       el("h3", {}, "Its film beside a built-in one"), this.options, this.film.root, this.charts,
@@ -332,7 +333,7 @@ export class Workshop implements Viewer {
     const words = el("span", {}, location.href);
     this.at.speaker.say(await copied(words));
   }
-  private save(): void { download("sampler.js", this.editor.code); }
+  private save(): void { download(isShader(this.editor.code) ? "sampler.wgsl" : "sampler.js", this.editor.code); }
   private async openFile(event: Event): Promise<void> {
     const [file] = (event.target as HTMLInputElement).files ?? [];
     if (!file || file.size > 200_000) return;

@@ -150,6 +150,10 @@ if ! /usr/bin/python3 -c 'import wgpu' 2>/dev/null; then
     grep -q "crescent-bench\[shader\]" said || die "the package is not named: $(cat said)"
 fi
 
+# The page has the same text around the snippets.
+"$CRESCENT_PYTHON" -m crescent_shader.page | cmp - "$CRESCENT_SOURCE/apps/web/shader_text.json" ||
+    die "apps/web/shader_text.json is old: PYTHONPATH=python python -m crescent_shader.page >apps/web/shader_text.json"
+
 # Ten at once; then nothing is left.
 for i in $(seq 10); do check "$file" --sample 'wi = cosine_sample(u)' --pdf 'cosine_pdf(wi)' --timeout 100 --seed "$i" \
     >"at-once.$i" 2>&1 & done

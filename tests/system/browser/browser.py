@@ -12,7 +12,7 @@ def chromium(width=1280, height=900, flags=(), traced=""):
     options = webdriver.ChromeOptions()
     options.binary_location = "/usr/bin/chromium"
     for flag in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
-                 "--disable-ipc-flooding-protection", "--host-resolver-rules=MAP * ~NOTFOUND",
+                 "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--disable-ipc-flooding-protection", "--host-resolver-rules=MAP * ~NOTFOUND",
                  f"--window-size={width},{height}", *flags):
         options.add_argument(flag)
     if traced:

@@ -1,9 +1,9 @@
 // The samplers of the page in node, checked as the page checks them: those of the exercises before and after their
 // repair, and the templates.
-import { Api, UserCalls } from "../../../apps/web/api";
+import { Api } from "../../../apps/web/api";
 import { exercises } from "../../../apps/web/exercises";
 import { grounds, templates } from "../../../apps/web/templates";
-import { userSampler } from "../../../apps/web/user";
+import { userSampler, UserSampler } from "../../../apps/web/user";
 import { evaluations, four } from "../../../apps/web/workshop_settings";
 
 import "../../../apps/web/vendor/codemirror/editor"; // in the page, scripts of their own
@@ -17,9 +17,9 @@ export function checked(module: WebAssembly.Module, code: string, ground: string
   const take = userSampler();
   const names = ["sample", "pdf", "numbers"].map((name) => `${name}: typeof ${name} === "undefined" ? undefined : ${name}`);
   (global["crescentUser"] as (make: () => unknown) => void)(new Function(`"use strict";\n${code}\n;return { ${names.join(", ")} };`) as () => unknown);
-  const user = take() as { calls: UserCalls; numbers: number; context: boolean };
+  const user = take() as UserSampler;
   const api = new Api(module, user.calls), { lobe, lambert, sharpness, light } = grounds[ground]!;
-  api.number("user_takes", user.numbers, user.context ? 1 : 0);
+  api.number("user_takes", user.numbers, user.context ? 1 : 0, user.bits);
   return api.json("user_checked", { sampler: "", surface: { lobe, lambert, sharpness }, light, wo, evaluations });
 }
 

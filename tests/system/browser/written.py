@@ -10,6 +10,14 @@ const r = Math.sqrt(u[0]), phi = 2 * Math.PI * u[1], z = Math.sqrt(1 - u[0]);
 return { wi: [r * Math.cos(phi), r * Math.sin(phi), z], pdf: z / Math.PI }
 }
 function pdf(wo, wi) { return Math.max(wi[2], 0) / Math.PI }"""
+SHADER = """// crescent: sample = wi = draw(u)
+// crescent: pdf = density(wi)
+const PI = 3.14159265;
+fn draw(u: vec2f) -> vec3f {
+    let r = sqrt(u.x);
+    return normalize(vec3f(r * cos(2.0 * PI * u.y), r * sin(2.0 * PI * u.y), sqrt(1.0 - u.x)));
+}
+fn density(wi: vec3f) -> f32 { return wi.z / PI; }"""
 data = "document.documentElement.dataset"
 FAULT = "document.getElementById('fault-line').textContent"
 LOOKED = f"{data}.code === 'runs' && {data}.looked"
@@ -106,6 +114,49 @@ def tests(page, folder):
         browser.wait(driver, LOOKED)
         assert browser.text(driver, "#fault-line") == ""
 
+    def choose(driver, name, value):
+        driver.execute_script(f"for (const name of ['looked', 'code', 'checked', 'written']) delete {data}[name];"
+                              "const s = document.getElementById(arguments[0]); s.value = arguments[1];"
+                              "s.dispatchEvent(new Event('change'))", name, value)
+
+    def a_shader_is_written(driver):
+        """In WGSL both templates are right, a constant too many is wrong, a mistake has its line and a sampler its film; the
+        address gives the code and its language back."""
+        browser.open_page(driver, page, "#part=write", until=LOOKED)
+        choose(driver, "language", "wgsl")
+        browser.wait(driver, LOOKED, seconds=60)
+        for template in ("wgsl-cosine", "wgsl-ggx"):
+            choose(driver, "template", template)
+            browser.wait(driver, LOOKED, seconds=60)
+            found = verdicts(driver)
+            assert set(found.values()) == {"right"}, (template, found, browser.text(driver, "#verdicts"))
+        browser.wait(driver, f"{data}.written", seconds=120)
+        took = int(driver.execute_script(f"return {data}.checked"))
+        write(driver, SHADER.replace("wi.z / PI;", "1.03 * wi.z / PI;"))
+        browser.wait(driver, LOOKED, seconds=60)
+        assert verdicts(driver)["normalised"] == "wrong", browser.text(driver, "#verdicts")
+        address = driver.execute_script("return location.hash")
+        browser.open_page(driver, page, address, until=LOOKED)
+        assert driver.execute_script("return document.getElementById('language').value") == "wgsl"
+        for code, line, word in ((SHADER.replace("sqrt(u.x)", "sqrt(v.x)"), 5, "v"),
+                                 (SHADER.replace("= draw(u)", "= drew(u)"), 1, "drew"),
+                                 (SHADER.replace("density(wi)\n", "densty(wi)\n", 1), 2, "densty"),
+                                 (SHADER.replace("pdf =", "pfd ="), 2, "no key 'pfd'")):
+            write(driver, code)
+            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}", seconds=60)
+            assert said.startswith(f"Line {line}: ") and word in said, f"{word} in line {line}: {said}"
+        print(f"  a shader is checked in {took} ms")
+
+    def without_webgpu(driver):
+        """The language cannot be chosen, and says why."""
+        script = driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {
+            "source": "Object.defineProperty(Navigator.prototype, 'gpu', {get: () => undefined})"})
+        browser.open_page(driver, page, "#part=write", until=LOOKED)
+        driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+        option = "document.querySelector('#language [value=wgsl]')"
+        assert driver.execute_script(f"return {option}.disabled")
+        assert "has no WebGPU" in driver.execute_script(f"return {option}.textContent")
+
     def an_exercise_is_solved(driver):
         """A prediction, a wrong verdict, hints, the repair: solved, also after the page was opened again."""
         browser.open_page(driver, page, "#part=faults", until="document.querySelectorAll('.cards [data-exercise]').length === 12")
@@ -185,4 +236,5 @@ def tests(page, folder):
         assert "refuses workers" in browser.text(driver, "#wrong"), browser.text(driver, "#wrong")
         assert driver.execute_script("return document.getElementById('bench').hidden")
 
-    return [reached_and_read, a_sampler_is_written, mistakes_have_lines, an_exercise_is_solved, the_main_film, workers_are_refused]
+    return [reached_and_read, a_sampler_is_written, mistakes_have_lines, a_shader_is_written, without_webgpu,
+            an_exercise_is_solved, the_main_film, workers_are_refused]
