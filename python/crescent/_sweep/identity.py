@@ -15,6 +15,7 @@ import importlib.util
 import inspect
 import json
 import sys
+import sysconfig
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -130,20 +131,35 @@ def _function_of(call: Any) -> Any:
     return call
 
 
+def _is_own(module: Any) -> bool:
+    """Whether a module is a file of the user, which other machines do not have."""
+    file = getattr(module, "__file__", None) or ""
+    installed = "site-packages", "dist-packages", sysconfig.get_path("stdlib")
+    return file != "" and module.__name__ != "__main__" and not any(folder in file for folder in installed)
+
+
+def _modules_of(module: Any, found: set[Any]) -> None:
+    """Adds a module of the user, and those that it takes names from."""
+    if module is None or module in found or not _is_own(module):
+        return
+    found.add(module)
+    for value in list(vars(module).values()):
+        other = value if inspect.ismodule(value) else sys.modules.get(getattr(value, "__module__", "") or "")
+        if other is not None and other.__name__.partition(".")[0] not in ("crescent", "crescent_shader"):
+            _modules_of(other, found)
+
+
 def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
     """Identity and code of a sampler, or of a combination with its weights, in memory, which is sent by value."""
     import cloudpickle  # type: ignore[import-untyped,unused-ignore]
 
-    modules = set()
+    modules: set[Any] = set()
     texts: list[Any] = []
     own = _calls(sampler)
     for call in own:
         if not callable(call):
             continue
-        module = sys.modules.get(getattr(_function_of(call), "__module__", "") or "")
-        file = getattr(module, "__file__", None)
-        if module is not None and module.__name__ != "__main__" and file and "site-packages" not in file:
-            modules.add(module)
+        _modules_of(sys.modules.get(getattr(_function_of(call), "__module__", "") or ""), modules)
         where = source_of(own[0] if callable(own[0]) else call)
         if names_a_file(where) and Path(where.rpartition(":")[0]).is_file():
             texts.append(_of_python(where)[0])
