@@ -316,7 +316,8 @@ std::optional<EntryShares> entry_shares(std::span<const Place> places) {
         Coordinates x{};
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             own.point(pairs[i].wi, std::span(x).first(own.domain().coordinates()));
-            to[i] *= ratio[static_cast<std::size_t>(x[c])];
+            const auto k = static_cast<std::size_t>(x[c]);
+            to[i] *= k < ratio.size() ? ratio[k] : 0;  // a direction beyond the last entry belongs to no point
         }
     };
     score(out.hypothesis, places);
