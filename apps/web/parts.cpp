@@ -86,10 +86,8 @@ Film film_over(const TileBox& box, const SamplerRef& sampler, std::uint64_t n, s
         shading_points.pixel = of_image;
         film.invalid += bad_of(moments, shading_points.count);
     }
-    for_each_background(bench().scene, box, [&](int i, int j, const Rgb& radiance) {
-        const auto index = static_cast<std::size_t>((j - box.y0) * (box.x1 - box.x0) + i - box.x0);
-        store_background(film, index, radiance);
-    });
+    for_each_background(bench().scene, box,
+        [&](std::uint32_t pixel, const Rgb& radiance) { store_background(film, within(pixel, box), radiance); });
     return film;
 }
 

@@ -96,12 +96,6 @@ void restore(RunResult& into, const State& state) {
     restore_references(nb::cast<nb::list>(references), r->references);
 }
 
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
-
 /// What a run has done so far.
 struct RunSoFar {
     RunPlan plan;
@@ -131,7 +125,7 @@ void estimate_alone(RunSoFar& run, const Job& job, int repeats, ProgressMonitor&
     JobResult timed;
     timed.job = job;
     timed.samples = static_cast<double>(run.prepared->geometry_pixels * job.n.back());
-    timed.seconds = median(std::move(seconds));
+    timed.seconds = quantile(std::move(seconds), 0.5);
     run.results.push_back(std::move(timed));
     for (Film& film : films) {
         const RunKey key{job.arm, film.n, job.s, job.seed};
@@ -154,7 +148,7 @@ double median_seconds(const RunSoFar& run, const Job& job, double first, int rep
         monitor.check();
         seconds.push_back(execute(run.plan, *run.prepared, job, run.engine, monitor, false).seconds);
     }
-    return median(std::move(seconds));
+    return quantile(std::move(seconds), 0.5);
 }
 
 /// The result of the seeds of which every job is done, without studies; empty if there is none.

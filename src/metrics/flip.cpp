@@ -204,9 +204,8 @@ std::vector<float> flip_of_all(const FlipImage& reference, const FlipImage& test
     return out;
 }
 
-/// The mean of a map of the bounds of these pixels of an image of that width.
-double mean_of(std::span<const float> map, const AreaPixels& pixels, int width) {
-    const Box box = pixels.bounds();
+/// The mean over these pixels of an image of that width; the map is of `box`, their bounds.
+double mean_of(std::span<const float> map, const AreaPixels& pixels, const Box& box, int width) {
     const Size size{box.width(), box.height()};
     return pixels.mean([&](std::size_t index) {
         const int i = static_cast<int>(index) % width, j = static_cast<int>(index) / width;
@@ -263,7 +262,8 @@ std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, cons
     compute_flips(wanted, ppd, factors(exposures), isa);
     std::vector<std::vector<double>> out(tests.size());
     for (std::size_t k = 0; k < maps.size(); ++k)
-        out[k / boxes.size()].push_back(mean_of(maps[k], areas[k % boxes.size()], reference.width));
+        out[k / boxes.size()].push_back(
+            mean_of(maps[k], areas[k % boxes.size()], boxes[k % boxes.size()], reference.width));
     return out;
 }
 

@@ -205,10 +205,8 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
             }
             samples += static_cast<double>(shading_points.count) * static_cast<double>(n.back());
         }
-        for_each_background(view.scene(), tiles[k], [&](int i, int j, const Rgb& radiance) {
-            const std::size_t index =
-                static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(i);
-            for (Film& film : films) store_background(film, index, radiance);
+        for_each_background(view.scene(), tiles[k], [&](std::uint32_t pixel, const Rgb& radiance) {
+            for (Film& film : films) store_background(film, pixel, radiance);
         });
         return samples;
     });
@@ -287,10 +285,6 @@ private:
     std::vector<float> all_;
     std::uint64_t drawn_ = 0;
 };
-
-}  // namespace
-
-namespace {
 
 /// Keeps the samples of points on one surface, n for each point.
 void keep_surface(const ShadingPoints& points, int surface, std::uint64_t n, std::vector<float>& samples) {

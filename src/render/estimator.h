@@ -27,12 +27,15 @@ std::vector<Film> estimate_films(const TiledScene& view, const SamplerRef& arm, 
 /// Converts sums over film.n samples to the pixels of these shading points. The caller counts film.invalid.
 void resolve_film(const Scene& scene, const ShadingPoints& shading_points, const Moments& moments, Film& film);
 
-/// Calls f(i, j, radiance) for each pixel of a box in which the camera sees the sky.
+/// Calls f(pixel, radiance) for each pixel of a box in which the camera sees the sky; pixel = i + j * width of the
+/// image.
 template <class F> void for_each_background(const Scene& scene, const TileBox& box, F&& f) {
     if (!scene.has_background()) return;
+    const auto width = static_cast<std::uint32_t>(scene.image().width);
     for (int j = box.y0; j < box.y1; ++j)
         for (int i = box.x0; i < box.x1; ++i)
-            if (!scene.sees_surface(i, j)) f(i, j, scene.background(i, j));
+            if (!scene.sees_surface(i, j))
+                f(static_cast<std::uint32_t>(i) + static_cast<std::uint32_t>(j) * width, scene.background(i, j));
 }
 /// Stores what the camera sees without a surface: known, so without variance and without samples.
 void store_background(Film& film, std::size_t index, const Rgb& radiance);

@@ -148,9 +148,12 @@ Scene Scene::with_s(double s) const {
     return other;
 }
 
+std::size_t Scene::index_of(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(image().width) + static_cast<std::size_t>(i);
+}
+
 std::optional<Hit> Scene::primary(int i, int j) const {
-    const std::size_t index =
-        static_cast<std::size_t>(j) * static_cast<std::size_t>(image().width) + static_cast<std::size_t>(i);
+    const std::size_t index = index_of(i, j);
     if (hits_) return (*hits_)[index].shape < 0 ? std::nullopt : std::optional<Hit>((*hits_)[index]);
     if (!shapes_) return made_->trace(i, j);
     const int shape = (*shapes_)[index];
@@ -161,8 +164,7 @@ std::optional<Hit> Scene::primary(int i, int j) const {
 }
 
 bool Scene::sees_surface(int i, int j) const {
-    const std::size_t index =
-        static_cast<std::size_t>(j) * static_cast<std::size_t>(image().width) + static_cast<std::size_t>(i);
+    const std::size_t index = index_of(i, j);
     if (hits_) return (*hits_)[index].shape >= 0;
     return shapes_ ? (*shapes_)[index] >= 0 : made_->trace(i, j).has_value();
 }

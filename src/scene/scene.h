@@ -101,6 +101,7 @@ public:
     bool is_same_as(const Scene& other) const { return made_ == other.made_ && s_ == other.s_; }
 
 private:
+    std::size_t index_of(int i, int j) const;
     /// Shared by all exponents.
     struct Made {
         SceneData data;

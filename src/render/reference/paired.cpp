@@ -66,11 +66,8 @@ void write_paired(const Scene& scene, const ShadingPoints& points, const PairedP
 }
 
 void write_background(const Scene& scene, const TileBox& box, ReferenceFilm& film) {
-    for_each_background(scene, box, [&](int i, int j, const Rgb& radiance) {
-        const std::size_t index =
-            static_cast<std::size_t>(j) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(i);
-        store_pixel(film, index, radiance, 0);
-    });
+    for_each_background(
+        scene, box, [&](std::uint32_t pixel, const Rgb& radiance) { store_pixel(film, pixel, radiance, 0); });
 }
 
 std::vector<ReferenceFilm> paired_reference(
