@@ -26,7 +26,7 @@ std::array<Vec3d, 8> neighbours(Vec3d w) {
 std::vector<Vec3d> of_other_lengths(const Source& source, Vec3d w) {
     std::vector<Vec3d> out = {w};
     if (source.traits.domain || source.recorded()) return out;  // points and tables have no length
-    for (const double off : {-8 * ulp, -2 * ulp, 2 * ulp, 8 * ulp}) out.push_back(w * (1 + off));
+    for (const double deviation : {-8 * ulp, -2 * ulp, 2 * ulp, 8 * ulp}) out.push_back(w * (1 + deviation));
     return out;
 }
 

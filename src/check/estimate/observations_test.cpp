@@ -56,8 +56,8 @@ TEST(CheckDraws, EveryFaultIsCounted) {
 TEST(CheckDraws, ALengthThatRoundingLeavesIsNoFault) {
     FunctionSampler s;
     s.p = [](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * (1 + 4e3 * (dot(w, w) - 1)); };
-    const auto broken_by = [&](double off) {
-        s.change = [&s, off](const PrimarySample&, Draw& d) { d.pdf = s.p({}, d.wi * (1 + off)); };
+    const auto broken_by = [&](double deviation) {
+        s.change = [&s, deviation](const PrimarySample&, Draw& d) { d.pdf = s.p({}, d.wi * (1 + deviation)); };
         return observed(s).checks.pointwise.times;
     };
     EXPECT_EQ(broken_by(1.5 * ulp), 0u);  // p off by 7e-4

@@ -16,6 +16,14 @@ using Move = std::function<void(std::span<double>)>;
 using Coordinates = std::array<double, Domain::most_coordinates>;
 
 constexpr std::array symbols = {"x", "y", "z"};
+constexpr double golden = 0.6180339887498949;
+
+/// Returns coordinate c of the point of a direction.
+double coordinate(const DomainChart& chart, Vec3d w, std::size_t c) {
+    Coordinates x{};
+    chart.point(w, std::span(x).first(chart.domain().coordinates()));
+    return x[c];
+}
 
 /// Sets `out` to the density of points whose images by `move` have the density p. change: of the measure by it.
 void moved_density(const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out,
@@ -61,22 +69,18 @@ Hypothesis by_moving(std::string name, Move move, double change, bool at_zero) {
 /// The entry beside entry i taken for entry i, and the last one (first, for -1) for itself: what a search does that
 /// ends one place off, cut off at the end of its table.
 Hypothesis by_next_entry(std::size_t c, double count, int shift, bool at_zero) {
-    Hypothesis h;
-    h.name = fmt::format("entry i {} 1 taken for entry i, but for the {} (off by one)", shift > 0 ? '+' : '-',
-        shift > 0 ? "last" : "first");
+    const Move back = [=](std::span<double> x) { x[c] -= shift; };  // the entry that this one is drawn for
+    Hypothesis h = by_moving(fmt::format("entry i {} 1 taken for entry i, but for the {} (off by one)",
+                                 shift > 0 ? '+' : '-', shift > 0 ? "last" : "first"),
+        back, 1, at_zero);
     const double end = shift > 0 ? count - 1 : 0;  // drawn for itself and for the entry before it
-    h.density = [=](const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out) {
-        const Move back = [=](std::span<double> x) { x[c] -= shift; };  // the entry that this one is drawn for
-        moved_density(s, technique, pairs, out, back, 1);
+    h.density = [=, moved = std::move(h.density)](
+                    const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out) {
+        moved(s, technique, pairs, out);
         std::vector<double> p(pairs.size());
         s.exact_pdf(technique, pairs, p);
-        const DomainChart& chart = *s.traits().domain;
-        Coordinates x{};
-        for (std::size_t i = 0; i < pairs.size(); ++i) {
-            chart.point(pairs[i].wi, std::span(x).first(chart.domain().coordinates()));
-            if (x[c] == end) out[i] += p[i];
-            if (!at_zero && !(p[i] > 0)) out[i] = 0;
-        }
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            if (coordinate(*s.traits().domain, pairs[i].wi, c) == end) out[i] += p[i];
     };
     return h;
 }
@@ -218,11 +222,7 @@ std::optional<NamedMove> exchanged_entries(const Place& place) {
     std::vector<double> p(entries), drawn(entries), deviation(entries);
     place.source().density(w, p);
     for (std::uint32_t k = 0; k < entries; ++k) p[k] = chart.density(w[k], p[k]);
-    double entry = 0;
-    for (const Vec3d& d : place.w) {
-        chart.point(d, std::span(&entry, 1));
-        ++drawn[static_cast<std::size_t>(entry)];
-    }
+    for (const Vec3d& d : place.w) ++drawn[static_cast<std::size_t>(coordinate(chart, d, 0))];
     for (std::uint32_t k = 0; k < entries; ++k)
         deviation[k] = (drawn[k] - place.of * p[k]) / std::sqrt(place.of * p[k] + 1);
     const auto [low, high] = std::ranges::minmax_element(deviation);
@@ -278,32 +278,26 @@ std::optional<EntryShares> entry_shares(std::span<const Place> places) {
     }
     if (!set || domain.parts().size() < 2 || set->count < 2 || set->count > most_entries) return {};
     const Place& place = places[0];
-    const auto entry_of = [&](Vec3d w) {
-        Coordinates x{};
-        chart.point(w, std::span(x).first(domain.coordinates()));
-        return static_cast<std::size_t>(x[c]);
-    };
+    const auto entry_of = [&](Vec3d w) { return static_cast<std::size_t>(coordinate(chart, w, c)); };
     constexpr double bridge = 1 / (2 * two_pi);  // q, 1/sr: that of even directions
-    std::vector<Sums> drawn(set->count), claimed(set->count);
-    std::vector<double> counts(set->count);
+    std::vector<double> drawn(set->count), claimed(set->count), counts(set->count);
     for (std::size_t i = 0; i < place.w.size(); ++i) {
         const std::size_t k = entry_of(place.w[i]);
-        drawn[k].add(1 / (place.p[i] + bridge));
+        drawn[k] += 1 / (place.p[i] + bridge);
         ++counts[k];
     }
     const auto points = static_cast<std::uint32_t>(place.w.size());
     std::vector<Vec3d> even;
-    constexpr double golden = 0.6180339887498949;
     for (std::uint32_t i = 0; i < points; ++i)
         even.push_back(from_chart({2 * (i + 0.5) / points, two_pi * std::fmod(i * golden, 1)}));
     std::erase_if(even, [&](Vec3d w) { return !chart.has_point(w); });
     std::vector<double> p(even.size());
     place.source().density(even, p);
-    for (std::size_t i = 0; i < even.size(); ++i) claimed[entry_of(even[i])].add(p[i] / (p[i] + bridge));
+    for (std::size_t i = 0; i < even.size(); ++i) claimed[entry_of(even[i])] += p[i] / (p[i] + bridge);
     EntryShares out;
     std::vector<double> ratio;
     for (std::size_t k = 0; k < set->count; ++k) {
-        const double a = drawn[k].sum / place.of, b = claimed[k].sum * 2 * two_pi / points;
+        const double a = drawn[k] / place.of, b = claimed[k] * 2 * two_pi / points;
         ratio.push_back(b > 0 ? a / b : 0);
         const double share = counts[k] / place.of;
         out.shares.push_back({share, ratio[k] > 0 ? share / ratio[k] : 0, std::sqrt(share * (1 - share) / place.of)});
@@ -312,11 +306,8 @@ std::optional<EntryShares> entry_shares(std::span<const Place> places) {
     out.hypothesis.density = [ratio, c](const SamplerAdapter& s, int technique, std::span<const Pair> pairs,
                                  std::span<double> to) {
         s.exact_pdf(technique, pairs, to);
-        const DomainChart& own = *s.traits().domain;
-        Coordinates x{};
         for (std::size_t i = 0; i < pairs.size(); ++i) {
-            own.point(pairs[i].wi, std::span(x).first(own.domain().coordinates()));
-            const auto k = static_cast<std::size_t>(x[c]);
+            const auto k = static_cast<std::size_t>(coordinate(*s.traits().domain, pairs[i].wi, c));
             to[i] *= k < ratio.size() ? ratio[k] : 0;  // a direction beyond the last entry belongs to no point
         }
     };
@@ -359,7 +350,6 @@ std::optional<FittedMove> fitted_move(const MoveFamily& family, std::span<const 
             value = x;
         }
     }
-    constexpr double golden = 0.6180339887498949;
     double low = value - step, high = value + step;
     double a = high - golden * (high - low), b = low + golden * (high - low);
     double of_a = mean_log_of(family.at(a), places, total), of_b = mean_log_of(family.at(b), places, total);
