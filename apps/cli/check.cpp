@@ -428,15 +428,11 @@ std::string command_of(const CheckFlags& f) {
     return out;
 }
 
-/// The file of FILE or FILE:NAME.
-std::string file_of(const std::string& sampler) {
-    return std::filesystem::exists(sampler) ? sampler : sampler.substr(0, sampler.rfind(':'));
-}
-
 /// Opens every file before the first draw, so that minutes of work are not lost to a missing folder.
 void try_files(const CheckFlags& flags) {
-    std::vector<std::string> inputs = {
-        file_of(flags.arm), file_of(flags.against), flags.plugin, flags.samples, flags.table};
+    std::vector<std::string> inputs = {flags.plugin, flags.samples, flags.table};
+    for (const std::string& sampler : {flags.arm, flags.against})
+        inputs.emplace_back(sampler.ends_with(".toml") || names_shader(sampler) ? sampler : python_file(sampler));
     inputs.insert(inputs.end(), flags.expect.begin(), flags.expect.end());
     claim_outputs({{"--json", flags.json}, {"--junit", flags.junit}, {"--sarif", flags.sarif}, {"--html", flags.html},
                       {"--repro", flags.repro}},

@@ -99,9 +99,8 @@ std::vector<CompareFlag> flags_of(const CompareFlags& f) {
         {"exposure", f.exposure}, {"alpha", f.alpha}, {"trim", f.trim}, {"brightest", f.brightest}};
     for (const auto& [key, text] : numbers)
         if (!text.empty()) out.push_back({{key}, text, true, std::string("--") + key + " " + text});
-    if (!f.smallest.empty()) {
+    if (!f.smallest.empty())
         out.push_back({{"smallest"}, number_of_share(f.smallest), true, "--smallest " + f.smallest});
-    }
     return out;
 }
 

@@ -30,9 +30,8 @@ SuiteFlags suite_flags(const CompareFlags& f) {
     add("brightest", f.brightest, true);
     add("store", f.store, false);
     for (const auto& [key, text] : reading_keys(f)) add(key, text, false);
-    if (!f.smallest.empty()) {
+    if (!f.smallest.empty())
         out.keys.push_back({{"suite", "smallest"}, number_of_share(f.smallest), true, "--smallest " + f.smallest});
-    }
     for (const std::string& layer : f.layers) add("layer", layer, false);
     return out;
 }

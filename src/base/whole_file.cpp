@@ -111,13 +111,13 @@ void claim_outputs(const std::vector<OutputFile>& outputs, const std::vector<std
             std::filesystem::weakly_canonical(a, unknown) == std::filesystem::weakly_canonical(b, unknown);
     };
     for (const OutputFile& output : outputs) {
-        if (output.path.empty()) continue;
+        if (output.path.empty() || is_stream(output.path)) continue;
         const std::string named = fmt::format("{} {}", output.flag, printable(output.path));
         for (const std::string& input : inputs)
-            if (!is_stream(output.path) && std::filesystem::equivalent(output.path, input, unknown))
+            if (std::filesystem::equivalent(output.path, input, unknown))
                 throw InputError({named, 0, 0}, "expected another file than one that is read");
         for (const OutputFile& other : outputs)
-            if (&other < &output && !other.path.empty() && !is_stream(output.path) && is_same(output.path, other.path))
+            if (&other < &output && !other.path.empty() && is_same(output.path, other.path))
                 throw InputError({named, 0, 0}, fmt::format("expected another file than that of {}", other.flag));
         can_write(output.path);
     }

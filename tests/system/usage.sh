@@ -32,6 +32,7 @@ grep -q -- '--json .*mine.py: expected another file than one that is read' said 
 cmp mine.py before.py || die "the sampler's file was written"
 expect 2 "$CRESCENT" check cosine --wo 30 --json one --junit ./one
 grep -q -- 'expected another file than that of --json' said || die "no reason: $(cat said)"
+for _ in 1 2; do expect 0 "$CRESCENT" check cosine --wo 30 --quiet --json cosine; done  # a name is no file
 # Nothing that the terminal would interpret.
 for command in "run absent$(printf '\033[31m\007').toml" "run $tiny --set a$(printf '\033\302\233')=3" \
     "list $(printf 'a\033\302\2332J')" "rnu$(printf '\033')" "run $tiny --isa $(printf '\033x')"; do

@@ -234,24 +234,18 @@ void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baselin
 
 constexpr std::array image_endings = {".exr", ".pfm", ".hdr", ".png", ".jpg", ".jpeg", ".bmp", ".tga", ".ppm", ".npy"};
 
-/// Adds the endings of images that files in a folder, or in its folders, have.
-void add_endings(const std::string& folder, std::vector<std::string>& endings) {
-    for (const char* ending : image_endings) {
-        if (std::ranges::find(endings, ending) != endings.end()) continue;
-        for (const char* file : {"{view}/*", "{view}-*"})
-            if (!FilePattern(pattern_in(folder, file + std::string(ending)), {}, true).find().empty()) {
-                endings.emplace_back(ending);
-                break;
-            }
-    }
-}
-
 /// Returns the patterns of a folder with VIEW/*.exr or VIEW-SEED.exr, and those of other endings.
 std::vector<std::string> patterns_in(const std::string& folder, const std::vector<std::string>& endings) {
     std::vector<std::string> out;
     for (const std::string& ending : endings)
         for (const char* file : {"{view}/*", "{view}-*"}) out.push_back(pattern_in(folder, file + ending));
     return out;
+}
+
+/// Whether a folder has a file that one of its patterns of this ending matches.
+bool has_images(const std::string& folder, const std::string& ending) {
+    return std::ranges::any_of(patterns_in(folder, {ending}),
+        [](const std::string& pattern) { return !FilePattern(pattern, {}, true).find().empty(); });
 }
 
 /// Replaces patterns by those of the folders that are given. Renders of the candidate come first: they are stored under
@@ -266,9 +260,11 @@ void use_folders(const SuiteFlags& flags, SuiteOptions& options) {
              std::tuple("--baseline", flags.baseline, &options.baseline)}) {
         if (!folder.empty() && !fs::is_directory(folder))
             throw InputError({fmt::format("{} {}", flag, folder), 0, 0}, "expected a folder");
-        if (!folder.empty()) add_endings(folder, endings);
-        else
+        if (folder.empty())
             for (const std::string& pattern : *patterns) add(fs::path(pattern).extension().string());
+        else
+            for (const char* ending : image_endings)
+                if (has_images(folder, ending)) add(ending);
     }
     add(".exr");
     if (!flags.baseline.empty()) options.baseline = patterns_in(flags.baseline, endings);
