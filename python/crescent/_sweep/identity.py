@@ -15,7 +15,6 @@ import importlib.util
 import inspect
 import json
 import sys
-import sysconfig
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -27,7 +26,7 @@ from .._sampler import Sampler
 from ..combinations import Combination
 from ..experiments import Experiment
 from .grid import hint
-from .state import state_of, unhashable_in
+from .state import library, state_of, unhashable_in
 
 NUMERICS = f"{_crescent.version} {_crescent.commit}"  #: version of the numerics: equal builds give equal bits
 NOT_OF_THE_SCENE = (
@@ -131,22 +130,14 @@ def _function_of(call: Any) -> Any:
     return call
 
 
-def _is_own(module: Any) -> bool:
-    """Whether a module is a file of the user, which other machines do not have."""
-    file = getattr(module, "__file__", None) or ""
-    installed = "site-packages", "dist-packages", sysconfig.get_path("stdlib")
-    return file != "" and module.__name__ != "__main__" and not any(folder in file for folder in installed)
-
-
-def _modules_of(module: Any, found: set[Any]) -> None:
-    """Adds a module of the user, and those that it takes names from."""
-    if module is None or module in found or not _is_own(module):
+def _modules_of(name: str, found: set[Any]) -> None:
+    """Adds a module of the user, which other machines do not have, and those that it takes names from."""
+    module = sys.modules.get(name)
+    if module is None or module in found or name == "__main__" or library(name) or not hasattr(module, "__file__"):
         return
     found.add(module)
     for value in list(vars(module).values()):
-        other = value if inspect.ismodule(value) else sys.modules.get(getattr(value, "__module__", "") or "")
-        if other is not None and other.__name__.partition(".")[0] not in ("crescent", "crescent_shader"):
-            _modules_of(other, found)
+        _modules_of(value.__name__ if inspect.ismodule(value) else str(getattr(value, "__module__", "")), found)
 
 
 def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
@@ -159,7 +150,7 @@ def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
     for call in own:
         if not callable(call):
             continue
-        _modules_of(sys.modules.get(getattr(_function_of(call), "__module__", "") or ""), modules)
+        _modules_of(getattr(_function_of(call), "__module__", "") or "", modules)
         where = source_of(own[0] if callable(own[0]) else call)
         if names_a_file(where) and Path(where.rpartition(":")[0]).is_file():
             texts.append(_of_python(where)[0])

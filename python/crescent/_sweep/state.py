@@ -49,7 +49,7 @@ def _distributions() -> Mapping[str, list[str]]:
 
 
 @functools.cache
-def _library(module: str) -> tuple[Any, ...] | None:
+def library(module: str) -> tuple[Any, ...] | None:
     """The name of a library and its versions; None for a module of the user."""
     package = module.partition(".")[0]
     if package in ("builtins", "crescent") or package in sys.stdlib_module_names:
@@ -114,13 +114,13 @@ class _Walk:
         return self._object(value, names)
 
     def _module(self, module: ModuleType, names: frozenset[str]) -> Any:
-        if (known := _library(module.__name__)) is not None:
+        if (known := library(module.__name__)) is not None:
             return ["library", *known]
         there = vars(module)
         return [module.__name__, *([n, self.state(there[n], names - {n})] for n in sorted(names) if n in there)]
 
     def _function(self, function: FunctionType) -> Any:
-        if (known := _library(function.__module__ or "")) is not None:
+        if (known := library(function.__module__ or "")) is not None:
             return ["library", *known, function.__qualname__]
         codes = list(_codes(function.__code__))
         names = frozenset(name for code in codes for name in code.co_names)
@@ -149,7 +149,7 @@ class _Walk:
         return ["wrapper", *about, self.state(inside, names), self.state(bound, names)]
 
     def _class(self, kind: type) -> Any:
-        if (known := _library(kind.__module__)) is not None:
+        if (known := library(kind.__module__)) is not None:
             return ["library", *known, kind.__qualname__]
         members = sorted((name, value) for name, value in vars(kind).items() if name not in _OF_EVERY_CLASS)
         return ["class", kind.__qualname__, self._many(kind.__bases__, frozenset()),
@@ -168,7 +168,7 @@ class _Walk:
     def _object(self, value: Any, names: frozenset[str]) -> Any:
         """An object of the user by its class and attributes, one of a library by its pickle."""
         kind = type(value)
-        if _library(kind.__module__) is None:
+        if library(kind.__module__) is None:
             slots = [name for c in kind.__mro__ for name in _slots(c) if hasattr(value, name)]
             attributes = {**getattr(value, "__dict__", {}), **{name: getattr(value, name) for name in slots}}
             return ["object", self.state(kind, names), self._pairs(attributes, names)]
