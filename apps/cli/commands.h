@@ -113,6 +113,7 @@ struct CompareFlags {
     std::string json, junit, markdown, sarif;  // files to write
     bool allow_inconclusive = false;           // too few renders do not fail
     std::string because, store;                // of accept
+    std::string tolerance;                     // of views without noise; "": the file's
     std::vector<std::string> views;            // to accept; empty: all
     bool new_baseline = false, plan = false, accept = false;
     // Of renders that are made here.

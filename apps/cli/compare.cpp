@@ -134,7 +134,8 @@ std::string command_of(const CompareFlags& f) {
 void forbid_suite_flags(const CompareFlags& f) {
     const std::pair<const char*, bool> only[] = {{"--json", !f.json.empty()}, {"--junit", !f.junit.empty()},
         {"--markdown", !f.markdown.empty()}, {"--because", !f.because.empty()}, {"--store", !f.store.empty()},
-        {"--new-baseline", f.new_baseline}, {"--plan", f.plan}, {"--accept", f.accept}};
+        {"--tolerance", !f.tolerance.empty()}, {"--new-baseline", f.new_baseline}, {"--plan", f.plan},
+        {"--accept", f.accept}};
     for (const auto& [flag, given] : only)
         if (given)
             throw InputError(

@@ -29,6 +29,7 @@ SuiteFlags suite_flags(const CompareFlags& f) {
     add("exposure", f.exposure, true);
     add("brightest", f.brightest, true);
     add("store", f.store, false);
+    add("tolerance", f.tolerance, false);
     for (const auto& [key, text] : reading_keys(f)) add(key, text, false);
     if (!f.smallest.empty())
         out.keys.push_back({{"suite", "smallest"}, number_of_share(f.smallest), true, "--smallest " + f.smallest});
@@ -60,7 +61,8 @@ std::string suite_command(const CompareFlags& f) {
     std::string out = "crescent compare";
     if (!f.file.empty()) out += " " + shell_word(f.file);
     const std::pair<const char*, std::string> all[] = {{"--baseline", f.baseline}, {"--candidate", f.candidate},
-        {"--alpha", f.alpha}, {"--smallest", f.smallest}, {"--brightest", f.brightest}, {"--exposure", f.exposure}};
+        {"--alpha", f.alpha}, {"--smallest", f.smallest}, {"--brightest", f.brightest}, {"--exposure", f.exposure},
+        {"--tolerance", f.tolerance}};
     for (const auto& [flag, value] : all)
         if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
     for (const auto& [key, text] : reading_keys(f))

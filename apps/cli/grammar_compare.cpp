@@ -45,6 +45,10 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
     c.add_option("--views", f->made_views, "of --a and --b: what {view} stands for")
         ->type_name("A,B,...")
         ->delimiter(',');
+    c.add_option("--tolerance", f->tolerance,
+         "of renders without noise: \"0 ulp\", \"0.5 %\", \"2/255\" of each channel of a pixel; default: equal bits")
+        ->type_name("SIZE")
+        ->check(not_empty);
     text("--until", f->until, "make renders until each view is decided", "decided");
     text("--budget", f->budget, "the longest time for all renders; default 10min", "TIME");
     text("--timeout", f->timeout, "the longest time of one render; default 1h", "TIME");

@@ -80,3 +80,28 @@ expect 0 "$CRESCENT" compare --a "$a" --b "$a" --views lamp,wall --smallest 8% -
 expect 1 "$CRESCENT" compare --a "$a" --b "$a 1.2" --views other --smallest 8% --budget 5min --quiet --out three
 expect 2 "$CRESCENT" compare --a "$a" --b "$a" --quiet
 grep -q 'expected the views' said || die "$(cat said)"
+
+# Both programs ignore their seeds, or the seed is not in their commands: nothing is decided, unless they have no noise.
+undecided() { # TEXT ARG...
+    expect 4 "$CRESCENT" compare --smallest 8% --budget 5min --quiet --out "$work_of_call" "${@:2}"
+    grep -qF -- "$1" printed || die "no '$1' in: $(cat printed)"
+}
+work_of_call=four
+undecided "the programs ignore {seed}" --a "$a 1 ignore" --b "$a 1 ignore" --views lamp --json four.json
+expect 0 /usr/bin/python3 -c 'import json
+view = json.load(open("four.json"))["views"][0]
+assert view["state"] == "too few renders" and "--tolerance" in view["sentence"], view'
+[ "$(ls four-renders/a four-renders/b | grep -c lamp)" = 8 ] || die "it went on: $(ls four-renders/*)"
+work_of_call=five
+undecided "neither command has {seed}" --a 'python3 pt.py {view} 1 {out}' --b 'python3 pt.py {view} 2 {out}' --views lamp
+expect 1 "$CRESCENT" compare --a 'python3 pt.py {view} 1 {out}' --b 'python3 pt.py {view} 2 {out}' --views lamp \
+    --tolerance '0 ulp' --quiet --out six
+expect 0 "$CRESCENT" compare --a 'python3 pt.py {view} 1 {out}' --b 'python3 pt.py {view} 1 {out}' --views lamp \
+    --tolerance '0 ulp' --quiet --out seven
+expect 2 "$CRESCENT" compare --a "$a" --b "$a" --views lamp --tolerance '2 nits' --quiet --out eight
+grep -q 'expected a tolerance such as' said || die "$(cat said)"
+# Only the last digits of the seed are used, so both sides have the same noise.
+last='sh -c '"'"'seed=$1; python3 pt.py "$0" $((seed % 1000)) "$2"'"'"' {view} {seed} {out}'
+work_of_call=nine
+undecided "both sides have the same noise" --a "$last" --b "$last" --views lamp
+expect 0 "$CRESCENT" compare --a "$last" --b "$last" --views lamp --pair --smallest 8% --quiet --out ten

@@ -101,6 +101,7 @@ std::string power_sentence(const BiasResult& means) {
 }
 
 std::string too_few_sentence(const ViewResult& view) {
+    if (!view.untestable.empty()) return fmt::format("Undecided: {}. {}", view.untestable, view.remedy);
     std::string out =
         fmt::format("Too few renders ({} and {}): {}.", view.baseline_renders, view.candidate_renders, view.too_few);
     if (view.renders_needed && static_cast<double>(*view.renders_needed) >= renders_beyond)
@@ -196,6 +197,12 @@ void decide_compared(ViewResult& view) {
     if (!view.non_finite.empty()) {
         view.state = ViewState::changed;
         view.sentence = view.non_finite + (changed && !view.exact ? " " + means.sentence : "");
+    } else if (!view.untestable.empty()) {
+        forget_places(means);
+        view.renders_needed.reset();
+        view.state = ViewState::too_few;
+        view.sentence = too_few_sentence(view);
+        return;
     } else if (view.exact) {
         view.state = changed ? ViewState::changed : ViewState::same;
         view.sentence = exact_sentence(view);
@@ -288,6 +295,7 @@ std::string noisier_headline(const ViewResult& view) {
 }
 
 std::string too_few_headline(const ViewResult& view) {
+    if (!view.untestable.empty()) return fmt::format("Undecided: {}.", view.untestable);
     if (!view.renders_needed) return fmt::format("Undecided: {}.", view.too_few);
     return fmt::format("Undecided: {} of each side would do.", plural(*view.renders_needed, "render"));
 }
@@ -335,7 +343,7 @@ int exit_code(const SuiteResult& result, bool new_baseline) {
 void decide(const Suite& suite, SuiteResult& result) {
     std::vector<ViewResult*> tested;
     for (ViewResult& view : result.views)
-        if (view.means && !view.exact && !std::isnan(view_p(view))) tested.push_back(&view);
+        if (view.means && !view.exact && view.untestable.empty() && !std::isnan(view_p(view))) tested.push_back(&view);
     result.tested = tested.size();
     share_level(result.views, suite.options.alpha);
     set_levels(tested, suite.options.alpha);

@@ -424,6 +424,8 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     ViewFiles files(view, suite.options.layer, source, monitor);
     const std::vector<std::string> baseline = files.different(view.baseline, "baseline", out.notes),
                                    candidate = files.different(view.candidate, "candidate", out.notes);
+    for (const std::string& path : view.baseline) out.baseline_hashes.push_back(files.hash(path));
+    for (const std::string& path : view.candidate) out.candidate_hashes.push_back(files.hash(path));
     const std::optional<MomentsHeader> moments = moments_of(view);
     out.baseline_renders = moments ? moments->renders : baseline.size();
     out.candidate_renders = candidate.size();
@@ -463,8 +465,9 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     out.spp_candidate = stated_spp(stats.arms[1]);
     if (out.means->identical) out.other_channels = other_channels(suite, stats);
     if (out.exact) {
-        if (!out.means->identical) out.exact_difference = exact_difference(stats, view.tolerance);
-        out.tolerated = view.tolerance && out.exact_difference && out.exact_difference->beyond == 0;
+        const std::optional<Tolerance> tolerance = suite.tolerance(view);
+        if (!out.means->identical) out.exact_difference = exact_difference(stats, tolerance);
+        out.tolerated = tolerance && out.exact_difference && out.exact_difference->beyond == 0;
         out.mean_p = out.means->identical || out.tolerated ? 1 : 0;
     } else {
         if (view.tolerance)

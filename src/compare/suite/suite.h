@@ -58,6 +58,8 @@ struct SuiteOptions {
     Pairing pair = Pairing::automatic;
     NoiseDemand noise = NoiseDemand::not_more;
     OutlierDemand outliers = OutlierDemand::test;
+    std::string tolerance_text;          // of views without noise; "": none
+    std::optional<Tolerance> tolerance;  // the same
     ReadingOptions reading() const {
         return {.encoding = encoding, .space = space, .channels = channels, .channel = channel};
     }
@@ -71,7 +73,7 @@ struct SuiteView {
     std::optional<Pairing> pair;
     std::optional<NoiseDemand> noise;
     std::optional<OutlierDemand> outliers;
-    std::string tolerance_text;          // of a view without noise; "": none
+    std::string tolerance_text;          // of a view without noise; "": that of the suite
     std::optional<Tolerance> tolerance;  // the same
     std::vector<Region> regions;
     std::vector<std::string> baseline, candidate;  // files, sorted
@@ -90,6 +92,9 @@ struct Suite {
     Pairing pair(const SuiteView& view) const { return view.pair.value_or(options.pair); }
     NoiseDemand noise(const SuiteView& view) const { return view.noise.value_or(options.noise); }
     OutlierDemand outliers(const SuiteView& view) const { return view.outliers.value_or(options.outliers); }
+    std::optional<Tolerance> tolerance(const SuiteView& view) const {
+        return view.tolerance ? view.tolerance : options.tolerance;
+    }
 };
 
 /// Flags that replace or complete the keys of a suite file.
@@ -183,6 +188,9 @@ struct ViewResult {
     double outlier_level = 0;                                 // at which the number of outlier pixels was
     double share_of_variances = 1 - share_of_means;           // of the level
     std::string too_few;                                      // why equality cannot be stated; "" if it can
+    std::string untestable;  // why no number of such renders can show anything; "" if one can
+    std::string remedy;      // what to do then, sentences
+    std::vector<std::uint64_t> baseline_hashes, candidate_hashes;  // of the pixels of each file, as in the view
     std::string non_finite;                     // the pixels that are not finite on one side only; "" if there are none
     std::optional<std::size_t> renders_needed;  // of each side
     ViewPictures pictures;

@@ -66,7 +66,11 @@ Section suite_table() {
                 {"not more", "same", "ignore"}},
             {"outliers", Type::word, none, "", defaulted, "\"test\"",
                 "test: the numbers of outlier pixels are compared; ignore: they are not.", to<&SuiteOptions::outliers>,
-                {"test", "ignore"}}},
+                {"test", "ignore"}},
+            {"tolerance", Type::text, none, "", defaulted, "\"\"",
+                "Of views without noise, for each channel of a pixel: \"1 ulp\" (a step of the files), \"0.5 %\" or "
+                "\"2/255\"; else every bit must be equal.",
+                to<&SuiteOptions::tolerance_text>}},
         {}};
 }
 
@@ -80,9 +84,7 @@ Section view_table() {
                 {"not more", "same", "ignore"}},
             {"outliers", Type::word, none, "", optional, "that of [suite]", "As in [suite].", to<&SuiteView::outliers>,
                 {"test", "ignore"}},
-            {"tolerance", Type::text, none, "", defaulted, "\"\"",
-                "Of a view without noise, for each channel of a pixel: \"1 ulp\" (a step of the files), \"0.5 %\" or "
-                "\"2/255\"; else every bit must be equal.",
+            {"tolerance", Type::text, none, "", optional, "that of [suite]", "As in [suite].",
                 to<&SuiteView::tolerance_text>}},
         {{"regions", Multiplicity::named, optional, "Boxes that are tested besides the whole image.",
             in<&SuiteView::regions>,
@@ -155,6 +157,15 @@ SourceLocation place_of(const Node& root, const char* key, const std::string& fi
     const Member* suite = root.find("suite");
     const Member* found = suite ? suite->value.find(key) : nullptr;
     return found ? found->value.at : SourceLocation{file, 0, 0};
+}
+
+/// Reads the tolerance of [suite].
+void read_tolerance(SuiteOptions& options, const SourceLocation& place, std::vector<Diagnostic>& diagnostics) {
+    if (options.tolerance_text.empty()) return;
+    options.tolerance = parse_tolerance(options.tolerance_text);
+    if (!options.tolerance)
+        diagnostics.push_back({place,
+            fmt::format("suite.tolerance: expected {}, found \"{}\"", tolerance_forms, options.tolerance_text)});
 }
 
 SourceLocation place_of_tolerance(const Node& root, const std::string& view, const std::string& file) {
@@ -310,6 +321,7 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     Suite suite;
     suite.file = file;
     read_tree(context, suite_schema(), root, &suite);
+    read_tolerance(suite.options, place_of(root, "tolerance", context.e.file), context.diagnostics);
     for (SuiteView& view : suite.views) {
         if (view.tolerance_text.empty()) continue;
         view.tolerance = parse_tolerance(view.tolerance_text);
@@ -343,6 +355,7 @@ SuiteOptions read_suite_options(const std::vector<CompareFlag>& keys) {
     put_flags(root, keys);
     Suite suite;
     read_tree(context, suite_schema(), root, &suite);
+    read_tolerance(suite.options, place_of(root, "tolerance", context.e.file), context.diagnostics);
     throw_if_any(std::move(context.diagnostics));
     return suite.options;
 }

@@ -2,10 +2,13 @@
 #include "compare/suite/until.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <iterator>
+#include <optional>
 
 #include "base/errors.h"
 #include "base/text.h"
@@ -134,15 +137,78 @@ private:
         try {
             suite_.look = ++view.looks;
             view.measured = measure_view(suite_, files, compared, monitor_, source_);
+            check_seeds(view, files);
         } catch (const InputError& error) { view.failure = error.what(); }
         suite_.look = 0;
+    }
+
+    /// Names programs whose renders do not depend on their seeds. If those of one side alone are equal, the view is
+    /// unreadable; if those of each side are, or both sides have the same, no number of renders shows anything.
+    void check_seeds(Undecided& view, const SuiteView& files) {
+        ViewResult& measured = *view.measured;
+        const bool a = is_constant(measured.baseline_hashes), b = is_constant(measured.candidate_hashes);
+        if (a != b) {
+            const RenderCommand* command = b ? &sides_.candidate : sides_.baseline ? &*sides_.baseline : nullptr;
+            const std::vector<std::string>& other = b ? files.baseline : files.candidate;
+            if (!command || other.size() < 2) return;
+            view.failure =
+                fmt::format("The program {}: its renders of {} are equal, those of the other side are not: {}",
+                    command->has_seed() ? "ignores the seed" : "gets no seed, because {seed} is not in its command",
+                    files.name, printable(command->text, 200));
+        } else if (sides_.baseline && a && !suite_.tolerance(files)) {
+            measured.untestable = "the renders of each side are equal, " + why_equal();
+            measured.remedy =
+                "Write {seed} where the program takes the seed of its random numbers, such as '--seed {seed}'. Renders "
+                "without noise are compared with a tolerance: --tolerance '0 ulp'.";
+        } else if (sides_.baseline && !a && !sides_.same_seeds) {
+            const std::optional<std::array<std::uint64_t, 2>> seeds = seeds_of_equal_renders(files, measured);
+            if (!seeds) return;
+            measured.untestable = fmt::format(
+                "both sides have the same noise: the renders of a with seed {} and of b with seed {} are equal",
+                (*seeds)[0], (*seeds)[1]);
+            measured.remedy = sides_.baseline->has_seed() && sides_.candidate.has_seed()
+                ? "Make the program use all digits of its seed, or give --pair if both sides are to have the same "
+                  "noise."
+                : "Write {seed} in both commands, where the program takes the seed of its random numbers.";
+        }
+    }
+
+    /// Whether all of several renders of a side have the same pixels.
+    static bool is_constant(const std::vector<std::uint64_t>& hashes) {
+        return hashes.size() > 1 && std::ranges::count(hashes, hashes.front()) == std::ssize(hashes);
+    }
+
+    /// Why the renders of each side are equal.
+    std::string why_equal() const {
+        const bool a = sides_.baseline->has_seed(), b = sides_.candidate.has_seed();
+        if (a && b) return "although their seeds differ: the programs ignore {seed}";
+        if (!a && !b) return "and neither command has {seed}";
+        return fmt::format("and --{} has no {{seed}}", a ? "b" : "a");
+    }
+
+    /// Returns the seed of a render of two commands, whose name ends with it.
+    static std::uint64_t seed_in_name(const std::string& path) {
+        const std::string name = fs::path(path).stem().string();
+        return largest_number({name.substr(name.rfind('-') + 1)});
+    }
+
+    /// Returns the seeds of two renders of different seeds and sides with the same pixels; nothing if there are none.
+    static std::optional<std::array<std::uint64_t, 2>> seeds_of_equal_renders(
+        const SuiteView& files, const ViewResult& measured) {
+        for (std::size_t i = 0; i < files.baseline.size(); ++i)
+            for (std::size_t j = 0; j < files.candidate.size(); ++j) {
+                if (measured.baseline_hashes[i] != measured.candidate_hashes[j]) continue;
+                const std::uint64_t a = seed_in_name(files.baseline[i]), b = seed_in_name(files.candidate[j]);
+                if (a != b) return std::array{a, b};
+            }
+        return {};
     }
 
     /// Notes whether a view needs more renders, and completes its sentences.
     void finish(Undecided& view, ViewResult& to) {
         const bool few_renders = to.candidate_renders < first_renders && !to.exact;
         const bool open = to.state == ViewState::too_few || (few_renders && to.state != ViewState::changed);
-        view.decided = !open || to.state == ViewState::unreadable;
+        view.decided = !open || to.state == ViewState::unreadable || !to.untestable.empty();
         if (view.made > 0)
             to.notes.push_back(fmt::format("{} made in {} s of the programs.", plural(view.made, "render"),
                 figures(view.seconds[0] + view.seconds[1], 3)));
@@ -224,30 +290,7 @@ private:
             ++view->count[baseline ? 0 : 1];
             view->seconds[baseline ? 0 : 1] += end.seconds;
         }
-        for (Undecided& view : views_) check_seeds(view);
         return any;
-    }
-
-    /// A side whose renders are all equal while a seed was given, and the other side's are not, ignores it.
-    void check_seeds(Undecided& view) {
-        const SuiteView& files = suite_.views[view.index];
-        if (view.decided || !view.failure.empty()) return;
-        const auto is_constant = [&](const std::vector<std::string>& paths) {
-            if (paths.size() < 3) return false;
-            const std::uint64_t first = pixel_hash(source_.read(paths[0], suite_.options.layer));
-            for (std::size_t k = 1; k < 3; ++k)
-                if (pixel_hash(source_.read(paths[k], suite_.options.layer)) != first) return false;
-            return true;
-        };
-        const bool a = is_constant(files.baseline), b = is_constant(files.candidate);
-        if (a == b) return;
-        if (!a && files.baseline.size() < 3) return;
-        const RenderCommand* command = b ? &sides_.candidate : sides_.baseline ? &*sides_.baseline : nullptr;
-        if (!command) return;
-        view.failure = fmt::format(
-            "The program ignores the seed: its renders of {} are equal, those of the other side "
-            "are not: {}",
-            files.name, printable(command->text, 200));
     }
 
     Suite& suite_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <functional>
 #include <random>
 
 #include "compare/anytime.h"
@@ -111,6 +112,76 @@ TEST(Until, ProgramsThatFailOrIgnoreTheSeedAreNamed) {
     Made ignoring;
     ignoring.constant = true;
     EXPECT_THAT(ignoring.decide().views[0].sentence, HasSubstr("ignores the seed"));
+}
+
+/// Two commands whose renders are made in memory; `noise_of` returns the number of the noise of a side for a seed.
+ViewResult decide_two(const std::string& command,
+    const std::function<std::uint64_t(bool is_b, std::uint64_t)>& noise_of, bool pair = false,
+    const char* tolerance = nullptr, float difference = 0) {
+    RenderSides sides;
+    sides.baseline = parse_render_command(command, "--a");
+    sides.candidate = parse_render_command(command, "--b");
+    sides.same_seeds = pair;
+    SuiteOptions options;
+    options.noise = NoiseDemand::ignore;
+    options.smallest = 0.05;
+    if (tolerance) options.tolerance = parse_tolerance(tolerance);
+    Suite suite = suite_of_commands(sides, {"v9"}, "no-such-folder", options);
+    RenderSource source;
+    source.read = [&](const std::string& path, const std::string&) {
+        const bool is_b = path.find("/b/") != std::string::npos;
+        const auto number = static_cast<std::uint32_t>(noise_of(is_b, std::stoull(path.substr(path.rfind('-') + 1))));
+        Render out = synthetic_render(path, {Kind::gamma, 0.2}, number, SyntheticScene{});
+        if (is_b)
+            for (std::vector<float>* plane : {&out.r, &out.g, &out.b})
+                for (float& value : *plane) value *= 1 + difference;
+        return out;
+    };
+    const Renderer render = [&](const std::vector<RenderJob>& jobs) {
+        std::vector<RenderEnd> out(jobs.size());
+        for (RenderEnd& end : out) end.made = true;
+        return out;
+    };
+    ProgressMonitor monitor;
+    UntilOptions until;
+    until.most_renders = 100;
+    const SuiteResult result = decide_by_renders(suite, sides, render, source, until, monitor);
+    const ViewState state = result.views[0].state;
+    EXPECT_EQ(exit_code(result, false), state == ViewState::same ? 0 : state == ViewState::changed ? 1 : 4);
+    return result.views[0];
+}
+
+TEST(Until, TwoCommandsWhoseRendersIgnoreTheSeedAreUndecided) {
+    const char *with_seed = "pt {view} {seed} {out}", *without = "pt {view} {out}";
+    const auto independent = [](bool is_b, std::uint64_t seed) { return 2 * (seed % 100'000) + is_b; };
+    const auto one = [](bool, std::uint64_t) -> std::uint64_t { return 7; };
+    const auto one_each = [](bool is_b, std::uint64_t) -> std::uint64_t { return is_b ? 8 : 7; };
+    const auto low_byte = [](bool, std::uint64_t seed) { return seed & 255; };  // 500 000 001 and 1 have the same
+    const auto by_seed = [](bool, std::uint64_t seed) { return seed % 100'000'000; };
+    EXPECT_EQ(decide_two(with_seed, independent).state, ViewState::same);
+    EXPECT_EQ(decide_two(with_seed, by_seed, true).state, ViewState::same);  // the same seeds on purpose
+    for (const auto& constant : {std::function<std::uint64_t(bool, std::uint64_t)>(one), {one_each}}) {
+        const ViewResult view = decide_two(with_seed, constant);
+        EXPECT_EQ(view.state, ViewState::too_few);
+        EXPECT_THAT(view.headline, HasSubstr("the programs ignore {seed}"));
+        EXPECT_THAT(view.sentence, HasSubstr("'--seed {seed}'"));
+        EXPECT_EQ(view.candidate_renders, 1u);  // different ones; it stops after the first round
+        EXPECT_THAT(decide_two(without, constant).headline, HasSubstr("neither command has {seed}"));
+    }
+    EXPECT_EQ(decide_two(with_seed, one, true).state, ViewState::too_few);
+    for (const auto& [command, remedy] : {std::pair{with_seed, "--pair"}, std::pair{without, "Write {seed}"}}) {
+        const ViewResult equal = decide_two(command, low_byte);
+        EXPECT_EQ(equal.state, ViewState::too_few);
+        EXPECT_THAT(equal.headline, HasSubstr("with seed 1 and of b with seed 500000001 are equal"));
+        EXPECT_THAT(equal.sentence, HasSubstr(remedy));
+    }
+}
+
+TEST(Until, TwoCommandsWithoutNoiseAreComparedWithATolerance) {
+    const auto one = [](bool, std::uint64_t) -> std::uint64_t { return 7; };
+    EXPECT_EQ(decide_two("pt {view} {out}", one, false, "0 ulp").state, ViewState::same);
+    EXPECT_EQ(decide_two("pt {view} {out}", one, false, "0 ulp", 1e-3f).state, ViewState::changed);
+    EXPECT_EQ(decide_two("pt {view} {out}", one, false, "0.5 %", 1e-3f).state, ViewState::same);
 }
 
 TEST(Until, HeavyTailsEndAsUndecided) {
