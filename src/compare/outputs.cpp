@@ -266,9 +266,13 @@ std::string compare_sarif(
     const ComparePlan& plan, const CompareResult& result, const std::string& file, const Provenance& provenance) {
     std::vector<std::string> rules;
     std::vector<SarifResult> results;
-    for (const JunitCase& c : cases_of(plan, result).cases) {
+    const std::vector<JunitCase> cases = cases_of(plan, result).cases;  // those of the assertions come first
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+        const JunitCase& c = cases[k];
         rules.push_back(c.name);
-        if (c.state != JunitCase::State::passed) results.push_back({c.name, "error", c.message, file, 0, c.name});
+        const bool is_in_file = k < plan.assertions.size() && plan.assertions[k].at.file == file;
+        if (c.state != JunitCase::State::passed)
+            results.push_back({c.name, "error", c.message, file, is_in_file ? plan.assertions[k].at.line : 0u, c.name});
     }
     return sarif_text(provenance.version, rules, results);
 }

@@ -63,6 +63,23 @@ places = {r["ruleId"]: r["locations"][0]["physicalLocation"] for r in run["resul
 line = 1 + [each.startswith("def sample(") for each in open("unscaled.py")].index(True)
 assert places["physics"] == {"artifactLocation": {"uri": "unscaled.py"}, "region": {"startLine": line}}, places' ||
     die "the SARIF file: $(cat unscaled.sarif)"
+placed unscaled.sarif unscaled.py "$(grep -n '^def sample(' unscaled.py | cut -d: -f1)"
+expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $work/unscaled.py" --wo 45 --sarif unscaled.sarif
+placed unscaled.sarif "file://$work/unscaled.py" "$(grep -n '^def sample(' unscaled.py | cut -d: -f1)"
+# Arms of an experiment: at the sampler of a program, else at the arm, however its name is written.
+sed 's/answer(\(words\|line\)/sample(\1/; s/{z \/ math.pi!r}/{2 * z \/ math.pi!r}/' "$pipes/cosine.py" >twice.py
+sed '/^\[arms.uniform\]/,$d' "$tiny" >placed.toml
+cat >>placed.toml <<'TOML'
+[arms.uniform]
+[arms]
+mine = { exec = "/usr/bin/python3 twice.py" }
+my-mix = { exec = "/usr/bin/python3 -c 'exec(open(\"twice.py\").read())'" }
+TOML
+for arm in mine my-mix; do
+    expect 1 "$CRESCENT" check --quiet ./placed.toml --sampler "$arm" --wo 45 --sarif placed.sarif
+    if [ "$arm" = mine ]; then placed placed.sarif twice.py "$(grep -n '^def sample(' twice.py | cut -d: -f1)"
+    else placed placed.sarif placed.toml "$(grep -n '^my-mix' placed.toml | cut -d: -f1)"; fi
+done
 expect 0 "$CRESCENT" check --quiet --exec "/usr/bin/python3 $pipes/sky.py 512 1024"
 sed 's/(j + np.clip(along/(j + 1 + np.clip(along/' "$pipes/sky.py" >next_texel.py
 expect 1 "$CRESCENT" check --quiet --exec "/usr/bin/python3 next_texel.py 256 512"

@@ -32,6 +32,17 @@ expect() {
 $(tail -n 40 printed said)"
 }
 
+# placed FILE.sarif URI LINE: every result of a SARIF file is at this line of this file, and there is one.
+placed() {
+    /usr/bin/python3 - "$@" <<'PY' || die "the SARIF file: $(cat "$1")"
+import json, sys
+file, uri, line = sys.argv[1:]
+results = json.load(open(file))["runs"][0]["results"]
+places = [r["locations"][0]["physicalLocation"] for r in results]
+assert places and all(p == {"artifactLocation": {"uri": uri}, "region": {"startLine": int(line)}} for p in places), places
+PY
+}
+
 # build_example NAME [OPTION...]: installs the build into prefix/, then builds examples/NAME against it, outside the
 # tree, in NAME/build.
 build_example() {

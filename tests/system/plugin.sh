@@ -54,6 +54,14 @@ told 'exec = "./nowhere"' 2 "arms.mine.exec: the shell cannot start"
 told 'exec = "read hello; echo hello 2 x; exit 3"' 3 "exit code 3"
 told 'exec = ""' 2 "arms.mine.exec"
 told 'sampler = "cosine"\nplugin = "libcosine.so"' 2 "one of sampler, kind, exec, plugin and python"
+# A verdict on a library is at the library, and one on an arm at the line of the arm.
+sed 's/pdf\[i\] = cos_theta/pdf[i] = 2 * cos_theta/' "$CRESCENT_SOURCE/examples/plugin/cosine.c" >double.c
+expect 0 "${CC:-cc}" -O2 -shared -fPIC -I"$CRESCENT_SOURCE/include" -I"$CRESCENT_SOURCE/src" -o double.so double.c -lm
+expect 1 "$CRESCENT" check --quiet --plugin ./double.so --wo 30 --sarif double.sarif
+placed double.sarif double.so 1
+sed 's|^plugin = .*|plugin = "double.so"|' mine.toml >double.toml
+expect 1 "$CRESCENT" check --quiet double.toml --sampler mine --wo 30 --sarif double.sarif
+placed double.sarif double.toml "$(grep -n '^\[arms.mine\]' double.toml | cut -d: -f1)"
 cc_shared() { expect 0 "${CC:-cc}" -O2 -shared -fPIC -I"$CRESCENT_SOURCE/src" -I"$CRESCENT_SOURCE/include" -o "$1.so" "$1.c" -lm; }
 sed 's/return 0;/return 7;/' "$CRESCENT_SOURCE/examples/plugin/cosine.c" >fails.c && cc_shared fails
 told 'plugin = "fails.so"' 3 "gave 7, expected 0, in crescent_sampler_sample"

@@ -48,6 +48,28 @@ expect 1 check "$file" --sample 'wi = mixture_sample(wo, 0.5, u, alpha)' --pdf '
     --set alpha=0.3
 expect 1 check "$file" --sample 'wi = cosine_sample(u); pdf = cosine_pdf(wi); wi = wi / 0.0 * 0.0' --pdf 'cosine_pdf(wi)'
 
+# SARIF has the line of the definition of the function that draws: of a declaration before it, a comment, a type on its own
+# line, a method, and of statements in comments of the file.
+cat >placed.wgsl <<'W'
+// crescent: sample = wi = normalize(vec3<f32>(lobe(u), 0.0)) * 0.0 + up(u); pdf = 1.0
+/* fn lobe(u: vec2<f32>) -> vec2<f32> {
+   is not this one */
+// fn lobe(u: vec2<f32>) -> vec2<f32> { nor this one }
+fn up(u: vec2<f32>) -> vec3<f32> { return vec3<f32>(0.0, 0.0, lobe(u).x * 0.0 + 1.0); }
+fn lobe(u: vec2<f32>) -> vec2<f32> {
+    return u + vec2<f32>(0.1);
+}
+W
+expect 1 check ./placed.wgsl --pdf 1.0 --sarif placed.sarif
+placed placed.sarif placed.wgsl 6
+expect 1 check placed.wgsl --sample 'wi = up(u)' --pdf 1.0 --sarif placed.sarif
+placed placed.sarif placed.wgsl 5
+if [[ $languages = *glsl* ]]; then
+    printf '%s\n' 'vec3 up(vec2 u);' 'vec3' 'up(' '    vec2 u)' '{ return vec3(0.0, 0.0, 1.0); }' >placed.glsl
+    expect 1 check placed.glsl --sample 'wi = up(u)' --pdf 1.0 --sarif placed.sarif
+    placed placed.sarif placed.glsl 2
+fi
+
 # JSON, JUnit and the page name the adapter, the driver and the precision, also of both sides of a comparison.
 expect 0 check "$file" --sample 'wi = cosine_sample(u)' --pdf 'cosine_pdf(wi)' --json device.json --junit device.xml \
     --html device.html
