@@ -18,7 +18,7 @@ from ._context import on_one_surface
 from ._domains import as_weights, charted, with_weights
 from ._files import names_a_file, sampler_at
 from ._result import CheckResult
-from ._libraries import library_named, library_wanted
+from ._libraries import is_compiled, library_named, library_wanted
 from ._sampler import Known, Sampler, rows_to_look_with, whole
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def _of_library(s: Sampler) -> Sampler:
     else:
         library = library_named(s.array_module, s.device, s.sample, rows)
     if library is None:
-        return s
+        return replace(s, serial=True) if is_compiled(s.sample) else s
     return replace(
         s,
         sample=library.samples(s.sample, s.title()),

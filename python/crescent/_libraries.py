@@ -4,7 +4,7 @@ Arrays stay on the device between calls: directions returned by `sample` and pas
 neither are rows used before. Checked values are brought to the host by DLPack, or by NumPy's protocol if the host
 cannot read them in place.
 
-JAX and Dr.Jit compile code for each shape. Their batches are filled up to one of few lengths by copies of the last row,
+JAX, Dr.Jit and callables of torch.compile compile code for each shape. Their batches are filled up to one of few lengths by copies of the last row,
 and the answers are cut on the host: a check, or a run, compiles each callable a few times.
 """
 
@@ -35,6 +35,11 @@ _LENGTHS = (64, 512, 2048, 8192, 32768, 131072)
 def filled_length(n: int) -> int:
     """Returns the length to which a batch of n rows is filled."""
     return next((length for length in _LENGTHS if n <= length), -(-n // _LENGTHS[-1]) * _LENGTHS[-1])
+
+
+def is_compiled(call: Call) -> bool:
+    """Whether torch.compile made a callable: it compiles again for other lengths, and calls want one thread."""
+    return hasattr(call, "_torchdynamo_orig_callable") or getattr(call, "_compiled_call_impl", None) is not None
 
 
 class Library:
@@ -117,6 +122,8 @@ class Library:
     def asks(self, call: Call) -> Call:
         """Wraps `call` to receive arrays of the library instead of NumPy's."""
 
+        self._compiles |= is_compiled(call)
+
         def asked(*rows: Array) -> Any:
             return self._cut(call(*map(self.into, rows)), len(rows[-1]))
 
@@ -126,6 +133,7 @@ class Library:
         """The same for `sample`, whose directions stay on the device."""
         if not self._keeps:
             return self.asks(sample)
+        self._compiles |= is_compiled(sample)
 
         def asked(*rows: Array) -> Any:
             n = len(rows[-1])

@@ -113,6 +113,25 @@ def test_a_triple_in_torch():
     assert crescent.check(adapters.torch(sample, eval, pdf), wo_deg=WO).state == "right"
 
 
+def test_callables_of_torch_compile_compile_for_few_lengths():
+    torch = pytest.importorskip("torch")
+    sample, pdf, f = plain(torch)
+    lengths = set()
+
+    def noted(wo, u):
+        if not isinstance(u, np.ndarray):  # the first look is with NumPy's arrays
+            lengths.add(len(u))
+        return sample(wo, u)
+
+    # Without generated code: what matters is the lengths, and that compiled callables are accepted.
+    compiled = [torch.compile(call, backend="eager") for call in (noted, pdf, f)]
+    found = crescent.check(*compiled, wo_deg=WO)
+    assert found.state == "right"
+    assert all(filled_length(n) == n for n in lengths) and len(lengths) <= 6, lengths
+    wrong = crescent.check(compiled[0], torch.compile(lambda wo, wi: 1.05 * pdf(wo, wi), backend="eager"), wo_deg=WO)
+    assert wrong.state == "wrong"
+
+
 def plain(xp, pi=np.pi):
     """The same without the cosine in f, as crescent.check takes it."""
     sample, eval, pdf = triple(xp)
