@@ -1,3 +1,5 @@
+// crescent_until --bounds FILE: reads lines "p df information" and prints |t| with this p, and p of this |t| again; for
+// anytime.py, which compares them with other implementations.
 // crescent_until [--suites 1000] [--pairs 200] [--seed S]: how often suites whose renders are made until they are
 // decided report a change that is not there, how many renders they make, and whether an 8-bit version of a render is
 // decided as its floating-point version. Prints a section of docs/error-rates.md.
@@ -6,8 +8,11 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <fstream>
+#include <string>
 
 #include "base/parallel.h"
+#include "compare/anytime.h"
 #include "compare/suite/until.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
@@ -226,6 +231,16 @@ void print_pairs(std::uint32_t pairs, std::uint32_t seed) {
         }
 }
 
+int print_bounds(const std::string& file) {
+    std::ifstream in(file);
+    double p = 0, df = 0, information = 0;
+    while (in >> p >> df >> information) {
+        const double t = anytime_quantile(p, df, information);
+        fmt::print("{} {}\n", t, anytime_p(t, df, information));
+    }
+    return in.eof() ? 0 : 2;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -234,7 +249,10 @@ int main(int argc, char** argv) {
     app.add_option("--suites", suites, "unchanged suites; a tenth as many are changed")->capture_default_str();
     app.add_option("--pairs", pairs, "of a render and its 8-bit version")->capture_default_str();
     app.add_option("--seed", seed, "of all renders")->capture_default_str();
+    std::string bounds;
+    app.add_option("--bounds", bounds, "lines of p, df and information: prints bounds, and nothing else");
     CLI11_PARSE(app, argc, argv);
+    if (!bounds.empty()) return print_bounds(bounds);
     if (suites > 0) {
         const std::vector<Outcome> all = outcomes(suites, 0, seed);
         const auto alarms =
