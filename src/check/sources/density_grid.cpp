@@ -82,6 +82,7 @@ DensityGrid::DensityGrid(std::vector<GridAxis> axes, std::span<const double> row
     }
     if (std::ranges::any_of(values_, [](double v) { return std::isnan(v); }))
         throw std::invalid_argument("expected a full grid: a cell is missing and another occurs twice");
+    spreads_.assign(count, 0);
     find_bends();
 }
 
@@ -108,6 +109,7 @@ void DensityGrid::find_bends() {
     bends_.assign(values_.size(), 0);
     for (std::size_t i = 0; i < values_.size(); ++i)
         for (std::size_t a = 0; a < axes_.size(); ++a) bends_[i] += bend_along(a, i);
+    for (std::size_t i = 0; i < values_.size(); ++i) bends_[i] = std::max(bends_[i], spreads_[i]);
     for (std::size_t a = 0; a + 1 < axes_.size(); ++a) {
         const std::size_t n = entries_[a].size(), around = entries_[a + 1].size(), step = stride(a + 1);
         for (std::size_t i = 0; i < values_.size(); ++i) {
@@ -131,12 +133,83 @@ bool DensityGrid::contains(std::span<const double> x) const {
     return true;
 }
 
-double DensityGrid::of_cell(std::span<const double> x) const {
+std::size_t DensityGrid::cell_index(std::span<const double> x) const {
     std::size_t index = 0;
     for (std::size_t a = 0; a < axes_.size(); ++a)
         index =
             index * entries_[a].size() + (axes_[a].integral ? nearest_of(entries_[a], x[a]) : cell_of(edges_[a], x[a]));
-    return values_[index];
+    return index;
+}
+
+double DensityGrid::of_cell(std::span<const double> x) const { return values_[cell_index(x)]; }
+
+GridCell DensityGrid::cell(std::size_t index) const {
+    GridCell out{.value = values_[index]};
+    for (std::size_t a = 0; a < axes_.size(); ++a) {
+        const std::size_t i = position(a, index);
+        out.entry[a] = entries_[a][i];
+        out.low[a] = edges_[a][i];
+        out.high[a] = edges_[a][i + 1];
+    }
+    return out;
+}
+
+template <class Each> void DensityGrid::for_each_near(std::size_t index, std::size_t steps, Each&& each) const {
+    std::array<std::size_t, most_axes> first{}, sizes{};
+    std::size_t count = 1;
+    for (std::size_t a = 0; a < axes_.size(); ++a) {
+        const std::size_t i = position(a, index), n = entries_[a].size();
+        first[a] = i - std::min(i, steps);
+        sizes[a] = std::min(i + steps, n - 1) - first[a] + 1;
+        count *= sizes[a];
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        std::size_t rest = k, near = 0;
+        for (std::size_t a = 0; a < axes_.size(); ++a) {
+            near += (first[a] + rest % sizes[a]) * stride(a);
+            rest /= sizes[a];
+        }
+        each(near);
+    }
+}
+
+void DensityGrid::replace(std::vector<double> values) {
+    values_ = std::move(values);
+    spreads_.assign(values_.size(), 0);
+    std::vector<std::size_t> unknown;
+    for (std::size_t i = 0; i < values_.size(); ++i)
+        if (std::isnan(values_[i])) unknown.push_back(i);
+    while (!unknown.empty() && unknown.size() < values_.size()) {
+        std::vector<std::size_t> later;
+        std::vector<std::pair<std::size_t, double>> found;
+        for (std::size_t i : unknown) {
+            double sum = 0, least = INFINITY, largest = -INFINITY, error = 0;
+            std::size_t known = 0;
+            for_each_near(i, 1, [&](std::size_t near) {
+                if (std::isnan(values_[near])) return;
+                sum += values_[near];
+                ++known;
+            });
+            if (known == 0) {
+                later.push_back(i);
+                continue;
+            }
+            for_each_near(i, 2, [&](std::size_t near) {
+                if (std::isnan(values_[near])) return;
+                least = std::min(least, values_[near]);
+                largest = std::max(largest, values_[near]);
+                error = std::max(error, spreads_[near]);
+            });
+            spreads_[i] = largest - least + error;
+            found.emplace_back(i, sum / static_cast<double>(known));
+        }
+        if (found.empty()) break;
+        for (const auto& [i, value] : found) values_[i] = value;
+        unknown = std::move(later);
+    }
+    for (double& value : values_)
+        if (std::isnan(value)) value = 0;
+    find_bends();
 }
 
 DensityGrid::Interval DensityGrid::interval_at(std::size_t axis, double x) const {

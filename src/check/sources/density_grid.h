@@ -19,6 +19,12 @@ struct GridAxis {
     std::size_t fewest = 1;       // distinct values
 };
 
+/// An entry of a grid with the cell around it.
+struct GridCell {
+    std::array<double, 4> entry{}, low{}, high{};  // by axis
+    double value = 0;
+};
+
 /// Linear interpolation has an error of a quarter of the bend of p where p is smooth, and of all of it at a kink. At
 /// the first and the last entry the line is extrapolated: the error is twice the bend of the next entry, and towards a
 /// pole the variation of p around it.
@@ -36,8 +42,20 @@ public:
     double between(std::span<const double> x) const;
     /// The error of between().
     double error_between(std::span<const double> x) const;
+    /// The error of of_cell(): 0 but for the values that replace() found from others.
+    double error_of_cell(std::span<const double> x) const { return spreads_[cell_index(x)]; }
     /// Whether x belongs to a cell.
     bool contains(std::span<const double> x) const;
+    std::size_t size() const { return values_.size(); }
+    /// An entry by its index.
+    GridCell cell(std::size_t index) const;
+    /// The index of the cell that contains x.
+    std::size_t cell_index(std::span<const double> x) const;
+    /// Sets the values by index. One that is NaN becomes the mean of the known ones next to it, with the range of those
+    /// within two steps as its error.
+    void replace(std::vector<double> values);
+    /// The entries of an axis in ascending order.
+    std::span<const double> entries(std::size_t axis) const { return entries_[axis]; }
     /// The ends of an axis' outer cells.
     double first_edge(std::size_t axis) const { return edges_[axis].front(); }
     double last_edge(std::size_t axis) const { return edges_[axis].back(); }
@@ -51,7 +69,7 @@ private:
     using Intervals = std::array<Interval, most_axes>;
     std::vector<GridAxis> axes_;
     std::vector<std::vector<double>> entries_, edges_;  // by axis
-    std::vector<double> values_, bends_;                // the last axis first
+    std::vector<double> values_, bends_, spreads_;      // the last axis first; spreads_: errors of replaced values
     std::array<std::array<double, 2>, most_axes> variation_at_pole_{};
 
     std::size_t stride(std::size_t axis) const;
@@ -61,6 +79,11 @@ private:
     template <class Each> void for_each_corner(const Intervals& intervals, Each&& each) const;
     double bend_along(std::size_t axis, std::size_t index) const;
     void find_bends();
+    std::size_t position(std::size_t axis, std::size_t index) const {
+        return index / stride(axis) % entries_[axis].size();
+    }
+    /// Calls each(index) for the entries up to `steps` away along every axis, the own one too.
+    template <class Each> void for_each_near(std::size_t index, std::size_t steps, Each&& each) const;
 };
 
 }  // namespace crescent

@@ -83,6 +83,104 @@ TEST(PointFiles, DiskWithoutASquareRootIsFound) {
     EXPECT_EQ(state_of(check_file("disk", draws_of_disk("root.csv", 1), table), "density"), State::wrong);
 }
 
+/// A table of the square around the unit disk or the triangle: p(x1, x2) at the centres of n x n cells, `beyond` where
+/// the centre is outside.
+template <class Density>
+std::string table_with_boundary(const std::string& name, bool disk, int n, const char* beyond, Density p) {
+    std::string text = "x1,x2,pdf\n";
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+            const double from = disk ? -1 : 0, step = (1 - from) / n;
+            const double x = from + (i + 0.5) * step, y = from + (k + 0.5) * step;
+            const bool inside = disk ? x * x + y * y < 1 : x + y < 1;
+            text += fmt::format("{:.9g},{:.9g},{}\n", x, y, inside ? fmt::format("{:.9g}", p(x, y)) : beyond);
+        }
+    return write_file(name, text);
+}
+
+TEST(PointFiles, CellsThatTheRimCutsCountByThePartInside) {
+    const std::string draws = draws_of_disk("rim.csv", 0.5), root = draws_of_disk("rim_root.csv", 1);
+    const auto uniform = [](double, double) { return 1 / pi; };
+    for (int n : {8, 31, 64})
+        for (const char* beyond : {"0", "nan"}) {
+            SCOPED_TRACE(fmt::format("{} cells, {} beyond the rim", n, beyond));
+            const std::string table = table_with_boundary("rim_table.csv", true, n, beyond, uniform);
+            EXPECT_EQ(check_file("disk", draws, table).state, State::right);
+            EXPECT_EQ(state_of(check_file("disk", root, table), "density"), State::wrong);
+        }
+    const std::string low = table_with_boundary("rim_low.csv", true, 64, "0", [](double, double) { return 0.99 / pi; });
+    EXPECT_EQ(state_of(check_file("disk", draws, low), "normalised"), State::wrong);
+}
+
+TEST(PointFiles, AveragesOverCellsThatTheRimCutsAreRead) {
+    constexpr int n = 16, parts = 400;  // p is the mass of a cell over its whole area, as of a histogram
+    std::string text = "x1,x2,pdf\n";
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+            double inside = 0;
+            for (int a = 0; a < parts; ++a) {
+                const double x = -1 + (i + (a + 0.5) / parts) * 2 / n, top = std::sqrt(1 - x * x);
+                inside += std::max(0.0, std::min(top, -1 + (k + 1) * 2.0 / n) - std::max(-top, -1 + k * 2.0 / n));
+            }
+            text += fmt::format(
+                "{},{},{:.9g}\n", -1 + (i + 0.5) * 2 / n, -1 + (k + 0.5) * 2 / n, inside / parts * n / 2 / pi);
+        }
+    const std::string table = write_file("histogram.csv", text);
+    EXPECT_EQ(check_file("disk", draws_of_disk("histogram_draws.csv", 0.5), table).state, State::right);
+    EXPECT_EQ(state_of(check_file("disk", draws_of_disk("histogram_root.csv", 1), table), "density"), State::wrong);
+}
+
+TEST(PointFiles, CellsThatTheTriangleCutsCountByThePartInside) {
+    Dice dice(5);
+    std::string uniform = "x1,x2,pdf\n", linear = uniform, missing_root = uniform;
+    for (int i = 0; i < 40000; ++i) {
+        const double u = dice(), v = dice(), rest = std::sqrt(u);
+        uniform += fmt::format("{:.9g},{:.9g},2\n", 1 - rest, v * rest);
+        missing_root += fmt::format("{:.9g},{:.9g},2\n", 1 - u, v * u);
+        const double b = 1 - std::cbrt(u);  // p = 6 (1 - b0 - b1): the least of three exponential shares
+        const double c = (1 - b) * (1 - std::sqrt(v));
+        linear += fmt::format("{:.9g},{:.9g},{:.9g}\n", b, c, 6 * (1 - b - c));
+    }
+    const auto constant = [](double, double) { return 2.0; };
+    for (int n : {9, 32}) {
+        SCOPED_TRACE(fmt::format("{} cells", n));
+        const std::string table = table_with_boundary("triangle_table.csv", false, n, "0", constant);
+        EXPECT_EQ(check_file("triangle", write_file("triangle.csv", uniform), table).state, State::right);
+        EXPECT_EQ(
+            state_of(check_file("triangle", write_file("root.csv", missing_root), table), "density"), State::wrong);
+    }
+    const std::string table =
+        table_with_boundary("linear_table.csv", false, 64, "0", [](double x, double y) { return 6 * (1 - x - y); });
+    EXPECT_EQ(check_file("triangle", write_file("linear.csv", linear), table).state, State::right);
+    EXPECT_EQ(state_of(check_file("triangle", write_file("linear.csv", linear),
+                           table_with_boundary("constant.csv", false, 64, "0", constant)),
+                  "density"),
+        State::wrong);
+}
+
+TEST(PointFiles, TableOfAPartOfTheDomainIsRefused) {
+    std::string line = "x1,pdf\n", square = "x1,x2,pdf\n";
+    for (int i = 0; i < 4000; ++i) {
+        line += fmt::format("{},1\n", (i + 0.5) / 4000);
+        square += fmt::format("{},{},1\n", (i + 0.5) / 4000, (i % 63) / 63.0);
+    }
+    const std::string draws = write_file("finite.csv", line);
+    const auto error_at = [&](const char* rows) {
+        return error_of("line:0,1", draws, write_file("part.csv", std::string("x1,pdf\n") + rows));
+    };
+    EXPECT_THAT(error_at("0.05,1\n0.25,1\n0.45,1\n"),
+        HasSubstr("part.csv:4:1: the entries of x1 are from 0.05 to 0.45; expected a table over all of [0, 1]"));
+    EXPECT_THAT(error_at("0.5,1\n0.75,1\n1,1\n"), HasSubstr("part.csv:2:1"));
+    EXPECT_EQ(error_at("0.1,1\n0.3,1\n0.5,1\n0.7,1\n0.9,1\n"), "nothing");
+    EXPECT_EQ(error_at("0,1\n0.5,1\n1,1\n"), "nothing");
+    EXPECT_EQ(error_at("0.4,1\n"), "nothing");
+    EXPECT_THAT(error_of("square", write_file("square.csv", square),
+                    write_file("half_square.csv", "x1,x2,pdf\n0,0,1\n0,0.25,1\n1,0,1\n1,0.25,1\n")),
+        HasSubstr("the entries of x2 are from 0 to 0.25; expected a table over all of [0, 1]"));
+    EXPECT_THAT(error_of("line:0,inf", draws, write_file("late.csv", "x1,pdf\n0.5,1\n0.6,1\n1,1\n")),
+        HasSubstr("p below 0.5 is not known"));
+}
+
 TEST(PointFiles, InfiniteLineIsTestedWithinItsTable) {
     const auto [draws, table] = draws_of_line(2, 2);
     EXPECT_EQ(check_file("line:0,inf", draws, table).state, State::right);

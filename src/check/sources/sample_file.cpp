@@ -180,6 +180,39 @@ DensityGrid grid_of(FileDiagnostics& in, std::vector<GridAxis> axes, std::span<c
     }
 }
 
+void check_coverage(FileDiagnostics& in, const NumberTable& table, std::span<const GridAxis> axes,
+    const DensityGrid& grid, std::span<const double> rows) {
+    constexpr double slack = 1 + 1e-6;  // of a step, by single precision
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+        const GridAxis& axis = axes[a];
+        const std::span<const double> x = grid.entries(a);
+        if (axis.integral || x.size() < 2) continue;  // one entry: p does not depend on this coordinate
+        const auto line = [&](double value) {         // of the first row of that entry
+            for (std::size_t r = 0; r < table.rows(); ++r)
+                if (std::fabs(rows[r * (axes.size() + 1) + a] - value) <= 1e-6 * axis.scale) return table.line(r);
+            return 0U;
+        };
+        const auto refuse = [&](double value, const std::string& end) {
+            in.add(line(value), 1,
+                fmt::format("the entries of {0} are from {1:.6g} to {2:.6g}; expected a table over all of "
+                            "[{3:.6g}, {4:.6g}]: p {5} is not known. Where nothing is drawn, write entries of 0",
+                    axis.name, x.front(), x.back(), axis.from, axis.to, end));
+        };
+        if (axis.periodic) {
+            double step = 0;
+            for (std::size_t i = 1; i < x.size(); ++i) step = std::max(step, x[i] - x[i - 1]);
+            if (x.front() + (axis.to - axis.from) - x.back() > 2 * step * slack)
+                refuse(x.back(), fmt::format("between {:.6g} and {:.6g}", x.back(), x.front() + axis.to - axis.from));
+            continue;
+        }
+        if (x.front() - axis.from > (x[1] - x[0]) * slack && std::isfinite(axis.from))
+            refuse(x.front(), fmt::format("below {:.6g}", x.front()));
+        if (axis.to - x.back() > (x[x.size() - 1] - x[x.size() - 2]) * slack && std::isfinite(axis.to))
+            refuse(x.back(), fmt::format("above {:.6g}", x.back()));
+    }
+    in.throw_if_any();
+}
+
 std::array<GridAxis, 2> direction_axes(bool sphere, const std::string& number) {
     return {{{.name = "cos_theta" + number, .from = sphere ? -1.0 : 0.0, .poles = {sphere, true}, .fewest = 2},
         {.name = "phi" + number, .to = 2 * pi, .periodic = true, .fewest = 2}}};
@@ -243,6 +276,7 @@ void SampleFile::read_table(const std::string& path) {
     floor_ = sphere ? -1 : 0;
     const std::array<GridAxis, 2> axes = direction_axes(sphere);
     grid_ = grid_of(in, {axes.begin(), axes.end()}, rows);
+    check_coverage(in, t, axes, grid_, rows);
 }
 
 bool SampleFile::agrees_as_cells() const {

@@ -58,6 +58,10 @@ NumberTable read_draws(FileDiagnostics& in, const std::vector<std::vector<std::s
 void check_numbers(FileDiagnostics& in, const NumberTable& draws, std::size_t row);
 /// The grid of a table. Throws InputError with what it lacks.
 DensityGrid grid_of(FileDiagnostics& in, std::vector<GridAxis> axes, std::span<const double> rows);
+/// Reports axes whose entries end more than a step before the domain does: p beyond them is not known. rows: as of
+/// grid_of().
+void check_coverage(FileDiagnostics& in, const NumberTable& table, std::span<const GridAxis> axes,
+    const DensityGrid& grid, std::span<const double> rows);
 /// cos theta and phi of directions; number: appended to the names.
 std::array<GridAxis, 2> direction_axes(bool sphere, const std::string& number = "");
 /// "samples.csv:17", or "samples.npy, row 16" without lines.

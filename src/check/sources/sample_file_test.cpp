@@ -110,5 +110,24 @@ TEST(TableFiles, NpyHeadersMayHaveLongGaps) {
     EXPECT_THAT(read(file_of("g.npy", npy(dictionary, bytes_of<double>({7, 8})))).values, ElementsAre(7, 8));
 }
 
+TEST(TableFiles, DensityOfAPartOfTheDirectionsIsRefused) {
+    std::string draws = "u1,u2,wix,wiy,wiz,pdf\n";
+    for (int i = 0; i < 1000; ++i) draws += "0.5,0.5,0,0,1,0.15915494\n";
+    const std::string samples = file_of("draws.csv", draws);
+    const auto refusal = [&](const char* rows) -> std::string {
+        try {
+            const SampleFile read(samples, file_of("part.csv", std::string("cos_theta,phi,pdf\n") + rows));
+        } catch (const InputError& e) { return e.what(); }
+        return "nothing";
+    };
+    EXPECT_EQ(refusal("0.25,1,1\n0.25,4,1\n0.75,1,1\n0.75,4,1\n"), "nothing");
+    EXPECT_THAT(refusal("0.7,1,1\n0.7,4,1\n0.9,1,1\n0.9,4,1\n"),
+        HasSubstr("part.csv:2:1: the entries of cos_theta are from 0.7 to 0.9; expected a table over all of [0, 1]"));
+    EXPECT_THAT(refusal("0.25,0,1\n0.25,1,1\n0.75,0,1\n0.75,1,1\n"),
+        HasSubstr(
+            "the entries of phi are from 0 to 1; expected a table over all of [0, 6.28319]: p between 1 and 6.28319 "
+            "is not known"));
+}
+
 }  // namespace sample_file_test
 }  // namespace crescent
