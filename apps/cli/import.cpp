@@ -17,6 +17,7 @@
 
 #include "commands.h"
 #include "import.h"
+#include "import_material.h"
 
 namespace crescent::cli {
 
@@ -124,12 +125,41 @@ std::string moved_line(const Json& description) {
 
 namespace {
 
-std::string rho_d_of(const Json& description, const std::string& material) {
-    Rgb rho = {0.5, 0.5, 0.5};
-    for (const Json& one : description.value("materials", Json::array()))
-        if (one.value("name", "") == material || (material.empty() && description["materials"].size() == 1))
-            for (std::size_t c = 0; c < 3; ++c) rho[c] = std::clamp(one["rho_d"][c].get<double>(), 0.0, 1.0);
-    return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", rho[0], rho[1], rho[2]);
+/// The material of one mesh: that of this name, or the only one. None: several.
+const Json* material_of_mesh(const Json& description, const std::string& name) {
+    const auto all = description.find("materials");
+    if (all == description.end()) return nullptr;
+    for (const Json& one : *all)
+        if (one.value("name", "") == name || (name.empty() && all->size() == 1)) return &one;
+    return nullptr;
+}
+
+/// The keys of its table; without a material, a grey diffuse surface.
+std::string material_keys(const Imported& imported, const ImportFlags& flags, bool has_uv, Counts& cut) {
+    const auto colour = [](const Rgb& c) { return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", c[0], c[1], c[2]); };
+    const Json* from = material_of_mesh(imported.description, flags.material);
+    if (!from) return fmt::format("rho_d = {}\n", colour({0.5, 0.5, 0.5}));
+    const std::filesystem::path beside = std::filesystem::absolute(flags.out).parent_path();
+    const auto mean_of_image = [&](const char* key, bool linear) {
+        if (!from->contains(key) || !has_uv) return Rgb{1, 1, 1};
+        const Json& picture = imported.description["pictures"][(*from)[key].get<std::size_t>()];
+        const std::string_view bytes =
+            std::string_view(imported.files)
+                .substr(picture["begin"].get<std::size_t>(), picture["size"].get<std::size_t>());
+        Staging scratch((beside / ".crescent-import").string(), "import");
+        const auto image = decoded_image(bytes, picture["name"].get<std::string>(), linear, scratch.scratch());
+        return image ? mean_of(*image) : Rgb{1, 1, 1};
+    };
+    const ImportedMaterial to =
+        material_of(*from, mean_of_image("colours", false), mean_of_image("surface", true)[2], cut);
+    std::string out = fmt::format("rho_d = {}\n", colour(to.rho_d));
+    if (std::ranges::max(to.rho_s) > 0)
+        out += fmt::format("rho_s = {}\nbrdf = \"ggx\"\nalpha = {:.4g}\n", colour(to.rho_s), to.alpha);
+    if (std::ranges::max(to.emission) > 0) {
+        out += fmt::format("emission = {}\n", colour(to.emission));
+        if ((*from)["two_sided"].get<bool>()) out += "two_sided = true\n";
+    }
+    return out;
 }
 
 /// Comment lines, one for each entry, with the number of those beyond the hundredth.
@@ -175,8 +205,9 @@ int import(const ImportFlags& flags) {
     if (!flags.sky.empty()) refuse(flags.out, "expected a folder (--out) for an experiment with a sky (--sky)");
     can_write(flags.out);
     const Imported imported = import_model(flags, false);
-    const auto pack = read_mesh(imported.files, flags.file);
-    write_whole(flags.out, imported.files);
+    const std::string bytes = imported.files.substr(0, imported.description["mesh"]["size"].get<std::size_t>());
+    const auto pack = read_mesh(bytes, flags.file);
+    write_whole(flags.out, bytes);
 
     const Mesh& mesh = pack->mesh;
     const Bounds box = mesh.bounds();
@@ -196,9 +227,11 @@ int import(const ImportFlags& flags) {
             material.contains("texture") ? ", texture " + printable(material.value("texture", ""), longest_name) : "",
             materials.size() > 1 && flags.material.empty() ? " (alone: --material NAME)" : "");
     });
-    out += "\n" + camera_table(box);
-    out += fmt::format("\n[meshes.{}]\nfile = \"{}\"\nrho_d = {}\n", table_name_of(flags.out),
-        std::filesystem::path(flags.out).filename().string(), rho_d_of(imported.description, flags.material));
+    Counts cut;
+    const std::string keys = material_keys(imported, flags, !mesh.uv.empty(), cut);
+    out += cut_lines(cut) + "\n" + camera_table(ModelPoints(mesh));
+    out += fmt::format("\n[meshes.{}]\nfile = \"{}\"\n{}", table_name_of(flags.out),
+        std::filesystem::path(flags.out).filename().string(), keys);
     print(out);
     return passed;
 }

@@ -1,11 +1,11 @@
-// crescent import MODEL --out FOLDER: an experiment of the whole scene. Materials of metal and roughness become
-// rho_d = (1 - metal) colour, rho_s = (1 - metal) rho_s + metal colour, and alpha = roughness^2 (glTF 2.0, appendix B).
+// crescent import MODEL --out FOLDER: an experiment of the whole scene.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -13,56 +13,20 @@
 #include <fmt/format.h>
 
 #include "import.h"
+#include "import_material.h"
 
 namespace crescent::cli {
 
 namespace {
 
-/// Below it, a lobe is narrower than the error of single precision (budget).
-constexpr double least_roughness = 1e-3;
+/// Of the files of an import, a line each.
+constexpr const char* hashes_name = ".crescent_import_hashes";
 
-Rgb colour_of(const Json& from) { return {from[0].get<double>(), from[1].get<double>(), from[2].get<double>()}; }
-
-/// A colour that an experiment takes as an albedo.
-Rgb albedo(Rgb c) {
-    for (double& x : c) x = std::clamp(x, 0.0, 1.0);
-    return std::ranges::max(c) < 1e-6 ? Rgb{} : c;
-}
-
-/// Averages squares of texels, until no side is longer than a texture's.
-RgbImage shrunk(RgbImage image) {
-    while (std::max(image.width, image.height) > widest_texture) {
-        RgbImage half;
-        half.width = std::max(image.width / 2, 1);
-        half.height = std::max(image.height / 2, 1);
-        half.rgb.resize(3 * half.texels());
-        for (int y = 0; y < half.height; ++y)
-            for (int x = 0; x < half.width; ++x)
-                for (std::size_t c = 0; c < 3; ++c) {
-                    float sum = 0;
-                    for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
-                        const int column = std::min(2 * x + dx, image.width - 1);
-                        const int row = std::min(2 * y + dy, image.height - 1);
-                        sum += image.rgb[3 *
-                                (static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
-                                    static_cast<std::size_t>(column)) +
-                            c];
-                    }
-                    half.rgb[3 *
-                            (static_cast<std::size_t>(y) * static_cast<std::size_t>(half.width) +
-                                static_cast<std::size_t>(x)) +
-                        c] = sum / 4;
-                }
-        image = std::move(half);
-    }
-    return image;
-}
-
-Rgb mean_of(const RgbImage& image) {
-    Rgb sum{};
-    for (std::size_t k = 0; k < image.rgb.size(); ++k) sum[k % 3] += static_cast<double>(image.rgb[k]);
-    for (double& x : sum) x /= static_cast<double>(image.texels());
-    return sum;
+/// FNV-1a (Fowler, Noll and Vo), 64 bits.
+std::string hash_of(std::string_view bytes) {
+    std::uint64_t out = 0xcbf29ce484222325;
+    for (const char c : bytes) out = (out ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    return fmt::format("{:016x}", out);
 }
 
 /// The scene of a description, whose files are written to a stage.
@@ -80,6 +44,7 @@ public:
     void write() {
         const std::string text = experiment_for(scene_);
         stage_.write("experiment.toml", text);
+        written_.emplace_back("experiment.toml");
         // It is read as `crescent run` will read it: what it refuses is an error of the model.
         try {
             (void)load(stage_.path("experiment.toml"));
@@ -87,15 +52,16 @@ public:
             refuse(flags_.file,
                 fmt::format("the experiment that is made of it is refused: {}", error.diagnostics().front().message));
         }
-        ProgressMonitor monitor;
-        stage_.commit(monitor);
+        keep_edited();
+        stage_.commit(monitor_);
     }
 
-    std::string summary() const {
+    std::string summary() {
         const auto file = [&](const char* name) { return (std::filesystem::path(flags_.out) / name).string(); };
         std::string out = fmt::format("# {}: {} meshes, {} triangles, {} images\n", file("experiment.toml"),
             scene_.meshes.size(), triangles_, texture_files_.size());
-        out += fmt::format("# box {} to {}\n", point_text(widen(scene_.box.low)), point_text(widen(scene_.box.high)));
+        out += fmt::format("# box {} to {}\n", point_text(widen(scene_.points.box().low)),
+            point_text(widen(scene_.points.box().high)));
         out += moved_line(imported_.description);
         out += fmt::format("# camera: {}; light: {}\n",
             scene_.camera ? "that of the file" : "one that sees the whole model", scene_.sky ? "the sky" : "a disk");
@@ -108,6 +74,9 @@ public:
         taken(copies_, "copies of meshes, as instances");
         taken(emitters_, "meshes that emit");
         out += left_out_lines(imported_.description);
+        out += cut_lines(cut_);
+        for (const std::string& line : kept_) out += "# " + printable(line) + "\n";
+        for (const std::string& line : monitor_.take_lines()) out += "# " + printable(line) + "\n";
         for (const auto& [what, count] : left_out_) out += fmt::format("# left out: {} {}\n", count, what);
         return out +
             fmt::format(
@@ -140,6 +109,7 @@ private:
         leave_out(pack->degenerate, "triangles without area");
         leave_out(pack->duplicate, "triangles that occur twice");
         stage_.write(to.file, bytes);
+        written_.push_back(to.file);
         for (const Json& rows : from.value("instances", Json::array())) {
             std::array<double, 12> matrix{};
             for (std::size_t k = 0; k < matrix.size(); ++k) matrix[k] = rows[k / 4][k % 4].get<double>();
@@ -148,39 +118,72 @@ private:
         }
         add_material(material, *pack, to);
         triangles_ += pack->mesh.triangles.size() * std::max<std::size_t>(to.instances.size(), 1);
-        add_box(pack->mesh.bounds(), to);
+        add_points(pack->mesh, to);
         used_.insert(from["material"].get<std::size_t>());
         emitters_ += std::ranges::max(to.emission) > 0;
         scene_.meshes.push_back(std::move(to));
+    }
+
+    /// Files of an earlier import that have changed since are kept as NAME.~1~; the hashes of all files are stored.
+    void keep_edited() {
+        namespace fs = std::filesystem;
+        const fs::path out(flags_.out);
+        std::map<std::string, std::string> earlier, now;
+        std::istringstream lines(contents_of((out / hashes_name).string()));
+        for (std::string hash, name; lines >> hash && std::getline(lines >> std::ws, name);)
+            if (hash != "#") earlier[name] = hash;
+        for (const std::string& name : written_) now[name] = hash_of(contents_of(stage_.path(name)));
+        // Earlier versions stored no hashes, but the names.
+        std::istringstream names(contents_of((out / ".crescent-import").string()));
+        for (std::string name; std::getline(names, name);)
+            if (!name.starts_with('#') && name != hashes_name) earlier.try_emplace(name, "");
+        for (const auto& [name, hash] : earlier) {
+            std::error_code none;
+            const fs::path file = out / name;
+            if (!fs::is_regular_file(fs::symlink_status(file, none))) continue;
+            const std::string found = hash_of(contents_of(file.string()));
+            const auto same = now.find(name);
+            if (found == hash || (same != now.end() && found == same->second)) continue;
+            if (hash.empty() && same == now.end()) continue;
+            int k = 1;
+            const auto copy = [&] { return fmt::format("{}.~{}~", file.string(), k); };
+            while (fs::exists(fs::symlink_status(copy(), none))) ++k;
+            if (!fs::copy_file(file, copy(), none))
+                throw OutputError(
+                    fmt::format("{} has changed since crescent import wrote it, and cannot be copied to {}",
+                        file.string(), copy()));
+            kept_.push_back(fmt::format("{} has changed since crescent import wrote it: it is now {}", file.string(),
+                fs::path(copy()).filename().string()));
+        }
+        std::string text = "# What crescent import wrote; a file that has changed since is kept as NAME.~1~.\n";
+        for (const auto& [name, hash] : now) text += fmt::format("{} {}\n", hash, name);
+        stage_.write(hashes_name, text);
     }
 
     void leave_out(std::size_t count, const char* what) {
         if (count > 0) left_out_[what] += count;
     }
 
-    void add_box(const Bounds& box, const ModelMesh& mesh) {
-        if (mesh.instances.empty()) return scene_.box.add(box);
+    void add_points(const Mesh& points, const ModelMesh& mesh) {
+        if (mesh.instances.empty()) return scene_.points.add(points);
+        const Bounds box = points.bounds();
         for (const std::array<double, 12>& m : mesh.instances)
             for (unsigned corner = 0; corner < 8; ++corner) {
                 const double p[3] = {static_cast<double>(corner & 1 ? box.high.x : box.low.x),
                     static_cast<double>(corner & 2 ? box.high.y : box.low.y),
                     static_cast<double>(corner & 4 ? box.high.z : box.low.z)};
-                float to[3] = {};
+                double to[3] = {};
                 for (std::size_t k = 0; k < 3; ++k)
-                    to[k] =
-                        static_cast<float>(m[4 * k] * p[0] + m[4 * k + 1] * p[1] + m[4 * k + 2] * p[2] + m[4 * k + 3]);
-                scene_.box.add(Vec3f{to[0], to[1], to[2]});
+                    to[k] = m[4 * k] * p[0] + m[4 * k + 1] * p[1] + m[4 * k + 2] * p[2] + m[4 * k + 3];
+                scene_.points.add(Vec3d{to[0], to[1], to[2]});
             }
     }
 
     void add_material(const Json& from, const MeshPack& pack, ModelMesh& to) {
-        const Rgb colour = colour_of(from["rho_d"]), of_lobe = colour_of(from["rho_s"]);
-        double metal = std::min(from["metal"].get<double>(), 1.0);
-        to.alpha = std::clamp(from["alpha"].get<double>(), least_roughness, 1.0);
         to.two_sided = from["two_sided"].get<bool>();
-        to.emission = colour_of(from["emission"]);
-        if (std::ranges::max(to.emission) < 1e-9) to.emission = {};
+        const double alpha = std::clamp(from["alpha"].get<double>(), least_imported_alpha(), 1.0);
         Rgb mean{1, 1, 1};
+        double mean_metal = 1;
         const bool has_uv = !pack.mesh.uv.empty();
         for (const char* key : {"colours", "surface"})
             if (from.contains(key) && !has_uv) ++left_out_["images of parts without texture coordinates"];
@@ -191,18 +194,20 @@ private:
                 ++colours_;
             }
         if (const Json* picture = picture_of(from, "surface", has_uv))
-            if (const auto texture = texture_of(*picture, from["surface"].get<std::size_t>(), to.alpha)) {
+            if (const auto texture = texture_of(*picture, from["surface"].get<std::size_t>(), alpha)) {
                 to.alpha_texture = texture->file;
-                metal *= texture->mean[2];
+                mean_metal = texture->mean[2];
                 ++roughness_;
             }
-        for (std::size_t c = 0; c < 3; ++c) {
-            to.rho_d[c] = (1 - metal) * colour[c];
-            to.rho_s[c] = (1 - metal) * of_lobe[c] + metal * colour[c] * mean[c];
-        }
-        to.rho_d = albedo(to.rho_d);
-        for (std::size_t c = 0; c < 3; ++c) to.rho_s[c] = std::min(to.rho_s[c], 1 - to.rho_d[c]);
-        to.rho_s = albedo(to.rho_s);
+        const auto known = materials_taken_.find(from["index"].get<std::size_t>());
+        Counts of_repeated;  // a material that several meshes have is counted once
+        const ImportedMaterial material =
+            material_of(from, mean, mean_metal, known == materials_taken_.end() ? cut_ : of_repeated);
+        materials_taken_.insert(from["index"].get<std::size_t>());
+        to.rho_d = material.rho_d;
+        to.rho_s = material.rho_s;
+        to.emission = material.emission;
+        to.alpha = material.alpha;
     }
     const Json* picture_of(const Json& material, const char* key, bool has_uv) const {
         if (!has_uv || !material.contains(key)) return nullptr;
@@ -224,13 +229,14 @@ private:
         if (alpha)
             for (std::size_t k = 0; k < image->rgb.size(); k += 3) {
                 const double roughness = static_cast<double>(image->rgb[k + 1]);
-                const double texel = std::clamp(sqr(roughness), least_roughness / *alpha, 1.0);
+                const double texel = std::clamp(sqr(roughness), least_imported_alpha() / *alpha, 1.0);
                 for (std::size_t c = 0; c < 3; ++c) image->rgb[k + c] = static_cast<float>(texel);
             }
         const std::string stem = std::filesystem::path(picture["name"].get<std::string>()).stem().string();
         const std::string name = unique_name(stem, "image", texture_files_);
         known->second->file = fmt::format("textures/{}.exr", name);
         write_texture(stage_.path(known->second->file), *image);
+        written_.push_back(known->second->file);
         return known->second;
     }
 
@@ -240,29 +246,10 @@ private:
             ++left_out_["images that are not there"];
             return std::nullopt;
         }
-        const std::string name = picture["name"].get<std::string>();
-        const std::string file = (std::filesystem::path(stage_.scratch()) / "picture").string() +
-            std::filesystem::path(name).extension().string().substr(0, 8);
-        write_whole(file, std::string(bytes));
-        try {
-            const Render render = read_render(
-                file, {}, {.encoding = linear ? ImageEncoding::linear : ImageEncoding::automatic, .channel = {}});
-            RgbImage out;
-            out.width = render.width;
-            out.height = render.height;
-            out.rgb.resize(3 * out.texels());
-            const std::vector<float>* planes[] = {&render.r, &render.g, &render.b};
-            const auto width = static_cast<std::size_t>(out.width), height = static_cast<std::size_t>(out.height);
-            for (std::size_t y = 0; y < height; ++y)
-                for (std::size_t x = 0; x < width; ++x)
-                    for (std::size_t c = 0; c < 3; ++c)
-                        out.rgb[3 * (y * width + x) + c] =
-                            std::clamp((*planes[c])[(height - 1 - y) * width + x], 0.0f, 1.0f);
-            return shrunk(std::move(out));
-        } catch (const InputError&) {
-            ++left_out_["images of a format that is not read"];
-            return std::nullopt;
-        }
+        std::optional<RgbImage> out =
+            decoded_image(bytes, picture["name"].get<std::string>(), linear, stage_.scratch());
+        if (!out) ++left_out_["images of a format that is not read"];
+        return out;
     }
 
     /// A camera looks at the depth of the middle of the model.
@@ -274,8 +261,8 @@ private:
             return Vec3d{from[key][0].get<double>(), from[key][1].get<double>(), from[key][2].get<double>()};
         };
         const Vec3d eye = vector("eye"), view = normalize(vector("view")), up = normalize(vector("up"));
-        const Vec3d middle = 0.5 * (widen(scene_.box.low) + widen(scene_.box.high));
-        const Vec3d diagonal = widen(scene_.box.high) - widen(scene_.box.low);
+        const Vec3d middle = 0.5 * (widen(scene_.points.box().low) + widen(scene_.points.box().high));
+        const Vec3d diagonal = widen(scene_.points.box().high) - widen(scene_.points.box().low);
         const double depth = std::max(dot(middle - eye, view), 0.1 * std::sqrt(dot(diagonal, diagonal)));
         scene_.camera = Camera{.eye = eye, .target = eye + depth * view, .up = up, .vfov_deg = from["vfov_deg"]};
         const double aspect = from["aspect"].get<double>();
@@ -287,18 +274,22 @@ private:
         SkyLight sky{.file = flags_.sky};
         load_sky(sky);  // refused with the place in the reader's own file
         stage_.write(name, contents_of(flags_.sky));
+        written_.push_back(name);
         scene_.sky = name;
     }
 
     const ImportFlags& flags_;
     const Imported& imported_;
     Staging stage_;
+    PolledMonitor monitor_;
+    std::vector<std::string> written_, kept_;  // names of files; lines on what was kept
     ModelScene scene_;
     std::map<std::size_t, const Json*> materials_;
     std::map<std::pair<std::size_t, double>, std::optional<WrittenTexture>> textures_;
     std::set<std::string> mesh_names_, texture_files_;
     std::set<std::size_t> used_;
-    std::map<std::string, std::size_t> left_out_;
+    std::set<std::size_t> materials_taken_;
+    Counts left_out_, cut_;
     std::size_t triangles_ = 0, copies_ = 0, colours_ = 0, roughness_ = 0, emitters_ = 0;
 };
 

@@ -113,6 +113,7 @@ Part part_of(const aiMesh& from) {
     Part out;
     out.material = from.mMaterialIndex;
     out.names = {from.mName.C_Str()};
+    std::ranges::replace(out.names[0], blank_of_name, ' ');
     for (unsigned k = 0; k < from.mNumVertices; ++k) {
         out.positions.push_back(widen(vector_of(from.mVertices[k])));
         if (from.HasNormals()) out.normals.push_back(vector_of(from.mNormals[k]));
@@ -145,7 +146,7 @@ Model read_by_assimp(const std::filesystem::path& file, const ReadingScope& scop
     list_what_is_left_out(*scene, out.left_out);
     std::map<std::string, std::size_t> known;
     for (Material& material : out.materials) {
-        if (!scope.whole_scene || material.texture.empty()) continue;
+        if (!scope.images || material.texture.empty()) continue;
         const auto [picture, is_new] = known.try_emplace(material.texture, out.pictures.size());
         material.colours = picture->second;
         if (is_new) out.pictures.push_back({material.texture, files->picture(material.texture)});

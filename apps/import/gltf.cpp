@@ -361,7 +361,7 @@ private:
         std::size_t index = 0;
         const Json* image = image_of(from, place, index);
         if (!image) ++dropped_["images in a format of an extension"];
-        if (!image || !scope_.whole_scene) return std::nullopt;
+        if (!image || !scope_.images) return std::nullopt;
         const auto [known, is_new] = picture_of_image_.try_emplace(index, model.pictures.size());
         if (!is_new) return known->second;
         const std::string image_place = element_place("images", index), uri = text(*image, "uri");

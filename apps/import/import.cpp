@@ -260,7 +260,7 @@ OrderedJson camera_of(const ModelCamera& camera, const ModelPlacement& placement
 OrderedJson import(const std::string& file, const OrderedJson& options) {
     const bool folder = options.value("folder", false);
     const std::string material = options.value("material", "");
-    Model model = read_model(file, {.whole_scene = folder || options.contains("select")});
+    Model model = read_model(file, {.whole_scene = folder || options.contains("select"), .images = true});
     if (options.contains("select")) select(model, options["select"].get<std::string>());
     turn_and_scale(model, options.value("up", "y") == "z", options.value("scale", 1.0));
     if (options.contains("smooth")) smooth(model, options["smooth"].get<double>());
@@ -286,7 +286,12 @@ OrderedJson import(const std::string& file, const OrderedJson& options) {
     if (gathered.result.triangles.empty()) throw none();
     out["normals"] = !gathered.result.normals.empty();
     out["uv"] = !gathered.result.uv.empty();
-    write_all(3, mesh_file(gathered.result));
+    std::size_t end = 0;
+    out["mesh"] = written(end, mesh_file(gathered.result));
+    OrderedJson used = OrderedJson::array();  // by the one material of the mesh, if it has one
+    for (const OrderedJson& one : out["materials"])
+        if (one["name"] == material || (material.empty() && out["materials"].size() == 1)) used.push_back(one);
+    out["pictures"] = write_pictures(model, used, end);
     return out;
 }
 
@@ -312,5 +317,7 @@ int main(int count, char** words) {
         return ended_with(0, import(words[1], options));
     } catch (const std::bad_alloc&) {
         return ended_with(2, {{"error", "needs more than " + std::to_string(mebibytes) + " MiB of memory (--memory)"}});
+    } catch (const OrderedJson::exception& error) {
+        return ended_with(2, {{"error", unreadable_json(error)}});
     } catch (const std::exception& error) { return ended_with(2, {{"error", error.what()}}); }
 }

@@ -99,7 +99,8 @@ bool is_inside(const std::filesystem::path& folder, const std::filesystem::path&
 
 /// What is read besides the triangles.
 struct ReadingScope {
-    bool whole_scene = false;  // parts keep their names, meshes that are placed twice their placements; images are read
+    bool whole_scene = false;  // parts keep their names, meshes that are placed twice their placements
+    bool images = false;       // are read
 };
 
 // Each reads a file of its format; throws ModelError with the place of a mistake, std::bad_alloc.

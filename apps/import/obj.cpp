@@ -88,6 +88,14 @@ ObjText checked_obj(std::string_view file) {
         };
         const std::string_view key = next();
         curves += key == "curv" || key == "curv2" || key == "surf";
+        if (key == "o" || key == "g") {
+            // assimp ends a name at a blank.
+            const std::size_t from = rest.find_first_not_of(" \t"), to = rest.find_last_not_of(" \t");
+            if (from != rest.npos)
+                for (std::size_t k = from; k < to; ++k)
+                    if (rest[k] == ' ' || rest[k] == '\t')
+                        out.text[static_cast<std::size_t>(rest.data() - out.text.data()) + k] = blank_of_name;
+        }
         points_and_lines += key == "p" || key == "l";
         if (key == "mtllib") {
             const std::size_t from = std::min(rest.find_first_not_of(" \t"), rest.size());

@@ -13,6 +13,9 @@ struct ObjText {
     std::vector<std::string> left_out;   // "3 curves and surfaces"
 };
 
+/// What stands for a blank within the name of an object or a group, at which assimp would end it.
+inline constexpr char blank_of_name = '\x1f';
+
 /// Returns the text without byte order mark, comments and line continuations, with '\n' as the end of each line and
 /// nothing before its first word. Throws ModelError with the line for a vertex without its numbers, for an index of a
 /// face that no vertex has, and for a face of more than most_corners corners.

@@ -7,22 +7,12 @@
 #include <filesystem>
 #include <fmt/format.h>
 
-#include "math/functions.h"
 #include "math/simd/math.h"
 #include "math/simd/scalar.h"
 
 namespace crescent {
 
 namespace {
-
-constexpr double half_view = 20;  // degrees
-
-/// A point with six digits of `detail`, a length: far from the origin, more digits than six.
-std::string point(Vec3d v, double detail) {
-    const double size = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-    const int digits = size > detail && detail > 0 ? 6 + static_cast<int>(std::ceil(math::log10(size / detail))) : 6;
-    return fmt::format("[{0:.{3}g}, {1:.{3}g}, {2:.{3}g}]", v.x, v.y, v.z, std::min(digits, 17));
-}
 
 /// The ball around a box.
 struct Ball {
@@ -41,20 +31,13 @@ std::string light_over(const Ball& ball) {
     return fmt::format(
         "[disks.light]\ncenter = {}\nnormal = {}\nradius = {:.6g}\nradiance = [15, 15, 15]\n\n[fill]\nradiance = "
         "[0.3, 0.3, 0.3]\n",
-        point(ball.middle + 2.5 * ball.radius * towards, ball.radius), point(-1.0 * towards, 1), 0.6 * ball.radius);
+        point_in_table(ball.middle + 2.5 * ball.radius * towards, ball.radius), point_in_table(-1.0 * towards, 1),
+        0.6 * ball.radius);
 }
 
 std::string arm(const std::string& name) { return fmt::format("[arms.{}]\nn = [4, 16, 64]\n\n", name); }
 
 }  // namespace
-
-std::string camera_table(const Bounds& box) {
-    const Ball ball(box);
-    const Vec3d towards = normalize(Vec3d{0.5, 0.4, 1});
-    return fmt::format("[camera]\neye = {}\ntarget = {}\nvfov_deg = {}\n",
-        point(ball.middle + (1.05 * ball.radius / math::sin(half_view * pi / 180)) * towards, ball.radius),
-        point(ball.middle, ball.radius), 2 * half_view);
-}
 
 std::string table_name_of(const std::string& file) {
     std::string name = std::filesystem::path(file).stem().string();
@@ -66,17 +49,17 @@ std::string table_name_of(const std::string& file) {
 
 std::string experiment_for(const std::vector<NamedMesh>& meshes, const std::optional<std::string>& sky) {
     constexpr int width = 240, height = 180;
-    Bounds box;
-    for (const auto& [file, pack] : meshes) box.add(pack->mesh.bounds());
+    ModelPoints points;
+    for (const auto& [file, pack] : meshes) points.add(pack->mesh);
     const std::string first = std::filesystem::path(meshes.at(0).first).stem().string();
     std::string out = fmt::format(
         "title = \"{}\"\nn = 64\n\n[image]\nwidth = {}\nheight = {}\n\n", table_name_of(first), width, height);
-    out += camera_table(box) + "\n";
+    out += camera_table(points) + "\n";
     for (const auto& [file, pack] : meshes)
         out += fmt::format(
             "[meshes.{}]\nfile = \"{}\"\nrho_d = [0.3, 0.25, 0.2]\nrho_s = 0.4\nbrdf = \"ggx\"\nalpha = 0.2\n\n",
             table_name_of(file), file);
-    out += sky ? fmt::format("[sky]\nfile = \"{}\"\n", *sky) : light_over(Ball(box));
+    out += sky ? fmt::format("[sky]\nfile = \"{}\"\n", *sky) : light_over(Ball(points.box()));
     out += "\n[reference]\nn = 32\n\n";
     out += arm("cosine") + arm("material") + arm("renderer");
     return out + fmt::format("[regions.all]\nbox = [0, 0, {}, {}]\n", width - 1, height - 1);
@@ -84,7 +67,8 @@ std::string experiment_for(const std::vector<NamedMesh>& meshes, const std::opti
 
 namespace {
 
-std::string colour(const Rgb& c) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", c[0], c[1], c[2]); }
+/// Seven digits, so that the sum of rho_d and rho_s is 1 if it was.
+std::string colour(const Rgb& c) { return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", c[0], c[1], c[2]); }
 
 std::string mesh_table(const ModelMesh& mesh) {
     std::string out =
@@ -108,14 +92,14 @@ std::string mesh_table(const ModelMesh& mesh) {
 std::string experiment_for(const ModelScene& scene) {
     constexpr int width = 320;
     const int height = std::clamp(static_cast<int>(std::lround(width / scene.aspect)), 80, 640);
-    const Ball ball(scene.box);
+    const Ball ball(scene.points.box());
     std::string out = fmt::format(
         "title = \"{}\"\nn = 64\n\n[image]\nwidth = {}\nheight = {}\n\n", table_name_of(scene.title), width, height);
     if (scene.camera)
         out += fmt::format("[camera]\neye = {}\ntarget = {}\nup = {}\nvfov_deg = {:.6g}\n\n",
-            point(scene.camera->eye, ball.radius), point(scene.camera->target, ball.radius), point(scene.camera->up, 1),
-            scene.camera->vfov_deg);
-    else out += camera_table(scene.box) + "\n";
+            point_in_table(scene.camera->eye, ball.radius), point_in_table(scene.camera->target, ball.radius),
+            point_in_table(scene.camera->up, 1), scene.camera->vfov_deg);
+    else out += camera_table(scene.points) + "\n";
     for (const ModelMesh& mesh : scene.meshes) out += mesh_table(mesh);
     out += scene.sky ? fmt::format("[sky]\nfile = \"{}\"\n", *scene.sky) : light_over(ball);
     out += "\n[reference]\nn = 64\n\n";

@@ -8,13 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "experiment/model_camera.h"
 #include "scene/mesh/mesh.h"
 #include "scene/scene_data.h"
 
 namespace crescent {
-
-/// Returns the table [camera] of a view in which the whole box is seen, from above and the side.
-std::string camera_table(const Bounds& box);
 
 /// Returns the name of a file without folder and extension as the name of a table.
 std::string table_name_of(const std::string& file);
@@ -40,7 +38,7 @@ struct ModelMesh {
 /// What a model has that becomes an experiment.
 struct ModelScene {
     std::string title;
-    Bounds box;  // of all meshes where they are
+    ModelPoints points;  // of all meshes where they are
     std::vector<ModelMesh> meshes;
     std::optional<Camera> camera;    // none: one that sees the box
     double aspect = 4.0 / 3;         // width over height

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "experiment/experiment.h"
 
@@ -38,7 +40,7 @@ TEST(ModelExperiment, SeesAModelFarFromTheOrigin) {
         }
         std::string text = experiment_for({{"far.mesh", tetrahedron()}}, std::nullopt);
         const std::size_t begin = text.find("[camera]"), end = text.find("\n\n", begin);
-        text.replace(begin, end - begin, camera_table(box));
+        text.replace(begin, end - begin, camera_table(ModelPoints(box)));
         const Camera camera = parse(text, "far").camera;
         const Vec3d middle = 0.5 * (widen(box.low) + widen(box.high)), size = widen(box.high) - widen(box.low);
         const double radius = 0.5 * std::sqrt(dot(size, size));
@@ -48,10 +50,80 @@ TEST(ModelExperiment, SeesAModelFarFromTheOrigin) {
     }
 }
 
+/// A box of this size about the origin, turned by two angles.
+Mesh box_of(Vec3d size, double yaw, double pitch) {
+    Mesh out;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const Vec3d p{
+            (corner & 1 ? 0.5 : -0.5) * size.x, (corner & 2 ? 0.5 : -0.5) * size.y, (corner & 4 ? 0.5 : -0.5) * size.z};
+        const Vec3d q{
+            p.x, std::cos(pitch) * p.y - std::sin(pitch) * p.z, std::sin(pitch) * p.y + std::cos(pitch) * p.z};
+        out.positions.push_back({static_cast<float>(std::cos(yaw) * q.x + std::sin(yaw) * q.z), static_cast<float>(q.y),
+            static_cast<float>(-std::sin(yaw) * q.x + std::cos(yaw) * q.z)});
+    }
+    for (const auto& [a, b, c, d] : {std::array<std::uint32_t, 4>{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6},
+             {0, 2, 6, 4}, {1, 5, 7, 3}}) {
+        out.triangles.push_back({a, c, b});
+        out.triangles.push_back({a, d, c});
+    }
+    return out;
+}
+
+/// Pixels of a square image of 64 that see a mesh, and whether all of its corners are in it.
+struct View {
+    int pixels = 0;
+    bool whole = true;
+};
+View view_of(const Mesh& mesh) {
+    std::string text = experiment_for({{"m.mesh", tetrahedron()}}, std::nullopt);
+    const std::size_t begin = text.find("[camera]"), end = text.find("\n\n", begin);
+    text.replace(begin, end - begin, camera_table(ModelPoints(mesh)));
+    const Camera c = parse(text, "view").camera;
+    const auto unit = [](Vec3d v) { return (1 / std::sqrt(dot(v, v))) * v; };
+    const Vec3d forward = unit(c.target - c.eye), across = unit(cross(forward, c.up)), up = cross(across, forward);
+    const double tangent = std::tan(c.vfov_deg * pi / 360);
+    View out;
+    for (const Vec3f& p : mesh.positions) {
+        const Vec3d to = widen(p) - c.eye;
+        const double depth = dot(to, forward);
+        out.whole = out.whole && depth > 0 && std::fabs(dot(to, across)) < tangent * depth &&
+            std::fabs(dot(to, up)) < tangent * depth;
+    }
+    constexpr int side = 64;
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j) {
+            const Vec3d d =
+                forward + (tangent * (2 * (i + 0.5) / side - 1)) * across + (tangent * (2 * (j + 0.5) / side - 1)) * up;
+            for (const Triangle& t : mesh.triangles) {  // Moeller and Trumbore 1997
+                const Vec3d a = widen(mesh.positions[t[0]]), u = widen(mesh.positions[t[1]]) - a,
+                            v = widen(mesh.positions[t[2]]) - a, s = c.eye - a, p = cross(d, v), q = cross(s, u);
+                const double of = dot(u, p), x = dot(s, p) / of, y = dot(d, q) / of;
+                if (!(x >= 0 && y >= 0 && x + y <= 1)) continue;
+                ++out.pixels;
+                break;
+            }
+        }
+    return out;
+}
+
+TEST(ModelExperiment, SeesAllOfAModelOfAnyAspect) {
+    for (const Vec3d size : {Vec3d{1, 1, 1}, Vec3d{1000, 1, 1}, Vec3d{1, 1000, 1}, Vec3d{1, 1, 1000}, Vec3d{10, 1, 1},
+             Vec3d{1000, 30, 1}, Vec3d{1, 1000, 1000}, Vec3d{1000, 1, 1000}, Vec3d{1000, 1000, 1}, Vec3d{1000, 1000, 0},
+             Vec3d{1e5, 1, 1}, Vec3d{1000, 1, 0}})
+        for (const double yaw : {0.0, 0.4, 0.785, 2.0})
+            for (const double pitch : {0.0, 0.35, 1.0, 1.5}) {
+                const View view = view_of(box_of(size, yaw, pitch));
+                EXPECT_TRUE(view.whole) << size.x << " x " << size.y << " x " << size.z << ", turned by " << yaw << ", "
+                                        << pitch;
+                EXPECT_GT(view.pixels, 40)
+                    << size.x << " x " << size.y << " x " << size.z << ", turned by " << yaw << ", " << pitch;
+            }
+}
+
 TEST(ModelExperiment, OfAWholeSceneHasItsMaterialsCopiesAndCamera) {
     ModelScene scene;
     scene.title = "a car";
-    scene.box = tetrahedron()->mesh.bounds();
+    scene.points.add(tetrahedron()->mesh);
     scene.meshes.push_back({.name = "paint", .file = "meshes/paint.mesh", .rho_d = {0.5, 0.25, 0.125}});
     scene.meshes.push_back({.name = "lamp",
         .file = "meshes/lamp.mesh",

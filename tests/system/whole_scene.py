@@ -98,6 +98,41 @@ command("run", "scene/experiment.toml", "--quiet", "--out", "out", "--set", "ima
 runs = json.loads(pathlib.Path("out/metrics.json").read_text())["runs"]
 assert all(run["bad"] == 0 and run["y_mean"] > 0 for run in runs if "bad" in run), runs
 
+# One mesh and the folder have the same material.
+for material in ("tiles", "gold", "lamp"):
+    one = command("import", "scene.glb", "--out", "one.mesh", "--material", material).partition("[meshes.")[2]
+    command("import", "scene.glb", "--out", "of-one", "--select", material)
+    whole = pathlib.Path("of-one/experiment.toml").read_text().partition("[meshes.")[2].partition("\n\n")[0]
+    for key in ("rho_d", "rho_s", "alpha", "emission"):
+        values = [[line for line in text.splitlines() if line.startswith(key + " = ")] for text in (one, whole)]
+        dark = values[1] in ([], ["rho_s = [0, 0, 0]"]) or (key == "alpha" and "rho_s = [0, 0, 0]" in whole)
+        assert values[0] == values[1] or (dark and not values[0]), (material, values)
+
+# A second import keeps what was edited since the first one, says so, and says nothing of what was not.
+experiment = pathlib.Path("scene/experiment.toml")
+written, meshes = experiment.read_text(), sorted(pathlib.Path("scene/meshes").iterdir())
+again = command("import", "scene.glb", "--out", "scene")
+assert "has changed" not in again and not list(pathlib.Path("scene").rglob("*.~1~")), again
+for edited in (written + "# mine\n", written.replace("n = 64", "n = 65")):
+    experiment.write_text(edited)
+    own = meshes[0].read_bytes() + b"own"
+    meshes[0].write_bytes(own)
+    again = command("import", "scene.glb", "--out", "scene")
+    number = len(list(pathlib.Path("scene").glob("experiment.toml.~*~")))
+    has(again, f"experiment.toml has changed since crescent import wrote it: it is now experiment.toml.~{number}~",
+        f"{meshes[0].name} has changed since")
+    assert pathlib.Path(f"scene/experiment.toml.~{number}~").read_text() == edited
+    assert pathlib.Path(f"{meshes[0]}.~{number}~").read_bytes() == own
+    assert experiment.read_text() == written
+assert "has changed" not in command("import", "scene.glb", "--out", "scene")
+# One that the next import does not write is kept too, and so are files of the user.
+meshes[0].write_bytes(own)
+pathlib.Path("scene/notes.txt").write_text("mine")
+rest = next(name for name in ("tiles", "gold", "lamp") if name not in meshes[0].name and (name, meshes[0].stem) != ("gold", "cube"))
+other = command("import", "scene.glb", "--out", "scene", "--select", rest)
+has(other, f"{meshes[0].name} has changed since")
+assert pathlib.Path("scene/notes.txt").read_text() == "mine" and not meshes[0].exists()
+
 # Copies that are kept, and the same triangles baked into one mesh, are the same scene.
 said = command("import", "scene.glb", "--out", "baked.mesh")
 has(said, "50 triangles", "box [-1, 0, -1] to [1, 1.4, 1]")
@@ -118,6 +153,35 @@ has(command("import", "cube.obj", "--out", "round.mesh", "--smooth", "100"), "no
 has(command("import", "cube.obj", "--out", "cube"), "1 meshes", "12 triangles", "the whole model")
 has(pathlib.Path("cube/experiment.toml").read_text(), "[meshes.red]", "rho_d = [0.8, 0.1, 0.1]", "rho_s = [0.2, 0.5, 0.5]", "alpha = 0.1414")
 command("import", "cube.obj", "--out", "cube.text", code=2)
+
+# Names with blanks are whole, of objects, groups and materials.
+face = "f " + " ".join(str(k + 1) for k in faces[0]) + "\n"
+pathlib.Path("names.obj").write_text(
+    "mtllib names.mtl\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in cube) +
+    "o my car\nusemtl red paint\nf 1 2 4 3\no  two  blanks \nusemtl dull\nf 5 7 8 6\ng a wheel\nf 1 5 6 2\n")
+pathlib.Path("names.mtl").write_text("newmtl red paint\nKd 1.5 0.1 0.1\nKs 0 0 0\nnewmtl dull\nKd 0.3 0.3 0.3\nKs 0.2 3 0.2\n")
+has(command("import", "names.obj", "--out", "names", "--select", "my car"), "1 meshes", "2 triangles")
+has(command("import", "names.obj", "--out", "names", "--select", "my", code=2), "'my car'", "'two  blanks'", "'red paint'")
+has(command("import", "names.obj", "--out", "names", "--select", "red paint"), "1 meshes", "2 triangles")
+# What an experiment does not take is cut to what it takes, and counted.
+said = command("import", "names.obj", "--out", "names")
+has(said, "cut: 1 materials' colours (Kd) above 1, to 1", "cut: 1 materials' colours of the lobe (Ks) above 1, to 1",
+    "cut: 1 materials' rho_s, to 1 - rho_d")
+has(pathlib.Path("names/experiment.toml").read_text(), "rho_d = [1, 0.1, 0.1]", "rho_s = [0.2, 0.7, 0.2]")
+has(command("import", "names.obj", "--out", "names.mesh", "--material", "red paint"), "cut: 1 materials' colours (Kd) above 1, to 1",
+    "rho_d = [1, 0.1, 0.1]")
+assert "cut:" not in command("import", "cube.obj", "--out", "kept", "--select", "red").replace("cut: 1 materials' rho_s", "")
+
+# A model of any aspect is seen by the camera that is made for it.
+for x, y, z in ((1000, 1, 1), (1, 1000, 1), (1, 1, 1000), (1000, 1000, 0.001), (0.001, 1000, 1000), (1000, 0.001, 1000), (1, 2000, 0.5)):
+    thin = "".join(f"v {a / 0.4 * x} {b / 0.4 * y} {c / 0.4 * z}\n" for a, b, c in cube)
+    pathlib.Path("thin.obj").write_text(thin + "".join("f " + " ".join(str(k + 1) for k in f) + "\n" for f in faces))
+    command("import", "thin.obj", "--out", "thin")
+    command("run", "thin/experiment.toml", "--quiet", "--out", "out", "--only", "metrics", "--set", "n=1", "--set", "arms.cosine.n=[1]",
+            "--set", "arms.material.n=[1]", "--set", "arms.light-solid-angle.n=[1]", "--set", "arms.renderer.n=[1]", "--set", "reference.n=2",
+            "--set", "plates.ladder.runs=[{ arm = \"material\" }]")
+    seen = json.loads(pathlib.Path("out/metrics.json").read_text())["geometry_pixels"]
+    assert seen > 320 * 240 / 100, (x, y, z, seen)
 
 # Draco, as its own encoder writes it: a rectangle of 1 by 2 with texture coordinates.
 packed = bytes.fromhex(

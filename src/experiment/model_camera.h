@@ -1,0 +1,49 @@
+// A camera that sees a whole model, whatever its shape: one that is thin along two axes is seen from near one of its
+// ends, so that its length is foreshortened, and a flat one from its face.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+#include "scene/mesh/mesh.h"
+
+namespace crescent {
+
+/// The points of a model, of which the view of it depends on the box and on the principal axes.
+class ModelPoints {
+public:
+    ModelPoints() = default;
+    explicit ModelPoints(const Bounds& box) { add(box); }
+    explicit ModelPoints(const Mesh& mesh) { add(mesh); }
+
+    void add(Vec3d point);
+    /// The corners of a box.
+    void add(const Bounds& box);
+    /// The corners of its triangles.
+    void add(const Mesh& mesh);
+    /// Around all points.
+    const Bounds& box() const { return box_; }
+
+    /// The principal axes, the longest extent first, with the ends of all points along them.
+    struct Axes {
+        Vec3d axis[3];
+        double low[3], high[3];
+        double extent(std::size_t k) const { return high[k] - low[k]; }
+        Vec3d middle() const;
+    };
+    Axes axes() const;
+
+private:
+    Bounds box_;
+    std::vector<Vec3f> points_;
+};
+
+/// Returns the table [camera] of a view in which the whole model is seen, from above and the side.
+std::string camera_table(const ModelPoints& points);
+
+/// A point with six digits of `detail`, a length: far from the origin, more digits than six.
+std::string point_in_table(Vec3d v, double detail);
+
+}  // namespace crescent
