@@ -41,7 +41,7 @@ constexpr std::array stored_kinds = {Kind{"crescent metrics ", page_of_run, "rep
     Kind{"crescent comparison ", page_of_comparison, "report.html"}, Kind{"crescent check ", page_of_check, nullptr}};
 
 const Kind& kind_of(const Json& json, const std::string& file) {
-    const auto format = json.at("format").get<std::string>();
+    const auto format = StoredJson(json).at("format").get<std::string>();
     for (const Kind& kind : stored_kinds)
         if (format.starts_with(kind.format)) return kind;
     throw InputError({file, 0, 0}, fmt::format("expected {}, not the format '{}'", what_is_read, format));
@@ -62,8 +62,10 @@ int report(const ReportFlags& flags) {
         claim_outputs({{"--out", out.string()}}, {flags.file});
         write_whole(out.string(), kind.page(json, flags.file));
         print(out.string() + "\n");
-    } catch (const Json::exception& error) {
+    } catch (const StoredJsonError& error) {
         throw InputError({flags.file, 0, 0}, fmt::format("expected {}: {}", what_is_read, error.what()));
+    } catch (const Json::exception& error) {
+        throw InputError({flags.file, 0, 0}, fmt::format("expected {}: {}", what_is_read, unreadable_json(error)));
     }
     return passed;
 }

@@ -59,6 +59,7 @@
 #include "metrics/metrics.h"
 #include "metrics/monte_carlo_reference.h"
 #include "output/charts.h"
+#include "output/stored_json.h"
 #include "output/tone_map.h"
 #include "render/estimator.h"
 #include "render/exr.h"

@@ -97,10 +97,15 @@ def opened(folder: Path) -> tuple[_crescent.RunResult, dict[str, str]]:
 def _timing(folder: Path) -> tuple[list[Any], int, list[Any]]:
     """The times, threads and stages of timing.json."""
     path = folder / "timing.json"
-    timing = json.loads(_text(path)) if path.is_file() else {}
-    rows = [(a["arm"], a["n"], a["s"], a["samples"], a["seconds"]) for a in timing.get("arms", [])]
-    stages = [(stage["name"], stage["seconds"]) for stage in timing.get("stages", [])]
-    return rows, int(timing.get("threads", 0)), stages
+    try:
+        timing = json.loads(_text(path)) if path.is_file() else {}
+        rows = [(a["arm"], a["n"], a["s"], a["samples"], a["seconds"]) for a in timing.get("arms", [])]
+        stages = [(stage["name"], stage["seconds"]) for stage in timing.get("stages", [])]
+        return rows, int(timing.get("threads", 0)), stages
+    except KeyError as error:
+        raise ValueError(f"{path}: expected the timing.json of a run: no {error} in an entry of arms or stages") from None
+    except (ValueError, TypeError, AttributeError) as error:
+        raise ValueError(f"{path}: expected the timing.json of a run: {error}") from None
 
 
 def joined(parts: Sequence[str]) -> tuple[_crescent.RunResult, dict[str, str]]:

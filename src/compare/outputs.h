@@ -172,7 +172,7 @@ std::string compare_summary(
 /// The method of places whose noise is correlated, as in the JSON.
 inline constexpr const char* dependent_method = "Benjamini-Yekutieli";
 /// One page that works offline, of compare_result_json() or of the file that it was stored in; `plates` are PNG bytes
-/// by name. Throws Json::exception if the result is something else.
+/// by name. Throws StoredJsonError if the result is something else.
 std::string compare_html(const Json& result, const std::map<std::string, std::vector<unsigned char>>& plates);
 
 }  // namespace crescent

@@ -8,6 +8,7 @@
 #include "compare/compare.h"
 #include "compare/outputs.h"
 #include "output/charts.h"
+#include "output/stored_json.h"
 #include "output/templates.h"
 
 namespace crescent {
@@ -16,10 +17,10 @@ namespace {
 
 // ---- Metrics with their intervals.
 
-MetricValue metric_of(const Json& json) {
-    MetricValue out{read_optional(json.at("value")), {}, json.value("why", "")};
-    if (const Json& ends = json.at("interval"); !ends.is_null())
-        out.interval = {read_number(ends.at(0)), read_number(ends.at(1))};
+MetricValue metric_of(const StoredJson& json) {
+    MetricValue out{json.at("value").optional_number(), {}, json.value("why", "")};
+    if (const StoredJson ends = json.at("interval"); !ends.is_null())
+        out.interval = {ends.at(0).number(), ends.at(1).number()};
     return out;
 }
 
@@ -45,14 +46,15 @@ const char* title_of(const std::string& metric) {
 }
 
 /// What a heavy tail or the renderer's own variance says about the numbers of an arm in a region.
-Json remarks_of(const std::string& region, const Json& arms) {
+Json remarks_of(const std::string& region, const StoredJson& arms) {
     Json out = Json::array();
-    for (const Json& arm : arms) {
-        const Json& r = arm.at("regions").at(region);
+    for (const StoredJson& arm : arms.entries()) {
+        const StoredJson r = arm.at("regions").at(region);
         const bool heavy = r.contains("heavy_tail");
-        const auto needed = heavy ? read_optional(r.at("heavy_tail").at("renders_needed")) : std::nullopt;
-        const auto stated = read_optional(r.value("stated_variance_ratio", Json()));
-        out.push_back({{"arm", arm.at("arm")}, {"share", heavy ? percent(read_number(r.at("largest_share"))) : ""},
+        const auto needed = heavy ? r.at("heavy_tail").at("renders_needed").optional_number() : std::nullopt;
+        const auto stated =
+            (r.contains("stated_variance_ratio") ? r.at("stated_variance_ratio").optional_number() : std::nullopt);
+        out.push_back({{"arm", arm.at("arm")}, {"share", heavy ? percent(r.at("largest_share").number()) : ""},
             {"needed", needed ? fmt::format("{:.0f}", *needed) : ""},
             {"stated_ratio", stated ? with_minus(figures(*stated, 3)) : ""}});
     }
@@ -60,22 +62,22 @@ Json remarks_of(const std::string& region, const Json& arms) {
 }
 
 /// A table of the metrics that some arm has in the region; the others are added to `not_measured` with their reasons.
-Json region_of(const std::string& region, const Json& regions, std::vector<Json>& not_measured) {
+Json region_of(const std::string& region, const StoredJson& regions, std::vector<Json>& not_measured) {
     std::vector<std::string> names;
     Json titles = Json::array(), arms = Json::array();
-    const Json& first = regions.at(0).at("regions").at(region);
-    const auto metric = [&](const Json& arm, const std::string& name) {
+    const StoredJson first = regions.at(0).at("regions").at(region);
+    const auto metric = [&](const StoredJson& arm, const std::string& name) {
         return metric_of(arm.at("regions").at(region).at("metrics").at(name));
     };
     for (const auto& [name, m] : first.at("metrics").items()) {
-        const bool any =
-            std::ranges::any_of(regions, [&](const Json& arm) { return metric(arm, name).value.has_value(); });
+        const bool any = std::ranges::any_of(
+            regions.entries(), [&](const StoredJson& arm) { return metric(arm, name).value.has_value(); });
         if (any) {
             names.push_back(name);
             titles.push_back(title_of(name));
         } else not_measured.push_back({{"metric", title_of(name)}, {"why", m.value("why", "")}});
     }
-    for (const Json& arm : regions) {
+    for (const StoredJson& arm : regions.entries()) {
         Json cells = Json::array();
         for (const std::string& name : names) cells.push_back(cell_of(metric(arm, name)));
         arms.push_back({{"arm", arm.at("arm")}, {"renders", arm.at("renders")}, {"cells", cells}});
@@ -84,15 +86,15 @@ Json region_of(const std::string& region, const Json& regions, std::vector<Json>
         {"arms", arms}, {"remarks", remarks_of(region, regions)}};
 }
 
-std::vector<std::string> region_names(const Json& result) {
+std::vector<std::string> region_names(const StoredJson& result) {
     std::vector<std::string> out;
     for (const auto& [name, region] : result.at("arms").at(0).at("regions").items()) out.push_back(name);
-    if (out.empty()) throw Json::other_error::create(501, "expected a region", &result);
+    if (out.empty()) result.at("arms").at(0).at("regions").refuse("expected a region");
     return out;
 }
 
 /// The metrics that no arm has are those of the last region.
-void add_numbers(const Json& result, Json& to) {
+void add_numbers(const StoredJson& result, Json& to) {
     std::vector<Json> not_measured;
     Json regions = Json::array();
     for (const std::string& name : region_names(result)) {
@@ -105,28 +107,29 @@ void add_numbers(const Json& result, Json& to) {
 
 // ---- Whether arms agree on the mean.
 
-std::string figures_of(const Json& object, const char* key, int digits = 4) {
-    return object.contains(key) ? figures(read_number(object.at(key)), digits) : "";
+std::string figures_of(const StoredJson& object, const char* key, int digits = 4) {
+    return object.contains(key) ? figures(object.at(key).number(), digits) : "";
 }
 
-Json row_of(const std::string& name, const Json& test, const std::string& differs, const std::string& remark) {
+Json row_of(const std::string& name, const StoredJson& test, const std::string& differs, const std::string& remark) {
     return {{"region", name}, {"mean", cell_text(figures_of(test, "a"))}, {"other", cell_text(figures_of(test, "b"))},
         {"p", cell_text(figures_of(test, "p", 2))},
-        {"smallest", cell_text(test.contains("smallest") ? percent(read_number(test.at("smallest")), 2) : "")},
+        {"smallest", cell_text(test.contains("smallest") ? percent(test.at("smallest").number(), 2) : "")},
         {"differs", differs}, {"remark", remark}};
 }
 
 /// Y of each region; below it the channels if one of them differs.
-Json rows_of(const Json& pair) {
+Json rows_of(const StoredJson& pair) {
     Json out = Json::array();
     const std::string nothing = pair.at("identical").get<bool>() ? "identical" : "no difference found";
     for (const auto& [region, test] : pair.at("regions").items()) {
         const auto in = test.at("differs_in").get<std::vector<std::string>>();
         if (!in.empty()) out.push_back(row_of(region, test, "differs in " + listed(in), ""));
         else out.push_back(row_of(region, test, "", test.value("why", test.value("doubt", nothing))));
-        const Json channels = test.value("channels", Json::object());
-        if (std::ranges::any_of(channels, [](const Json& c) { return c.at("differs").get<bool>(); }))
-            for (const auto& [name, c] : channels.items()) {
+        if (!test.contains("channels")) continue;
+        const auto channels = test.at("channels").items();
+        if (std::ranges::any_of(channels, [](const auto& c) { return c.second.at("differs").template get<bool>(); }))
+            for (const auto& [name, c] : channels) {
                 const bool differs = c.at("differs").get<bool>();
                 out.push_back(
                     row_of(region + ", mean " + name, c, differs ? "differs" : "", differs ? "" : c.value("why", "")));
@@ -136,7 +139,7 @@ Json rows_of(const Json& pair) {
 }
 
 /// The number of places that differ, by the quantity that differs the most in each; false if none does.
-Json most_in(const Json& counts) {
+Json most_in(const StoredJson& counts) {
     std::vector<Json> out;
     for (const auto& [quantity, count] : counts.items())
         if (count.get<std::uint64_t>()) out.push_back({{"quantity", quantity}, {"count", count}});
@@ -144,8 +147,8 @@ Json most_in(const Json& counts) {
 }
 
 /// Tiles and pixels that differ; false if none was tested.
-Json places_of(const Json& pair) {
-    const Json &tiles = pair.at("tiles"), &pixels = pair.at("pixels");
+Json places_of(const StoredJson& pair) {
+    const StoredJson tiles = pair.at("tiles"), pixels = pair.at("pixels");
     const auto shown = pair.at("shown").get<std::string>();
     const bool is_y = shown == quantity_names[0];
     if (tiles.at("tested") == 0 && pixels.at("tested") == 0 && is_y) return false;
@@ -194,16 +197,16 @@ std::string histogram(
 
 using BinCounts = std::vector<std::uint64_t>;
 
-std::string pixel_histogram(const Json& pixels) {
+std::string pixel_histogram(const StoredJson& pixels) {
     if (pixels.at("tested") == 0) return {};
     const auto p = pixels.at("p").get<BinCounts>();
     const Axis x{0, 1, false, "p of a pixel", {0, 0.2, 0.4, 0.6, 0.8, 1}};
     return histogram(percents(p, sum_of(p)), {}, x, "% of pixels", "Histogram of p over pixels");
 }
 
-Json pairs_of(const Json& result) {
+Json pairs_of(const StoredJson& result) {
     Json out = Json::array();
-    for (const Json& pair : result.at("bias"))
+    for (const StoredJson& pair : result.at("bias").entries())
         out.push_back({{"a", pair.at("a")}, {"b", pair.at("b")}, {"paired", pair.at("paired")}, {"rows", rows_of(pair)},
             {"places", places_of(pair)}, {"histogram", pixel_histogram(pair.at("pixels"))}});
     return out;
@@ -211,9 +214,9 @@ Json pairs_of(const Json& result) {
 
 // ---- Where the noise differs, and its spectra.
 
-Json noise_of(const Json& result) {
+Json noise_of(const StoredJson& result) {
     Json out = Json::array();
-    for (const Json& n : result.at("noise")) {
+    for (const StoredJson& n : result.at("noise").entries()) {
         Json charts = Json::array();
         for (const auto& [region, counts] : n.at("regions").items()) {
             const auto different = counts.at("told_apart").get<BinCounts>();
@@ -235,18 +238,19 @@ Json noise_of(const Json& result) {
     return out;
 }
 
-std::vector<double> power_of(const Json& arm, const std::string& region) {
+std::vector<double> power_of(const StoredJson& arm, const std::string& region) {
     std::vector<double> out;
-    for (const Json& p : arm.at("regions").at(region).at("spectrum").at("power")) out.push_back(read_number(p));
+    for (const StoredJson& p : arm.at("regions").at(region).at("spectrum").at("power").entries())
+        out.push_back(p.number());
     return out;
 }
 
-Json spectra_of(const Json& result) {
+Json spectra_of(const StoredJson& result) {
     Json out = Json::array();
-    const Json& arms = result.at("arms");
+    const StoredJson arms = result.at("arms");
     for (const std::string& region : region_names(result)) {
         std::vector<double> values;
-        for (const Json& arm : arms)
+        for (const StoredJson& arm : arms.entries())
             for (const double p : power_of(arm, region))
                 if (p > 0) values.push_back(p);
         if (values.empty()) continue;
@@ -254,15 +258,15 @@ Json spectra_of(const Json& result) {
         Chart chart(520, 240, x, log_axis("power of the error of Y", values), "Error spectrum");
         std::vector<Json> names;
         for (std::size_t a = 0; a < arms.size(); ++a) {
-            const std::vector<double> power = power_of(arms[a], region);
+            const std::vector<double> power = power_of(arms.at(a), region);
             std::vector<Point> line;
             for (std::size_t k = 0; k < power.size(); ++k) line.push_back({static_cast<double>(k + 1), power[k]});
             if (line.empty()) continue;
             const std::string colour = fmt::format("c{}", a % 6);
             chart.line(line, colour);
-            chart.name(line.back(), arms[a].at("arm").get<std::string>(), colour);
-            names.push_back(
-                {{"arm", arms[a].at("arm")}, {"colour", arms[a].at("regions").at(region).at("spectrum").at("noise")}});
+            chart.name(line.back(), arms.at(a).at("arm").get<std::string>(), colour);
+            names.push_back({{"arm", arms.at(a).at("arm")},
+                {"colour", arms.at(a).at("regions").at(region).at("spectrum").at("noise")}});
         }
         out.push_back({{"chart", chart.str()}, {"region", region}, {"arms", separated(std::move(names))}});
     }
@@ -278,26 +282,27 @@ struct LadderLine {
     std::vector<MetricValue> metrics;
 };
 
-std::vector<LadderLine> ladder_lines(const Json& result, const std::string& region) {
+std::vector<LadderLine> ladder_lines(const StoredJson& result, const std::string& region) {
     std::vector<LadderLine> out;
-    for (const Json& ladder : result.at("ladders")) {
+    for (const StoredJson& ladder : result.at("ladders").entries()) {
         LadderLine& line = out.emplace_back();
         line.name = ladder.at("name").get<std::string>();
         for (std::size_t k = 0; k < ladder.at("arms").size(); ++k) {
+            const std::vector<StoredJson> arms = result.at("arms").entries();
             const auto arm = std::ranges::find_if(
-                result.at("arms"), [&](const Json& each) { return each.at("arm") == ladder.at("arms").at(k); });
-            if (arm == result.at("arms").end()) continue;
-            line.spp.push_back(read_number(ladder.at("spp").at(k)));
-            const Json& metrics = arm->at("regions").at(region).at("metrics");
+                arms, [&](const StoredJson& each) { return each.at("arm") == ladder.at("arms").at(k).value(); });
+            if (arm == arms.end()) continue;
+            line.spp.push_back(ladder.at("spp").at(k).number());
+            const StoredJson metrics = arm->at("regions").at(region).at("metrics");
             line.metrics.push_back(ladder_metric(metric_of(metrics.at("rmse")), metric_of(metrics.at("var"))));
         }
     }
     return out;
 }
 
-Json ladder_chart(const Json& result, const std::string& region) {
+Json ladder_chart(const StoredJson& result, const std::string& region) {
     const std::vector<LadderLine> lines = ladder_lines(result, region);
-    const Json& metrics = result.at("arms").at(0).at("regions").at(region).at("metrics");
+    const StoredJson metrics = result.at("arms").at(0).at("regions").at(region).at("metrics");
     const char* what = ladder_metric_name(metric_of(metrics.at("rmse")));
     std::vector<double> xs, ys;
     for (const LadderLine& line : lines)
@@ -333,24 +338,24 @@ Json ladder_chart(const Json& result, const std::string& region) {
     return {{"chart", chart.str()}, {"region", region}, {"what", what}, {"slopes", separated(std::move(slopes))}};
 }
 
-Json ladder_charts(const Json& result) {
+Json ladder_charts(const StoredJson& result) {
     Json out = Json::array();
     if (result.at("ladders").empty()) return out;
     for (const std::string& region : region_names(result)) out.push_back(ladder_chart(result, region));
     return out;
 }
 
-Json assertions_of(const Json& result) {
+Json assertions_of(const StoredJson& result) {
     Json out = Json::array();
-    for (const Json& a : result.at("assertions"))
+    for (const StoredJson& a : result.at("assertions").entries())
         out.push_back({{"name", a.at("name")}, {"claim", a.at("text")}, {"left", cell_text(figures_of(a, "measured"))},
             {"right", cell_text(figures_of(a, "bound"))}, {"holds", a.at("pass")}});
     return out;
 }
 
-Json file_of(const std::string& arm, const Json& f, double y) {
+Json file_of(const std::string& arm, const StoredJson& f, double y) {
     const auto cell = [&](const char* key) {
-        const auto value = read_optional(f.at(key));
+        const auto value = f.at(key).optional_number();
         return cell_text(value ? figures(*value) : "");
     };
     return {{"arm", arm}, {"path", f.at("file")}, {"layer", f.at("layer")},
@@ -358,15 +363,15 @@ Json file_of(const std::string& arm, const Json& f, double y) {
         {"seconds", cell("seconds")}};
 }
 
-Json files_of(const Json& result) {
+Json files_of(const StoredJson& result) {
     Json out = Json::array();
     const std::string last = region_names(result).back();
-    for (const Json& arm : result.at("arms"))
-        for (const Json& f : arm.at("files"))
-            out.push_back(
-                file_of(arm.at("arm").get<std::string>(), f, read_number(f.at("regions").at(last).at("y_mean"))));
-    if (const Json& reference = result.at("reference"); !reference.is_null())
-        for (const Json& f : reference.at("files")) out.push_back(file_of("reference", f, read_number(f.at("y_mean"))));
+    for (const StoredJson& arm : result.at("arms").entries())
+        for (const StoredJson& f : arm.at("files").entries())
+            out.push_back(file_of(arm.at("arm").get<std::string>(), f, f.at("regions").at(last).at("y_mean").number()));
+    if (const StoredJson reference = result.at("reference"); !reference.is_null())
+        for (const StoredJson& f : reference.at("files").entries())
+            out.push_back(file_of("reference", f, f.at("y_mean").number()));
     return out;
 }
 
@@ -380,19 +385,20 @@ Json pictures_of(const std::map<std::string, std::vector<unsigned char>>& plates
 
 }  // namespace
 
-std::string compare_html(const Json& result, const std::map<std::string, std::vector<unsigned char>>& plates) {
+std::string compare_html(const Json& json, const std::map<std::string, std::vector<unsigned char>>& plates) {
+    const StoredJson result(json);
     const auto sentence = result.at("message").get<std::string>();
     auto found = result.at("found").get<std::vector<std::string>>();
     std::erase(found, sentence);
     Json rankings = Json::array();
-    for (const Json& r : result.at("rankings")) rankings.push_back(r.at("message"));
-    const Json &reference = result.at("reference"), &provenance = result.at("provenance");
-    const double trim = read_number(result.at("trim"));
+    for (const StoredJson& r : result.at("rankings").entries()) rankings.push_back(r.at("message"));
+    const StoredJson reference = result.at("reference"), provenance = result.at("provenance");
+    const double trim = result.at("trim").number();
     Json model = {{"title", result.at("title")}, {"version", provenance.at("version")},
         {"command", provenance.at("command")}, {"sentence", sentence}, {"fails", result.at("state") == "fails"},
         {"all_hold", sentence.empty() && !result.at("assertions").empty()}, {"found", found},
         {"trimmed", trim > 0 ? percent(trim) : ""}, {"has_reference", !reference.is_null()},
-        {"reference_error", reference.is_null() ? Json("") : reference.at("standard_error_from")},
+        {"reference_error", reference.is_null() ? Json("") : reference.at("standard_error_from").value()},
         {"rankings", rankings}, {"pairs", pairs_of(result)}, {"pictures", pictures_of(plates)},
         {"noise", noise_of(result)}, {"ladders", ladder_charts(result)}, {"spectra", spectra_of(result)},
         {"assertions", assertions_of(result)}, {"files", files_of(result)}, {"warnings", result.at("warnings")}};

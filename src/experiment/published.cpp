@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
+#include "output/stored_json.h"
 
 namespace crescent {
 
@@ -109,9 +110,9 @@ Published parse_published(std::string_view text, const std::string& name) {
     try {
         return Reader(name).read(json::parse(text));
     } catch (const json::parse_error& error) {
-        throw InputError(place_of_byte(text, error.byte, name), fmt::format("not JSON: {}", error.what()));
+        throw InputError(place_of_byte(text, error.byte, name), fmt::format("not JSON: {}", unreadable_json(error)));
     } catch (const json::exception& error) {
-        throw InputError({name, 0, 0}, fmt::format("expected published figures: {}", error.what()));
+        throw InputError({name, 0, 0}, fmt::format("expected published figures: {}", unreadable_json(error)));
     }
 }
 

@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "base/text.h"
 #include "math/functions.h"
+#include "output/stored_json.h"
 
 namespace crescent {
 namespace {
@@ -167,7 +168,7 @@ Json parse_json(const std::string& text, const std::string& name, std::string_vi
     try {
         return parse_json(text);
     } catch (const Json::exception& error) {
-        throw InputError({name, 0, 0}, fmt::format("expected {}: {}", what, error.what()));
+        throw InputError({name, 0, 0}, fmt::format("expected {}: {}", what, unreadable_json(error)));
     }
 }
 

@@ -8,7 +8,7 @@
 
 #include "base/errors.h"
 #include "experiment/experiment.h"
-#include "output/format.h"
+#include "output/stored_json.h"
 #include "report/report.h"
 
 namespace crescent {
@@ -16,26 +16,26 @@ namespace {
 
 constexpr int most_seeds = 4096;  // as in an experiment
 
-void read(const Json& json, double& to) { to = json.is_null() ? std::nan("") : read_number(json); }
-void read(const Json& json, std::uint64_t& to) { to = json.get<std::uint64_t>(); }
+void read(const StoredJson& json, double& to) { to = json.is_null() ? std::nan("") : json.number(); }
+void read(const StoredJson& json, std::uint64_t& to) { to = json.get<std::uint64_t>(); }
 
-std::optional<Tail> tail_of(const Json& json) {
+std::optional<Tail> tail_of(const StoredJson& json) {
     if (!json.contains("tail")) return {};
-    const Json& tail = json.at("tail");
-    return Tail{read_number(tail.at("k")), read_number(tail.at("se")), tail.at("exceedances").get<std::uint64_t>()};
+    const StoredJson tail = json.at("tail");
+    return Tail{tail.at("k").number(), tail.at("se").number(), tail.at("exceedances").get<std::uint64_t>()};
 }
 
-template <class T, class F> std::vector<T> list_of(const Json& json, F one) {
+template <class T, class F> std::vector<T> list_of(const StoredJson& json, F one) {
     std::vector<T> out;
-    for (const Json& item : json) out.push_back(one(item));
+    for (const StoredJson& item : json.entries()) out.push_back(one(item));
     return out;
 }
 
-RunMetrics run_of(const Json& json) {
+RunMetrics run_of(const StoredJson& json) {
     RunMetrics run;
     run.key = {.arm = json.at("arm").get<std::string>(),
         .n = json.at("n").get<std::uint64_t>(),
-        .s = read_number(json.at("s")),
+        .s = json.at("s").number(),
         .seed = json.at("seed").get<std::uint32_t>()};
 #define CRESCENT_READ(name, Type) read(json.at(#name), to.name);
     const auto frame = [&](RunMetrics& to) { CRESCENT_FRAME_METRICS(CRESCENT_READ) };
@@ -45,13 +45,13 @@ RunMetrics run_of(const Json& json) {
         m.region = name;
         m.pixels = region.at("pixels").get<std::uint64_t>();
         m.tail = tail_of(region);
-        const auto metrics = [](const Json& json, RegionMetrics& to) { CRESCENT_REGION_METRICS(CRESCENT_READ) };
+        const auto metrics = [](const StoredJson& json, RegionMetrics& to) { CRESCENT_REGION_METRICS(CRESCENT_READ) };
         metrics(region, m);
-        if (region.contains("flip")) m.flip = read_number(region.at("flip"));
+        if (region.contains("flip")) m.flip = region.at("flip").number();
         if (region.contains("mse")) {
-            m.mse = read_number(region.at("mse"));
-            m.reference_error = read_number(region.at("reference_error"));
-            m.mse_error = read_number(region.at("mse_error"));
+            m.mse = region.at("mse").number();
+            m.reference_error = region.at("reference_error").number();
+            m.mse_error = region.at("mse_error").number();
         }
         run.regions.push_back(std::move(m));
     }
@@ -59,43 +59,43 @@ RunMetrics run_of(const Json& json) {
     return run;
 }
 
-FurnaceResult furnace_of(const Json& json) {
+FurnaceResult furnace_of(const StoredJson& json) {
     FurnaceResult out;
     out.name = json.at("name").get<std::string>();
     out.arm = json.at("arm").get<std::string>();
     out.part = json.at("part").get<std::string>();
     out.n = json.at("n").get<std::uint64_t>();
-    out.measured = read_number(json.at("measured"));
-    out.expected = read_number(json.at("expected"));
+    out.measured = json.at("measured").number();
+    out.expected = json.at("expected").number();
     out.tail = tail_of(json);
-    if (!out.tail || !out.tail->heavy()) out.se = read_number(json.at("se"));
+    if (!out.tail || !out.tail->heavy()) out.se = json.at("se").number();
     out.bad = json.at("bad").get<std::uint64_t>();
-    out.published = read_optional(json.at("published"));
+    out.published = json.at("published").optional_number();
     return out;
 }
 
-ReferenceQuality reference_of(const Json& json) {
+ReferenceQuality reference_of(const StoredJson& json) {
     ReferenceQuality out;
-    out.s = read_number(json.at("s"));
+    out.s = json.at("s").number();
     out.region = json.at("region").get<std::string>();
-    out.error_share = read_number(json.at("error_share"));
+    out.error_share = json.at("error_share").number();
     if (json.contains("paired_error")) {
-        out.paired_error = read_number(json.at("paired_error"));
+        out.paired_error = json.at("paired_error").number();
         return out;
     }
-    out.rms_difference = read_optional(json.at("rms_difference"));
-    out.rms_standard_error = read_optional(json.at("rms_standard_error"));
-    out.quadrature_error = read_optional(json.at("quadrature_error"));
-    out.max_relative_rmse_change = read_optional(json.at("rmse_unlike"));
+    out.rms_difference = json.at("rms_difference").optional_number();
+    out.rms_standard_error = json.at("rms_standard_error").optional_number();
+    out.quadrature_error = json.at("quadrature_error").optional_number();
+    out.max_relative_rmse_change = json.at("rmse_unlike").optional_number();
     return out;
 }
 
-AssertionResult assertion_of(const Json& json) {
+AssertionResult assertion_of(const StoredJson& json) {
     AssertionResult out;
     out.name = json.at("name").get<std::string>();
     out.pass = json.at("pass").get<bool>();
-    out.measured = read_number(json.at("measured"));
-    out.bound = read_number(json.at("bound"));
+    out.measured = json.at("measured").number();
+    out.bound = json.at("bound").number();
     out.op = json.at("op").get<std::string>();
     out.text = json.at("text").get<std::string>();
     out.cannot_fail = json.value("cannot_fail", false);
@@ -103,46 +103,46 @@ AssertionResult assertion_of(const Json& json) {
     return out;
 }
 
-Evidence evidence_of(const Json& json) {
+Evidence evidence_of(const StoredJson& json) {
     Evidence e;
-    e.s = read_number(json.at("s"));
-    e.rho_d = read_number(json.at("rho_d"));
-    e.rho_s = read_number(json.at("rho_s"));
-    e.expected = read_number(json.at("expected"));
-    e.alpha = read_number(json.at("alpha"));
-    e.furnace = list_of<FurnaceQuantiles>(json.at("furnace"), [](const Json& q) {
+    e.s = json.at("s").number();
+    e.rho_d = json.at("rho_d").number();
+    e.rho_s = json.at("rho_s").number();
+    e.expected = json.at("expected").number();
+    e.alpha = json.at("alpha").number();
+    e.furnace = list_of<FurnaceQuantiles>(json.at("furnace"), [](const StoredJson& q) {
         return FurnaceQuantiles{q.at("arithmetic").get<std::string>(), q.at("u_bits").get<int>(),
-            q.at("n").get<std::uint64_t>(), read_number(q.at("q05")), read_number(q.at("q25")),
-            read_number(q.at("median")), read_number(q.at("q75")), read_number(q.at("q95"))};
+            q.at("n").get<std::uint64_t>(), q.at("q05").number(), q.at("q25").number(), q.at("median").number(),
+            q.at("q75").number(), q.at("q95").number()};
     });
     e.caps = list_of<FurnaceCap>(
-        json.at("caps"), [](const Json& c) { return FurnaceCap{c.at("u_bits").get<int>(), read_number(c.at("y"))}; });
-    e.lost = list_of<LostSupport>(json.at("lost"), [](const Json& l) {
-        return LostSupport{read_number(l.at("theta_R_deg")), read_number(l.at("measured")), read_number(l.at("se")),
-            read_number(l.at("theory"))};
+        json.at("caps"), [](const StoredJson& c) { return FurnaceCap{c.at("u_bits").get<int>(), c.at("y").number()}; });
+    e.lost = list_of<LostSupport>(json.at("lost"), [](const StoredJson& l) {
+        return LostSupport{
+            l.at("theta_R_deg").number(), l.at("measured").number(), l.at("se").number(), l.at("theory").number()};
     });
-    e.rejections = list_of<FalseRejection>(json.at("rejections"), [](const Json& r) {
-        return FalseRejection{read_number(r.at("s")), read_number(r.at("k")), r.at("n").get<std::uint64_t>(),
-            r.at("runs").get<int>(), r.at("rejected").get<int>(), read_number(r.at("low")), read_number(r.at("high"))};
+    e.rejections = list_of<FalseRejection>(json.at("rejections"), [](const StoredJson& r) {
+        return FalseRejection{r.at("s").number(), r.at("k").number(), r.at("n").get<std::uint64_t>(),
+            r.at("runs").get<int>(), r.at("rejected").get<int>(), r.at("low").number(), r.at("high").number()};
     });
     return e;
 }
 
-Provenance provenance_of(const Json& json) {
+Provenance provenance_of(const StoredJson& json) {
     Provenance p;
     p.version = json.at("version").get<std::string>();
     p.commit = json.at("commit").get<std::string>();
     p.compiler = json.at("compiler").get<std::string>();
     p.backend = json.at("instrument").get<std::string>();
     p.command = json.at("command").get<std::string>();
-    const Json& experiment = json.at("experiment");
+    const StoredJson experiment = json.at("experiment");
     p.experiment_file = experiment.at("file").get<std::string>();
     p.experiment_hash = experiment.at("hash").get<std::string>();
     p.experiment_text = experiment.at("text").get<std::string>();
     p.seeds = json.at("seeds").get<std::vector<std::uint32_t>>();
     p.series = json.at("series").at("of").get<int>();
     if (p.series < 1 || p.series > most_seeds)
-        throw Json::other_error::create(501, fmt::format("a series of {} seeds", p.series), &json);
+        json.at("series").at("of").refuse(fmt::format("expected a series of 1 to {} seeds", most_seeds));
     const auto missing = json.at("series").value("missing", std::vector<int>{});
     for (int place = 1; place <= p.series; ++place)
         if (std::ranges::find(missing, place) == missing.end()) p.places.push_back(place);
@@ -152,11 +152,11 @@ Provenance provenance_of(const Json& json) {
     return p;
 }
 
-Experiment experiment_of(const Provenance& p, const Json& json, const std::string& name) {
+Experiment experiment_of(const Provenance& p, const StoredJson& json, const std::string& name) {
     Experiment e = parse(p.experiment_text, std::filesystem::path(name).filename().string());
     e.file = p.experiment_file;
     e.overrides = json.value("set", std::vector<std::string>{});
-    if (json.contains("published")) e.figures = parse_published(json.at("published").dump(), name);
+    if (json.contains("published")) e.figures = parse_published(json.at("published").value().dump(), name);
     if (fmt::format("{:016x}", hash(e)) != p.experiment_hash)
         throw InputError({name, 0, 0},
             "the experiment in it does not have the stated hash; expected the file as it was "
@@ -166,8 +166,8 @@ Experiment experiment_of(const Provenance& p, const Json& json, const std::strin
     return e;
 }
 
-MetricsFile file_of(const Json& json, const std::string& name) {
-    if (json.at("format") != "crescent metrics 2")
+MetricsFile file_of(const StoredJson& json, const std::string& name) {
+    if (json.at("format").get<std::string>() != "crescent metrics 2")
         throw InputError({name, 0, 0}, "expected the format 'crescent metrics 2'");
     MetricsFile out;
     out.provenance = provenance_of(json.at("provenance"));
@@ -193,7 +193,7 @@ MetricsFile read_metrics(const std::string& text, const std::string& name) {
 MetricsFile metrics_from_json(const Json& json, const std::string& name) {
     try {
         return file_of(json, name);
-    } catch (const Json::exception& error) {
+    } catch (const StoredJsonError& error) {
         throw InputError({name, 0, 0}, fmt::format("expected the metrics.json of a run: {}", error.what()));
     } catch (const std::out_of_range&) {
         throw InputError({name, 0, 0}, "expected the metrics.json of a run: it has no seeds");

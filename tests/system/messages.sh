@@ -21,6 +21,11 @@ cmp a.json b.json || die "equal calls differ: $(diff a.json b.json | head -n 5)"
 fits a.json
 expect 0 "$CRESCENT" report a.json --out again.html
 [ "$(grep -c '<canvas' again.html)" = "$(grep -c '<canvas' a.html)" ] || die "crescent report: other pictures"
+expect 0 "$CRESCENT" run "$tiny" --quiet --only metrics --out one
+printf 'Pf\n2 1\n-1\n\0\0\200\77\0\0\200\77' >one.pfm
+printf 'Pf\n2 1\n-1\n\0\0\200\77\0\0\100\77' >two.pfm
+expect 0 "$CRESCENT" compare --arm a='one.pfm' --arm b='two.pfm' --allow-inconclusive --quiet --out pair
+expect 0 python3 "$here/damaged_results.py" "$CRESCENT" a.json one/metrics.json pair/metrics.json
 verdicts >names
 sed -n 's/^   "name": "\(.*\)",$/\1/p' a.json | head -n "$(wc -l <names)" | cmp -s - names ||
     die "the verdicts of a case are not those of the list: $(cat names)"

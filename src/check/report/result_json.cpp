@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 #include "check/report/print.h"
-#include "output/format.h"
+#include "output/stored_json.h"
 
 namespace crescent {
 
@@ -90,56 +90,56 @@ template <class Picture> Json pictures_json(const std::vector<Picture>& pictures
     return out;
 }
 
-// ---- Reading. Json::exception says what is missing or of another type.
+// ---- Reading.
 
-[[noreturn]] void refuse(const std::string& what, const Json& json) {
-    throw Json::other_error::create(501, what, &json);
-}
-
-void read_value(const Json& json, double& to) {
+void read_value(const StoredJson& json, double& to) {
     to = json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
-void read_value(const Json& json, std::vector<double>& to) {
+void read_value(const StoredJson& json, std::vector<double>& to) {
     to.clear();
-    for (const Json& value : json) read_value(value, to.emplace_back());
+    for (const StoredJson& value : json.entries()) read_value(value, to.emplace_back());
 }
-void read_value(const Json& json, auto& to) { json.get_to(to); }
+template <class T> void read_value(const StoredJson& json, std::vector<T>& to) {
+    to.clear();
+    for (const StoredJson& value : json.entries()) to.push_back(value.get<T>());
+}
+void read_value(const StoredJson& json, auto& to) { json.get_to(to); }
 
 /// Leaves `to` as it is if the object has no such member.
-void read_member(const Json& object, const char* key, auto& to) {
-    if (const auto found = object.find(key); found != object.end()) read_value(*found, to);
+void read_member(const StoredJson& object, const char* key, auto& to) {
+    if (object.contains(key)) read_value(object.at(key), to);
 }
 
-template <class Picture> std::vector<Picture> read_pictures(const Json& list) {
+template <class Picture> std::vector<Picture> read_pictures(const StoredJson& list) {
     std::vector<Picture> out;
-    for (const Json& one : list) {
+    for (const StoredJson& one : list.entries()) {
         visit_members(out.emplace_back(), [&](const char* key, auto& value) { read_member(one, key, value); });
-        if (!is_whole(out.back())) refuse("lists of a picture have other lengths than its bins", one);
+        if (!is_whole(out.back())) one.refuse("expected lists as long as the bins of the picture");
     }
     return out;
 }
 
-State state_named(const Json& json) {
+State state_named(const StoredJson& json) {
     const auto name = json.get<std::string>();
     for (const State s : {State::right, State::wrong, State::inconclusive, State::skipped, State::error})
         if (name == word(s)) return s;
-    refuse("expected a state", json);
+    json.refuse("expected a state");
 }
 
 /// The rings of the density that draws imply.
-std::optional<ImpliedDensity> implied_in(const Json& evidence) {
+std::optional<ImpliedDensity> implied_in(const StoredJson& evidence) {
     if (!evidence.contains("implied_rings")) return {};
     ImpliedDensity out;
-    for (const Json& row : evidence.at("implied_rings").at("rows"))
+    for (const StoredJson& row : evidence.at("implied_rings").at("rows").entries())
         out.rings.push_back(
             {row.at(0).get<double>(), row.at(1).get<double>(), row.at(2).get<double>(), row.at(3).get<double>()});
-    const Json& peak = evidence.at("implied_peak");
+    const StoredJson peak = evidence.at("implied_peak");
     out.peak = peak.at("pdf").get<double>();
     out.peak_error = peak.at("standard_error").get<double>();
     return out;
 }
 
-Verdict read_verdict(const Json& json) {
+Verdict read_verdict(const StoredJson& json) {
     Verdict v;
     json.at("arm").get_to(v.arm);
     json.at("case").get_to(v.check_case);
@@ -147,7 +147,8 @@ Verdict read_verdict(const Json& json) {
     v.state = state_named(json.at("state"));
     json.at("message").get_to(v.message);
     json.at("expected").get_to(v.expected);
-    v.evidence = json.at("evidence");
+    v.evidence = json.at("evidence").value();
+    const StoredJson evidence = json.at("evidence");
     read_member(json, "cause", v.cause);
     read_member(json, "status", v.next_step);
     read_member(json, "why_expected", v.why_expected);
@@ -159,14 +160,15 @@ Verdict read_verdict(const Json& json) {
     read_member(json, "first_failure", v.first_failure);
     if (json.contains("w_o")) v.wo = json.at("w_o").get<std::pair<double, double>>();
     if (json.contains("integral")) v.integral = json.at("integral").get<double>();
-    if (const auto sizes = v.evidence.find("would_have_found"); sizes != v.evidence.end())
-        for (const auto& [kind, size] : sizes->items()) read_value(size, v.hidden[kind]);
-    v.implied = implied_in(v.evidence);
+    if (evidence.contains("would_have_found"))
+        for (const auto& [kind, size] : evidence.at("would_have_found").items()) read_value(size, v.hidden[kind]);
+    v.implied = implied_in(evidence);
     return v;
 }
 
-StoredResult stored_result(const Json& json) {
-    if (json.at("format") != format_name) refuse(std::string("expected the format '") + format_name + "'", json);
+StoredResult stored_result(const StoredJson& json) {
+    if (json.at("format").get<std::string>() != format_name)
+        json.at("format").refuse(std::string("expected the format '") + format_name + "'");
     StoredResult out;
     read_member(json, "version", out.source.version);
     read_member(json, "commit", out.source.commit);
@@ -180,18 +182,18 @@ StoredResult stored_result(const Json& json) {
     json.at("failed_twice").get_to(result.confirmed);
     read_member(json, "questions", result.questions);
     read_member(json, "unmet_expectations", result.unmet);
-    for (const Json& l : json.at("left_out"))
+    for (const StoredJson& l : json.at("left_out").entries())
         result.left_out.push_back({l.at("arm").get<std::string>(), l.at("case").get<std::string>(),
             l.at("verdicts").get<std::vector<std::string>>(), l.at("why").get<std::string>()});
-    if (const auto devices = json.find("devices"); devices != json.end())
-        for (const Json& one : *devices) {
+    if (json.contains("devices"))
+        for (const StoredJson& one : json.at("devices").entries()) {
             EvaluationDevice& device =
                 result.devices.emplace_back(one.at("arm").get<std::string>(), EvaluationDevice{}).second;
             read_member(one, "name", device.name);
             read_member(one, "driver", device.driver);
             read_member(one, "precision", device.precision);
         }
-    for (const Json& verdict : json.at("verdicts")) result.verdicts.push_back(read_verdict(verdict));
+    for (const StoredJson& verdict : json.at("verdicts").entries()) result.verdicts.push_back(read_verdict(verdict));
     result.maps = read_pictures<BinHistogram>(json.at("maps"));
     result.lines = read_pictures<LineHistogram>(json.at("lines"));
     result.weights = read_pictures<WeightHistogram>(json.at("weights"));
@@ -268,7 +270,7 @@ StoredResult read_verdict_json(const std::string& text, const std::string& name)
 StoredResult result_from_json(const Json& json, const std::string& name) {
     try {
         return stored_result(json);
-    } catch (const Json::exception& error) {
+    } catch (const StoredJsonError& error) {
         throw InputError({name, 0, 0}, fmt::format("expected {}: {}", what_is_read, error.what()));
     }
 }

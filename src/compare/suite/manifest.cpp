@@ -12,6 +12,7 @@
 
 #include "base/files.h"
 #include "images/open_file.h"
+#include "output/stored_json.h"
 
 namespace crescent {
 
@@ -73,7 +74,7 @@ private:
             return Json::parse(text_, check);
         } catch (const Json::parse_error& e) {
             throw InputError({file_, line_of(e.byte), 0}, "expected JSON: the manifest was cut off or changed by hand");
-        } catch (const Json::exception& e) { fail(std::string("expected JSON that can be read: ") + e.what()); }
+        } catch (const Json::exception& e) { fail("expected JSON that can be read: " + unreadable_json(e)); }
     }
 
     std::string word(const std::string& view, const Json& entry, const char* key) const {
