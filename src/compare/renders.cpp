@@ -85,6 +85,12 @@ Render read_render(const std::string& path, const std::string& layer, const Read
         return render;
     };
     if (head.starts_with("\x76\x2f\x31\x01")) return with_state(read_exr(file, layer, options));
+    const bool is_read = head.starts_with("PF") || head.starts_with("Pf") || head.starts_with("\x93NUMPY");
+    if (!layer.empty() && (is_read || is_image(file, head)))
+        file.fail(
+            fmt::format("no layer '{}': only OpenEXR files have layers; leave out --layer, or the key layer, of "
+                        "this arm",
+                layer));
     if (head.starts_with("PF") || head.starts_with("Pf")) return with_state(kept(read_pfm(file), options));
     if (head.starts_with("\x93NUMPY")) return with_state(kept(read_npy(file), options));
     if (is_image(file, head)) return with_state(kept(read_image(file, options), options));
@@ -130,9 +136,12 @@ void regions(const ComparePlan& plan, RenderStats& stats, CommonView& view) {
     for (const Region& r : plan.regions) {
         if (r.box.x1 >= stats.width || r.box.y1 >= stats.height)
             throw InputError(r.at,
-                fmt::format("regions.{}.box: expected a box on the image, x from 0 to {} and y from 0 to {}, found "
-                            "[{}, {}, {}, {}]",
-                    r.name, stats.width - 1, stats.height - 1, r.box.x0, r.box.y0, r.box.x1, r.box.y1));
+                fmt::format(
+                    "{}expected a box on the images of {} x {} pixels{}, x from 0 to {} and y from 0 to {}, found "
+                    "[{}, {}, {}, {}]",
+                    r.at.line > 0 ? fmt::format("regions.{}.box: ", r.name) : "", stats.width, stats.height,
+                    stats.arms[0].files.empty() ? "" : fmt::format(" ({})", stats.arms[0].files[0].path),
+                    stats.width - 1, stats.height - 1, r.box.x0, r.box.y0, r.box.x1, r.box.y1));
         add_set(stats, boxed(r.name, r.box, stats.width), r.at);
     }
     for (const MaskPlan& m : plan.masks) add_set(stats, masked(view, m), m.at);

@@ -176,6 +176,23 @@ TEST_F(Renders, RequireALayerIfSeveralFit) {
     } catch (const InputError& e) { EXPECT_THAT(e.what(), HasSubstr("did you mean 'indirect'?")); }
 }
 
+TEST_F(Renders, HaveLayersInOpenExrAlone) {
+    const std::string npy = std::string("\x93NUMPY\x01\0", 8) + std::string("\x46\0", 2) +
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 1), }          \n" + std::string(4, '\0');
+    const std::string files[] = {write("layer.pfm", "Pf\n1 1\n-1\n" + std::string(4, '\0')), write("layer.npy", npy),
+        write("layer.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x80"),
+        write("layer.png", "\x89PNG\r\n\x1a\n")};
+    for (const std::string& file : files) {
+        try {
+            (void)read_render(file, "albedo");
+            FAIL() << file;
+        } catch (const InputError& e) {
+            EXPECT_THAT(e.what(), HasSubstr(file + ": no layer 'albedo': only OpenEXR files have layers"));
+        }
+    }
+    EXPECT_EQ(read_render(files[0]).width, 1);
+}
+
 TEST_F(Renders, RefusePicturesAndBrokenFiles) {
     const std::string broken[] = {write("a.png", "\x89PNG\r\n\x1a\n"), write("b.exr", "\x76\x2f\x31\x01 cut off"),
         write("c.pfm", "PF\n2 2\n-1.0\n12"), write("d.pfm", "PF\n-2 2\n-1.0\n"),
