@@ -37,6 +37,25 @@ TEST(LightTables, AreThoseOfDisksAndThenThoseOfLights) {
     EXPECT_THAT(paths, ElementsAre("disks.key", "lights.ball", "lights.window"));
 }
 
+/// A surface reflects more than it receives only beyond the rounding of single precision and of seven decimal digits.
+TEST(Warnings, AllowForTheRoundingOfAlbedos) {
+    const auto warnings = [](double rho_d, double rho_s) {
+        Experiment e = parse(area_lights, "lamps.toml");
+        e.shapes.at(0).material.rho_d = {rho_d, 0, 0};
+        e.shapes.at(0).material.rho_s = rho_s;
+        return warnings_of(e);
+    };
+    for (int k = 1; k < 100; ++k) {
+        const double rho = k / 100.0;
+        EXPECT_THAT(
+            warnings(static_cast<double>(static_cast<float>(rho)), static_cast<double>(static_cast<float>(1 - rho))),
+            testing::IsEmpty())
+            << rho;
+    }
+    EXPECT_THAT(warnings(0.3333333, 0.6666667), testing::IsEmpty());
+    EXPECT_THAT(warnings(0.5, 0.50001), ElementsAre(testing::HasSubstr("rho_d + rho_s is 1.00001, above 1")));
+}
+
 }  // namespace derived_values_test
 TEST(SourceOfAnArm, IsNamed) {
     ArmPlan arm;

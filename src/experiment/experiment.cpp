@@ -74,8 +74,9 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
     std::vector<std::string> out;
     for (std::size_t k = 0; k < experiment.surface_count(); ++k) {
         const double albedo = brightest_rho_d(experiment, k) + experiment.material(k).rho_s;
-        if (albedo > 1)
-            out.push_back(fmt::format("{}: rho_d + rho_s is {:.4g}, above 1: it reflects more than it receives",
+        constexpr double rounding = 1e-6;  // of decimal numbers with seven digits, and of texels in single precision
+        if (albedo > 1 + rounding)
+            out.push_back(fmt::format("{}: rho_d + rho_s is {:.7g}, above 1: it reflects more than it receives",
                 experiment.surface_name(k), albedo));
     }
     if (experiment.sky && experiment.sky->raised > 0)

@@ -5,13 +5,18 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "base/errors.h"
 #include "math/statistics.h"
 #include "metrics/metrics.h"
+#include "output/format.h"
 
 namespace crescent {
 
 namespace {
+
+double square_of(double x) { return x * x; }
 
 constexpr double unmeasured = std::numeric_limits<double>::quiet_NaN();
 
@@ -68,24 +73,50 @@ template <class Find> double value_of(const ParsedQuantity& q, const Metrics& me
     return unmeasured;
 }
 
-/// Returns whether this is not an RMSE, or one that is large against the reference's own error in its region.
-bool stands_out(const ParsedQuantity& q, double value, const Metrics& metrics, const Experiment& experiment) {
-    if (q.word != "rmse") return true;
+/// "its error is 0.1, at most 0.03125 is needed, ...": why an RMSE is not large against the reference's own error in
+/// its region, and what to change; "" if it is large, or is no RMSE.
+std::string fault_of_reference(
+    const ParsedQuantity& q, double value, const Metrics& metrics, const Experiment& experiment) {
+    if (q.word != "rmse") return "";
     const double s = q.s > 0 ? q.s : experiment.s();
-    if (experiment.reference.kind == ReferenceKind::paired) {
-        const double part = most_error_share * most_error_share;
-        return std::ranges::all_of(metrics.runs, [&](const RunMetrics& run) {
-            const RegionMetrics* region = run.region(q.region);
-            const bool same = run.key.arm == q.adapter && run.key.n == q.n && run.key.s == s && region;
-            return !same || 1.96 * region->mse_error <= part * value * value;
-        });
+    const ReferencePlan& reference = experiment.reference;
+    const auto more = [](std::uint64_t samples, double factor) {  // an experiment takes at most 2^24 samples
+        const double wanted = std::ceil(static_cast<double>(samples) * factor);
+        return wanted < 0x1p24 ? fmt::format("about {:.0f} is needed", wanted) : "more than can be set is needed";
+    };
+    if (reference.kind == ReferenceKind::paired) {
+        const double needed = most_error_share * most_error_share * value * value;
+        double error = 0;  // half of the 95 % interval of the mean squared error
+        for (const RunMetrics& run : metrics.runs)
+            if (const RegionMetrics* region = run.region(q.region);
+                region && run.key.arm == q.adapter && run.key.n == q.n && run.key.s == s)
+                error = std::max(error, 1.96 * region->mse_error);
+        if (!(error > needed)) return "";
+        const std::uint64_t n = reference.n > 0 ? reference.n : paired_samples;
+        std::string out = fmt::format(
+            "the squared error {} in region {} has the error {}, and at most {} is needed, 1/16 "
+            "of it; next: reference.n is {}",
+            compact(value * value), q.region, compact(error), compact(needed), n);
+        // Its error is that of the mean of n samples.
+        return out + (needed > 0 ? ", " + more(n, square_of(error / needed)) : ", raise it");
     }
-    const bool quadrature = experiment.reference.kind == ReferenceKind::quadrature;
-    for (const ReferenceQuality& r : metrics.references)
-        if (r.s == s && r.region == q.region &&
-            (quadrature ? r.quadrature_error : r.rms_standard_error).value_or(0) > most_error_share * value)
-            return false;
-    return true;
+    const bool quadrature = reference.kind == ReferenceKind::quadrature;
+    for (const ReferenceQuality& r : metrics.references) {
+        const double error = (quadrature ? r.quadrature_error : r.rms_standard_error).value_or(0);
+        const double needed = most_error_share * value;
+        if (r.s != s || r.region != q.region || !(error > needed)) continue;
+        std::string out = fmt::format(
+            "its error in region {} is {}, and at most {} is needed, a quarter of the RMSE {}; next: ", q.region,
+            compact(error), compact(needed), compact(value));
+        if (quadrature)
+            return out + "reference.kind = \"paired\", whose error does not add to the RMSE, or a smaller n of the arm";
+        const double factor = needed > 0 ? square_of(error / needed) : 0;
+        return out +
+            (factor > 0 ? fmt::format("reference.disk_spp is {}, {}, and lobe_spp is {}, {}", reference.disk_spp,
+                              more(reference.disk_spp, factor), reference.lobe_spp, more(reference.lobe_spp, factor))
+                        : "raise reference.disk_spp and reference.lobe_spp");
+    }
+    return "";
 }
 
 /// The values that assertions are compared with.
@@ -128,7 +159,11 @@ double side(ParsedQuantity q, bool over_seeds, const Measurements& measurements,
             [&](const RunKey& key) { return measurements.runs.find(key); }));
     const double value = quantile(values, 0.5);
     if (!out.skipped.empty()) return value;
-    out.reference_good = out.reference_good && stands_out(q, value, measurements.metrics, measurements.experiment);
+    const std::string fault = fault_of_reference(q, value, measurements.metrics, measurements.experiment);
+    if (out.reference_good && !fault.empty()) {
+        out.reference_good = false;
+        out.reference_fault = fault;
+    }
     if (!measurements.drawn && !q.number && make_adapter(q.word) == QuantityOf::plate)
         out.skipped = "no plates were drawn";
     return value;
@@ -167,8 +202,7 @@ std::vector<AssertionResult> evaluate_assertions(
         r.cannot_fail = cannot_fail(left, op, right);
         r.pass = r.skipped.empty() && r.reference_good && holds(r.measured, r.op, r.bound);
         r.text = to_string(plan.check) + (plan.median ? " (medians over seeds)" : "");
-        if (!r.reference_good)
-            r.text += " (the reference is not good enough: its own error is of the size of the RMSE)";
+        if (!r.reference_good) r.text += fmt::format(" (the reference is not good enough: {})", r.reference_fault);
         results.push_back(std::move(r));
     }
     return results;

@@ -84,6 +84,20 @@ TEST(Assertions, RmseWithinReferenceErrorDoesNotPass) {
     const AssertionResult describe = evaluate_assertions(two_arms({{"rmse.H(a, n=16) < 1", false}}), m, {}).at(0);
     EXPECT_FALSE(describe.reference_good);
     EXPECT_NE(describe.text.find("not good enough"), std::string::npos) << describe.text;
+    EXPECT_NE(describe.reference_fault.find("region H is 0.1, and at most 0.03125 is needed"), std::string::npos)
+        << describe.reference_fault;
+    EXPECT_NE(describe.reference_fault.find("reference.kind = \"paired\""), std::string::npos);
+    Experiment of_article = two_arms({{"rmse.H(a, n=16) < 1", false}});
+    of_article.reference.kind = ReferenceKind::note;
+    m.references[0].rms_standard_error = 0.125;  // four times the quarter of 0.125: 16 times the samples
+    EXPECT_NE(evaluate_assertions(of_article, m, {}).at(0).reference_fault.find("disk_spp is 96, about 1536 is needed"),
+        std::string::npos);
+    of_article.reference = {.kind = ReferenceKind::paired, .n = 100};
+    for (RunMetrics& run : m.runs)
+        for (RegionMetrics& region : run.regions) region.mse_error = 0.125 * 0.125 / 4 / 1.96;  // four times 1/16
+    EXPECT_NE(
+        evaluate_assertions(of_article, m, {}).at(0).reference_fault.find("reference.n is 100, about 1600 is needed"),
+        std::string::npos);
 }
 
 TEST(Assertions, HoldAtTheSeedOrOnTheMedianAsTheySay) {

@@ -108,8 +108,9 @@ struct AssertionResult {
     std::string op, text;  // text: "rmse.H(phong, n=64) < rmse.H(cosine, n=64)"
     // False if an RMSE in it is not larger than a few errors of the reference; the assertion then does not pass.
     bool reference_good = true;
-    bool cannot_fail = false;  // true for every run that completes: a plate that was drawn has bytes
-    std::string skipped{};     // why it was skipped, so that it neither holds nor fails; "": it was evaluated
+    std::string reference_fault{};  // its error, the one that is needed, and what to change; "": it is good
+    bool cannot_fail = false;       // true for every run that completes: a plate that was drawn has bytes
+    std::string skipped{};          // why it was skipped, so that it neither holds nor fails; "": it was evaluated
     bool failed() const { return !pass && skipped.empty(); }
 };
 

@@ -300,7 +300,7 @@ JunitCase case_of(const AssertionResult& a, const std::string& group) {
     if (!a.failed()) return out;
     out.state = JunitCase::State::failed;
     out.message = fmt::format("measured {}, must be {} {}{}", shortest(a.measured), a.op, shortest(a.bound),
-        a.reference_good ? "" : "; the reference is not good enough");
+        a.reference_good ? "" : "; the reference is not good enough: " + a.reference_fault);
     out.text = a.text + ": " + out.message;
     return out;
 }
