@@ -11,7 +11,10 @@ import os
 import signal
 import struct
 import sys
+import sysconfig
+import traceback
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, BinaryIO
 from urllib.parse import quote
 
@@ -226,10 +229,32 @@ def _started(where: str) -> tuple[str, Sampler, dict[bytes, tuple[int, Answer]]]
     return _handshake(s, count, weighs, delta), s, operations
 
 
+def _users_line(error: BaseException) -> str:
+    """"FILE.py:LINE: " of the innermost line of the user's files that the error came through; "" if there is none."""
+    libraries = [Path(path).resolve() for path in {*sysconfig.get_paths().values()} if Path(path).is_dir()]
+    libraries.append(Path(__file__).resolve().parent)
+    programs = {Path(path).resolve() for path in (sys.prefix, sys.base_prefix)}
+
+    def is_users(name: str) -> bool:
+        path = Path(name).resolve()
+        if not path.is_file() or {"site-packages", "dist-packages"} & set(path.parts):
+            return False  # "<frozen importlib._bootstrap>" is no file
+        return not any(path.is_relative_to(folder) for folder in libraries if folder not in programs)
+
+    places = [(frame.filename, frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
+    if isinstance(error, SyntaxError) and error.filename:
+        places.append((error.filename, error.lineno))
+    for name, line in reversed(places):
+        if line is not None and is_users(name):
+            near = os.path.relpath(name)
+            return f"{name if near.startswith(os.pardir) else near}:{line}: "
+    return ""
+
+
 def _said(error: BaseException) -> str:
-    """An error in one line."""
-    text = " ".join(str(error).split())
-    return text if isinstance(error, ValueError) and text else f"{type(error).__name__}: {text}"
+    """An error in one line, with the line of the user's file."""
+    text = " ".join((error.msg if isinstance(error, SyntaxError) else str(error)).split())
+    return _users_line(error) + (text if isinstance(error, ValueError) and text else f"{type(error).__name__}: {text}")
 
 
 def _serve(requests: BinaryIO, answers: BinaryIO, s: Sampler, operations: dict[bytes, tuple[int, Answer]]) -> None:
@@ -244,7 +269,7 @@ def _serve(requests: BinaryIO, answers: BinaryIO, s: Sampler, operations: dict[b
         rows = np.frombuffer(requests.read(8 * count * columns), "<f8").reshape(count, columns)
         try:
             out = np.ascontiguousarray(answer(rows), "<f8")
-        except Exception as error:  # noqa: BLE001: the check reports every exception of the sampler
+        except (Exception, SystemExit) as error:  # noqa: BLE001: the check reports every exception of the sampler
             text = _said(error).encode()
             answers.write(struct.pack("<II", 0, len(text)) + text)
         else:
@@ -266,7 +291,7 @@ def main() -> int:
         if len(sys.argv) != 2:
             raise ValueError("crescent.serve takes one FILE.py:NAME")
         handshake, sampler, operations = _started(sys.argv[1])
-    except Exception as error:  # noqa: BLE001: an error of the module that is imported is one of the call
+    except (Exception, SystemExit) as error:  # noqa: BLE001: an error of the imported module is one of the call
         answers.write(f"error {_said(error).removeprefix(sys.argv[-1] + ': ')}\n".encode())
         answers.flush()
         return 2

@@ -134,6 +134,36 @@ def test_the_handshake_declares_the_sampler(tmp_path):
     assert count == 1 and draw == pytest.approx([0.5, 0, 0.75**0.5, 0.75**0.5 / 3.141592653589793])
 
 
+@pytest.mark.parametrize(
+    "text, code, said",
+    [
+        ("import numpy as np\n\ndef sample(wo, u):\n    raise RuntimeError('no table')\n", 2, "own.py:4: RuntimeError: no table"),
+        ("def sample(wo, u):\n    return 1 / 0\n", 2, "own.py:2: ZeroDivisionError"),
+        ("import numpy as np\n\ndef sample(wo, u):\n    return np.ones(3) @ np.ones(2), u\n", 2, "own.py:4: "),
+        ("def sample(wo, u):\n    return (\n", 2, "own.py:2: SyntaxError: "),
+        ("import no_such_module\n", 2, "own.py:1: ModuleNotFoundError"),
+        ("import sys\n\nsys.exit(1)\n", 2, "own.py:3: SystemExit: 1"),
+        ("import sys\n\ndef sample(wo, u):\n    sys.exit('stop')\n", 2, "own.py:4: SystemExit: stop"),
+        ("import os\n\ndef sample(wo, u):\n    os._exit(1)\n", 3, "exit code 1"),
+        ("import other\n\ndef sample(wo, u):\n    return other.draw(u)\n", 2, "other.py:2: ValueError: bad u"),
+        (
+            "import numpy as np\n\ndef sample(wo, u):\n    if len(u) > 100:\n        raise ValueError('many')\n"
+            "    return np.broadcast_to([0.0, 0.0, 1.0], (len(u), 3)), np.ones(len(u))\n\n"
+            "def pdf(wo, wi):\n    return np.ones(len(wi))\n",
+            3,
+            "own.py:5: many",
+        ),
+    ],
+)
+def test_an_exception_names_the_line_of_the_users_file(run, tmp_path, text, code, said):
+    (tmp_path / "own.py").write_text(text)
+    (tmp_path / "other.py").write_text("def draw(u):\n    raise ValueError('bad u')\n")
+    done = run("check", "own.py", "--wo", "30")
+    out = done.stdout + done.stderr
+    assert done.returncode == code and said.removesuffix("ValueError: bad u") in out, out
+    assert "pip install" not in out
+
+
 def test_an_interpreter_without_the_package_is_named(run, monkeypatch):
     monkeypatch.setenv("CRESCENT_PYTHON", os.devnull)
     done = run("check", "mine.py")

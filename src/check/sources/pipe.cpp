@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/process.h"
 #include "base/text.h"
 #include "check/sources/neighbours.h"
 #include "check/sources/pipe_io.h"
@@ -711,6 +712,19 @@ std::string python_interpreter() {
     return given && *given ? given : "python3";
 }
 
+/// Whether the interpreter finds a module. It is started for that, at most this long.
+bool can_import(const char* module) {
+    constexpr int longest_ms = 20000;
+    const std::string python = python_interpreter();
+    ProcessPlan plan{.argv = {python, "-P", "-c", fmt::format("import {}", module)}};
+    plan.stdin_file = plan.stdout_file = plan.stderr_file = "/dev/null";
+    try {
+        Process process(plan);
+        const std::optional<ProcessEnd> end = process.ended(longest_ms);
+        return end && end->well();
+    } catch (const OutputError&) { return false; }
+}
+
 /// Starts a module of the package `package`, which answers for the file `label`.
 std::shared_ptr<const ProgramSampler> start_python_module(const char* module, const std::vector<std::string>& words,
     const char* package, const PipeLimits& limits, const std::string& label, int neighbours = default_neighbours) {
@@ -721,6 +735,7 @@ std::shared_ptr<const ProgramSampler> start_python_module(const char* module, co
         return start_pipe(command, limits, label, {}, neighbours);
     } catch (const SamplerTimeout&) { throw; } catch (const SamplerError& error) {
         if (std::string_view(error.what()).find("exit code 1") == std::string_view::npos) throw;
+        if (can_import(module)) throw;  // what the user's file did
         throw OutputError(fmt::format(
             "{}: '{}' cannot run the module {}: install the package with `pip install {}`, or set CRESCENT_PYTHON to "
             "an interpreter that has it",
