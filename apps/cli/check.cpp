@@ -365,8 +365,7 @@ std::string given_sampler(const CheckFlags& flags) {
 /// Writes the script, or says why there is none.
 void write_repro(const CheckFlags& flags, std::span<const CheckCase> check_cases, const CheckResult& j) {
     if (flags.repro.empty()) return;
-    std::string why =
-        j.state == State::wrong ? "no wrong verdict shows in 65,536 draws and directions" : "no verdict is wrong";
+    std::string why = why_no_repro(flags, check_cases, j);
     try {
         if (const std::optional<std::string> script = repro_script(flags, check_cases, j))
             return write_whole(flags.repro, *script);

@@ -560,4 +560,36 @@ std::optional<std::string> repro_script(
     return {};
 }
 
+namespace {
+
+std::string why_not_shown(const CheckFlags& flags, const Traits& traits, std::string_view verdict) {
+    const bool of_draws = verdict == "valid" || verdict == "physics";
+    if (traits.number && verdict == "mean" && flags.estimates.empty())
+        return "a script compares with a known value (--estimates), not with another estimator";
+    if (traits.neighbours > 0)
+        return fmt::format(
+            "a draw merges the reservoirs of {} neighbours, which a script cannot supply", traits.neighbours);
+    if (traits.reciprocal_weight)
+        return "the weight of a draw is random and estimates 1/p; a script compares draws with a pdf only";
+    if (!traits.has_pdf && !of_draws) return "the sampler has no pdf that a script could compare the draws with";
+    if (traits.delta && verdict == "mean") return "some draws belong to delta parts, which a script does not weigh";
+    return "it does not show in 65,536 draws and points";
+}
+
+}  // namespace
+
+std::string why_no_repro(const CheckFlags& flags, std::span<const CheckCase> check_cases, const CheckResult& result) {
+    std::string out;
+    for (const Finding& finding : findings_of(result)) {
+        if (finding.state != State::wrong) continue;
+        const auto worst = std::ranges::find(check_cases, finding.worst->check_case, &CheckCase::text);
+        const std::string why = worst == check_cases.end()
+            ? "it is a result of all w_o together, and a script has one"
+            : why_not_shown(flags, worst->adapter->traits(), finding.name);
+        if (out.ends_with(": " + why)) out.insert(out.size() - why.size() - 2, fmt::format(", {}", finding.name));
+        else out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", finding.name, why);
+    }
+    return out.empty() ? "no verdict is wrong" : out;
+}
+
 }  // namespace crescent::cli

@@ -15,4 +15,8 @@ namespace crescent::cli {
 std::optional<std::string> repro_script(
     const CheckFlags& flags, std::span<const CheckCase> check_cases, const CheckResult& result);
 
+/// Why there is no script for a result that is wrong: for each wrong verdict, what a script cannot do, or that the
+/// fault does not show in so few evaluations.
+std::string why_no_repro(const CheckFlags& flags, std::span<const CheckCase> check_cases, const CheckResult& result);
+
 }  // namespace crescent::cli
