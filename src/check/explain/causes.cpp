@@ -152,8 +152,10 @@ Candidate candidate_of(const Leak& leak, std::span<const Place> places) {
     return out;
 }
 
-Candidate candidate_of(const Hypothesis& frame) {
+Candidate candidate_of(const Hypothesis& frame, bool of_points) {
     Candidate out{.hypothesis = frame, .make_cause = {}, .in_part = enough_for_frame, .preference = -frame.place};
+    // No table of points is read in another order; two exchanged parameters look like a mirrored point in part.
+    if (of_points) out.in_part = 2;
     out.make_cause = [name = frame.name](const Hypothesis& h) {
         return Cause{.factor = name,
             .exponent = 0,
@@ -263,7 +265,8 @@ Candidates plain_candidates(std::span<const Place> places, std::span<const Leak>
     add_if(out, constant_candidate(places));
     for (FactorHypothesis& f : factor_hypotheses(places))
         if (std::fabs(f.fitted) > clear_errors * f.error) out.push_back(candidate_of(std::move(f), places));
-    for (const Hypothesis& h : frame_hypotheses(places)) out.push_back(candidate_of(h));
+    for (const Hypothesis& h : frame_hypotheses(places))
+        out.push_back(candidate_of(h, places[0].traits.domain != nullptr));
     for (const Leak& leak : leaks)
         if (leak.is_clear()) out.push_back(candidate_of(leak, places));
     sort_by_gain(out);

@@ -93,8 +93,10 @@ struct NamedMove {
 void add_exchange(std::vector<NamedMove>& to, std::string name, std::size_t i, std::size_t j) {
     to.push_back({std::move(name), [=](std::span<double> x) { std::swap(x[i], x[j]); }});
 }
-void add_reflection(std::vector<NamedMove>& to, std::string name, std::size_t i, double sum) {
-    to.push_back({std::move(name), [=](std::span<double> x) { x[i] = sum - x[i]; }});
+/// name: of the coordinate.
+void add_reflection(std::vector<NamedMove>& to, const std::string& name, std::size_t i, double sum) {
+    to.push_back({fmt::format("{0} mirrored: {0} -> {1}{0}", name, sum == 0 ? "-" : fmt::format("{:g} - ", sum)),
+        [=](std::span<double> x) { x[i] = sum - x[i]; }});
 }
 
 /// Moves of one part that keep its measure; c: its first coordinate.
@@ -108,7 +110,7 @@ void add_moves(std::vector<NamedMove>& to, const DomainPart& part, std::size_t c
                 for (std::size_t j = i + 1; j < part.coordinates(); ++j)
                     add_exchange(
                         to, "the coordinates " + coordinate(i) + " and " + coordinate(j) + " exchanged", c + i, c + j);
-                add_reflection(to, coordinate(i) + " mirrored", c + i, part.kind == Kind::disk ? 0 : 1);
+                add_reflection(to, coordinate(i), c + i, part.kind == Kind::disk ? 0 : 1);
             }
             break;
         case Kind::triangle:
@@ -118,14 +120,15 @@ void add_moves(std::vector<NamedMove>& to, const DomainPart& part, std::size_t c
             break;
         case Kind::line:
             if (std::isfinite(part.from) == std::isfinite(part.to))
-                add_reflection(to, "x mirrored", c, std::isfinite(part.to) ? part.from + part.to : 0);
+                add_reflection(to, "x", c, std::isfinite(part.to) ? part.from + part.to : 0);
             break;
         case Kind::set:
             for (const int shift : {1, -1})
                 to.push_back({fmt::format("entry i {} 1 taken for entry i (off by one)", shift > 0 ? '+' : '-'),
                     [=, count = static_cast<double>(part.count)](
                         std::span<double> x) { x[c] = std::fmod(x[c] - shift + count, count); }});
-            add_reflection(to, "the entries in reverse order", c, part.count - 1.0);
+            to.push_back({"the entries in reverse order",
+                [=, last = part.count - 1.0](std::span<double> x) { x[c] = last - x[c]; }});
             break;
         default: break;
     }

@@ -94,6 +94,53 @@ TEST(DomainCauses, NameOtherChancesOfLobes) {
     EXPECT_NE(cause.find("the entries are chosen with other probabilities: entry 0 with "), std::string::npos) << cause;
 }
 
+double kumaraswamy(double a, double b, double x) {
+    return a * b * std::pow(x, a - 1) * std::pow(1 - std::pow(x, a), b - 1);
+}
+/// Draws of that distribution with a and b, mirrored or not; p has the parameters c and d.
+PointSampler kumaraswamy_sampler(double a, double b, bool mirrored, double c, double d) {
+    return {.domain = "line:0,1",
+        .numbers = 1,
+        .sample =
+            [=](Point u, std::span<double> x) {
+                const double drawn = std::pow(1 - std::pow(1 - u[0], 1 / b), 1 / a);
+                x[0] = mirrored ? 1 - drawn : drawn;
+                return kumaraswamy(c, d, x[0]);
+            },
+        .pdf = [=](Point x) { return kumaraswamy(c, d, x[0]); },
+        .parallel = true};
+}
+
+TEST(DomainCauses, NameAMirroredPointOnlyIfDrawsFollowIt) {
+    const std::string mirrored = cause_of(kumaraswamy_sampler(2, 5, true, 2, 5));
+    EXPECT_NE(mirrored.find("x mirrored: x -> 1 - x"), std::string::npos) << mirrored;
+    const std::string exchanged = cause_of(kumaraswamy_sampler(5, 2, false, 2, 5));
+    EXPECT_EQ(exchanged.find("mirrored"), std::string::npos) << exchanged;
+}
+
+/// Exponential draws of another rate, from the end of a half-infinite line or on both sides of 0.
+TEST(DomainCauses, SayNothingOfConcentrationOverInfiniteLines) {
+    for (const double rate : {0.6, 0.9, 1.1, 1.7})
+        for (const char* domain : {"line:0,inf", "line:-inf,0"}) {
+            const double sign = std::string(domain) == "line:0,inf" ? 1 : -1;
+            const auto density = [](Point x) { return std::exp(-std::fabs(x[0])); };
+            const PointSampler sampler{.domain = domain,
+                .numbers = 1,
+                .sample =
+                    [=](Point u, std::span<double> x) {
+                        x[0] = -sign * std::log1p(-u[0]) / rate;
+                        return density(x);
+                    },
+                .pdf = density,
+                .parallel = true};
+            std::string text;
+            for (const Verdict& v : check_sampler("made", sampler).verdicts) text += v.message + " " + v.cause + "\n";
+            EXPECT_EQ(text.find("concentrated"), std::string::npos) << domain << ", rate " << rate << ": " << text;
+            EXPECT_NE(text.find("a rate, a mean free path or another scale"), std::string::npos)
+                << rate << ": " << text;
+        }
+}
+
 /// A lens without the root of its radius, with a distance.
 TEST(DomainCauses, NameTheRadiusOfADiskBesideALine) {
     for (const bool infinite : {false, true}) {

@@ -266,6 +266,8 @@ std::vector<FactorHypothesis> factor_hypotheses(std::span<const Place> places) {
 }
 
 std::optional<FactorHypothesis> power_hypothesis(std::span<const Place> places) {
+    // The density on the chart of an infinite line is not the one over the line, and neither are its powers.
+    if (const DomainChart* domain = places[0].traits.domain.get(); domain && domain->domain().is_infinite()) return {};
     const std::vector<Row> rows = rows_of(places, {});
     if (rows.size() < 32) return {};
     const Fit f = fit(rows, places.size(), {0});

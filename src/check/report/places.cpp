@@ -148,6 +148,8 @@ std::string sentence_of(const ShareDifference& d, const Traits& traits) {
 
 std::optional<Concentration> concentration_of(const CheckAt& c) {
     if (!c.plan || c.integrals.leaves.empty() || c.observations.counts.empty()) return {};
+    // The chart of an infinite line is fitted to the draws, so that they are even on it whatever they are on the line.
+    if (c.traits.domain && c.traits.domain->domain().is_infinite()) return {};
     const NodeShares shares(c);
     if (!shares.known()) return {};
     const Tree& tree = c.plan->tree;

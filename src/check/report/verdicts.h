@@ -44,6 +44,7 @@ struct Concentration {
     double drawn = 0, claimed = 0;
     double error = 0;  // of ln(drawn / claimed)
 };
+/// None over an infinite line.
 std::optional<Concentration> concentration_of(const CheckAt& check);
 /// "" if unknown.
 std::string sentence_of(const Concentration& concentration, const Traits& traits);
