@@ -8,6 +8,7 @@
 #include "backends.h"
 #include "progress.h"
 #include "signals.h"
+#include "terminal.h"
 
 namespace crescent::cli {
 
@@ -64,6 +65,7 @@ int run(const RunFlags& flags) {
     options.timeout_s = flags.timeout;
     options.command = command_of(flags);
     options.backend = backend(flags);
+    options.columns = columns_of_summary();
 
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);
@@ -112,8 +114,8 @@ int join(const JoinFlags& flags) {
     const Measured joined = crescent::join(flags.parts, command);
     ProgressMonitor monitor;
     write_metrics(joined, flags.out, monitor);
-    print(terminal_summary(
-        report_inputs(joined), {}, flags.out, {.metrics = true, .films = false, .plates = false, .report = false}));
+    print(terminal_summary(report_inputs(joined), {}, flags.out,
+        {.metrics = true, .films = false, .plates = false, .report = false}, false, columns_of_summary()));
     return joined.metrics.all_hold() ? passed : failed;
 }
 

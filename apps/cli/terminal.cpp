@@ -50,6 +50,11 @@ Terminal terminal_of_stdout() {
         term && std::string_view(term) != "dumb" && !(no_colour && *no_colour)};
 }
 
+std::size_t columns_of_summary() {
+    constexpr std::size_t widest = 80;
+    return std::min(terminal_of_stdout().columns, widest);
+}
+
 void print_marked(std::span<const ScreenLine> lines, const Terminal& terminal) {
     std::string out;
     for (const ScreenLine& line : lines) {

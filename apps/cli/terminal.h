@@ -16,6 +16,8 @@ struct Terminal {
 };
 
 Terminal terminal_of_stdout();
+/// Of the summary of a run: as many as the terminal has, 80 at most; 0 in a pipe or file, where no line is cut.
+std::size_t columns_of_summary();
 /// Prints the lines with marks in the colour of their state. No control character in a text reaches the terminal.
 void print_marked(std::span<const ScreenLine> lines, const Terminal& terminal);
 

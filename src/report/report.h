@@ -86,9 +86,10 @@ std::string metrics_csv(const ReportInputs& in);
 std::string junit_xml(const ReportInputs& in);
 std::string report_html(const ReportInputs& in);
 std::string timing_json(const Timing& timing, const Provenance& provenance);
-/// Returns at most 80 columns: first whether all assertions held, then the values, then the files.
+/// Returns first whether all assertions held, then the values, then the files. Lines are cut at so many columns; 0:
+/// none is cut.
 std::string terminal_summary(const ReportInputs& in, const Timing& timing, const std::string& out_dir,
-    const OutputParts& parts = {}, bool colour = false);
+    const OutputParts& parts = {}, bool colour = false, std::size_t columns = 80);
 
 // ---- The provenance of an output, as the JSON files of a run state it.
 

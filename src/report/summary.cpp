@@ -14,23 +14,33 @@
 namespace crescent {
 namespace {
 
-constexpr std::size_t columns = 80;
+constexpr std::size_t no_limit = ~std::size_t{0};
 
+/// What shows the text: with colours or without, and so many columns, beyond which lines are cut; no_limit: all of
+/// them.
 struct Paint {
     bool on;
+    std::size_t columns;
+    std::string cut(std::string_view text, std::size_t reserved = 0) const {
+        return columns == no_limit ? std::string(text) : clip(text, columns - reserved);
+    }
+    /// Filled with blanks to `wide` columns, and cut there if lines are cut.
+    std::string padded(std::string_view text, std::size_t wide) const {
+        return columns == no_limit && width(text) > wide ? std::string(text) : left(text, wide);
+    }
     std::string operator()(const char* code, const std::string& text) const {
         return on ? std::string("\x1b[") + code + "m" + text + "\x1b[0m" : text;
     }
 };
 constexpr const char *green = "32", *red = "1;31", *bold = "1";
 
-std::string failures_line(const std::vector<const AssertionResult*>& failed, std::size_t total) {
+std::string failures_line(const std::vector<const AssertionResult*>& failed, std::size_t total, const Paint& paint) {
     const std::string head = fmt::format("{} of {} assertions FAIL: ", failed.size(), total);
     std::string line = head;
     for (const AssertionResult* a : failed) line += (a == failed.front() ? "" : ", ") + a->name;
-    if (width(line) <= columns || failed.size() == 1) return clip(line, columns);
+    if (width(line) <= paint.columns || failed.size() == 1) return paint.cut(line);
     const std::string more = fmt::format(", and {} more", failed.size() - 1);
-    return clip(head + failed.front()->name, columns - more.size()) + more;
+    return paint.cut(head + failed.front()->name, more.size()) + more;
 }
 
 /// Returns how many were skipped, one line for each reason.
@@ -54,25 +64,27 @@ std::string verdict(const std::vector<AssertionResult>& given, const Paint& pain
         if (a.failed()) failed.push_back(&a);
     if (failed.empty() && evaluated.size() == 1) return paint(green, "the one assertion holds") + "\n";
     if (failed.empty()) return paint(green, fmt::format("all {} assertions hold", evaluated.size())) + "\n";
-    std::string out = paint(red, failures_line(failed, evaluated.size())) + "\n";
+    std::string out = paint(red, failures_line(failed, evaluated.size(), paint)) + "\n";
     for (const AssertionResult* a : failed) {
         const std::string values = a->reference_good
             ? fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound))
             : ": the reference is not good enough";
-        out += fmt::format("  {}{}\n", clip(a->name, columns - 2 - width(values)), values);
+        out += fmt::format("  {}{}\n", paint.cut(a->name, 2 + width(values)), values);
+        if (!a->reference_fault.empty()) out += fmt::format("    {}\n", a->reference_fault);
     }
     return out;
 }
 
-std::string table_row(const SeedSpread& b, bool published, bool paired) {
+std::string table_row(const SeedSpread& b, bool published, bool paired, const Paint& paint) {
     const std::string name = fmt::format("{} {}", b.metric, b.key.arm);
-    std::string row = fmt::format("  {}", left(name, published ? 23 : 34));
+    std::string row = fmt::format("  {}", paint.padded(name, published ? 23 : 34));
     if (published) row += fmt::format(" {}", right(b.published ? figures_of(b.metric, *b.published) : "-", 10));
     row += fmt::format(" {}", right(figures_of(b.metric, b.measured, paired), 10));
     if (b.band.seeds < 2) return row;
     row += fmt::format(" {}  ", right(figures_of(b.metric, b.band.median, paired), 10));
     if (b.band.heavy) return row + "heavy tail";
-    return row + clip(figures_of(b.metric, b.band.q05, paired) + " .. " + figures_of(b.metric, b.band.q95, paired), 20);
+    return row +
+        paint.padded(figures_of(b.metric, b.band.q05, paired) + " .. " + figures_of(b.metric, b.band.q95, paired), 20);
 }
 
 std::string table(const ReportInputs& in, const Paint& paint) {
@@ -84,7 +96,8 @@ std::string table(const ReportInputs& in, const Paint& paint) {
     for (const std::string& metric : headline_metrics(in.experiment))
         for (const ArmPlan& arm : in.experiment.arms)
             if (const SeedSpread* band = find.band(arm.name, n, metric)) {
-                rows += table_row(*band, published, in.experiment.reference.kind == ReferenceKind::paired) + "\n";
+                rows +=
+                    table_row(*band, published, in.experiment.reference.kind == ReferenceKind::paired, paint) + "\n";
                 seeds = std::max(seeds, band->band.seeds);
             }
     if (rows.empty()) return {};
@@ -115,26 +128,27 @@ std::string films(const std::map<std::string, std::string>& hashes, const Paint&
     std::size_t longest = 0;
     for (const auto& [name, hash] : hashes) longest = std::max(longest, width(name) + width(hash));
     const std::size_t across = longest + 2 <= 38 ? 2 : 1;
-    const std::size_t cell = across == 2 ? 38 : columns - 2;
+    const std::size_t whole = paint.columns == no_limit ? longest + 4 : paint.columns - 2;
+    const std::size_t cell = across == 2 ? 38 : whole;
     std::size_t index = 0;
     for (const auto& [name, hash] : hashes) {
-        const std::string digits = clip(hash, cell / 2);
-        out += fmt::format("  {}  {}", left(name, cell - 2 - width(digits)), digits);
+        const std::string digits = paint.columns == no_limit ? hash : clip(hash, cell / 2);
+        out += fmt::format("  {}  {}", paint.padded(name, cell - 2 - width(digits)), digits);
         if (++index % across == 0 || index == hashes.size()) out += "\n";
     }
     return out;
 }
 
 /// Returns the error of a paired reference in each region, at the experiment's own exponent.
-std::string reference_line(const ReportInputs& in) {
+std::string reference_line(const ReportInputs& in, const Paint& paint) {
     std::string out;
     for (const ReferenceQuality& r : in.metrics.references)
         if (r.paired_error && r.s == in.experiment.s())
             out += fmt::format("{}{} {}", out.empty() ? "" : ", ", r.region, figures(*r.paired_error, 2));
-    return out.empty() ? out : "\n" + clip("  the reference's own error (rms): " + out, columns) + "\n";
+    return out.empty() ? out : "\n" + paint.cut("  the reference's own error (rms): " + out) + "\n";
 }
 
-std::string speed(const Timing& t) {
+std::string speed(const Timing& t, const Paint& paint) {
     if (t.threads == 0) return {};  // nothing was computed: runs were joined
     std::uint64_t samples = 0;
     double seconds = 0;
@@ -144,24 +158,23 @@ std::string speed(const Timing& t) {
     }
     std::string out = fmt::format("  {:.2f} s estimating, {:.2f} s in all", t.estimating_s, t.total_s);
     if (seconds > 0) out += fmt::format(", {:.0f} Msamples/s", static_cast<double>(samples) / seconds * 1e-6);
-    return clip(
-               out + fmt::format(", {}, {}", plural(static_cast<std::uint64_t>(t.threads), "thread"), t.isa), columns) +
+    return paint.cut(out + fmt::format(", {}, {}", plural(static_cast<std::uint64_t>(t.threads), "thread"), t.isa)) +
         "\n";
 }
 
 /// The stages that took 5 % of the time or more.
-std::string shares(const Timing& t) {
+std::string shares(const Timing& t, const Paint& paint) {
     std::string out;
     for (const auto& [name, seconds] : t.stages)
         if (t.total_s > 0 && seconds >= 0.05 * t.total_s)
             out += fmt::format("{}{:.0f} % {}", out.empty() ? "" : "; ", 100 * seconds / t.total_s, name);
-    return out.empty() ? out : clip("  " + out, columns) + "\n";
+    return out.empty() ? out : paint.cut("  " + out) + "\n";
 }
 
-std::string where(const ReportInputs& in, const std::string& out_dir, const OutputParts& parts) {
+std::string where(const ReportInputs& in, const std::string& out_dir, const OutputParts& parts, const Paint& paint) {
     const std::string dir = out_dir.empty() ? "." : out_dir;
-    const auto line = [](const char* what, const std::string& path) {
-        return fmt::format("  {:<9}{}\n", what, clip(path, columns - 11));
+    const auto line = [&](const char* what, const std::string& path) {
+        return fmt::format("  {:<9}{}\n", what, paint.cut(path, 11));
     };
     std::string out;
     if (parts.report) out += line("look at", dir + "/report.html");
@@ -172,22 +185,22 @@ std::string where(const ReportInputs& in, const std::string& out_dir, const Outp
 
 }  // namespace
 
-std::string terminal_summary(
-    const ReportInputs& in, const Timing& timing, const std::string& out_dir, const OutputParts& parts, bool colour) {
-    const Paint paint{colour};
+std::string terminal_summary(const ReportInputs& in, const Timing& timing, const std::string& out_dir,
+    const OutputParts& parts, bool colour, std::size_t columns) {
+    const Paint paint{colour, columns == 0 ? no_limit : columns};
     std::string out = verdict(in.metrics.assertions, paint) + skipped_lines(in.metrics.assertions);
     if (const std::vector<int> missing = in.provenance.missing(); !missing.empty())
         out += fmt::format("seeds {} of {}: a part of the series; missing: {}\n", ranges_text(in.provenance.places),
             in.provenance.series, ranges_text(missing));
-    out += table(in, paint) + reference_line(in) + films(hashes_shown(in), paint);
+    out += table(in, paint) + reference_line(in, paint) + films(hashes_shown(in), paint);
     if (const std::uint64_t bad = Findings(in).bad_samples())
         out += fmt::format("\n{}\n",
             paint(red,
                 fmt::format(
                     "  {}: NaN, infinite or negative,\n  or a pdf that cannot be used", plural(bad, "bad sample"))));
     for (const std::string& warning : warnings_of(in.experiment))
-        out += "\n" + clip("  warning: " + warning, columns) + "\n";
-    return out + "\n" + speed(timing) + shares(timing) + where(in, out_dir, parts);
+        out += "\n" + paint.cut("  warning: " + warning) + "\n";
+    return out + "\n" + speed(timing, paint) + shares(timing, paint) + where(in, out_dir, parts, paint);
 }
 
 }  // namespace crescent

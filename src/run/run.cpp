@@ -105,7 +105,8 @@ RunResult run(const Experiment& experiment, const RunOptions& options, ProgressM
     on_threads(threads_to_be_had(engine.threads), [&] { write(results, staging, monitor, options.parts); });
     staging.commit(monitor);
     if (checkpoint) checkpoint->discard();
-    std::string summary = terminal_summary(report_inputs(results), results.timing, options.out, options.parts);
+    std::string summary =
+        terminal_summary(report_inputs(results), results.timing, options.out, options.parts, false, options.columns);
     return {std::move(results.metrics), std::move(results.timing), std::move(results.provenance), std::move(summary)};
 }
 

@@ -27,6 +27,7 @@ struct RunOptions {
     double timeout_s = 0;              // for one response of a program or plugin; 0: 10 and 60 s
     OutputParts parts;
     SeedRange seeds;
+    std::size_t columns = 80;  // of the summary, where longer lines are cut; 0: none is cut
 };
 
 /// The measurements of a run, as they were written.

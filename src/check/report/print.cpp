@@ -141,6 +141,8 @@ std::string named(const Words& words, FrontEnd front_end) { return words[static_
 /// `flag`: the name of a thorough check, which makes twelve times as many draws as a quick one.
 std::string more_draws_text(const NextStep& next, const std::string& flag) {
     constexpr double times_of_thorough = 12;
+    constexpr double most_times = 1e6;  // a quick check makes 1.2 million draws: 1e12 take days of any machine
+    if (next.times > most_times) return "more draws are needed than can be made.";
     const std::string needed = fmt::format("about {:.2g} times as many draws are needed", next.times);
     if (next.thorough) return next.times > 0 ? needed + " as " + flag + " makes." : "";
     if (!(next.times > 0)) return flag + " draws more.";

@@ -91,6 +91,8 @@ TEST(NextStep, OfAThoroughCheckIsNotAnother) {
     EXPECT_NE(next_step_text(v).find("only 12 times"), std::string::npos);
     v.next.thorough = true;
     EXPECT_EQ(next_step_text(v), "about 3e+02 times as many draws are needed as --full makes.");
+    v.next.times = 9e68;
+    EXPECT_EQ(next_step_text(v), "more draws are needed than can be made.");
     v.next.times = 0;
     EXPECT_EQ(next_step_text(v), "");
 }
