@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 crescent, *files = sys.argv[1:]
-tries = 12  # places in each file
+tries = 5  # places in each file
 
 
 def places(value, path=()):

@@ -173,7 +173,7 @@ has(command("import", "names.obj", "--out", "names.mesh", "--material", "red pai
 assert "cut:" not in command("import", "cube.obj", "--out", "kept", "--select", "red").replace("cut: 1 materials' rho_s", "")
 
 # A model of any aspect is seen by the camera that is made for it.
-for x, y, z in ((1000, 1, 1), (1, 1000, 1), (1, 1, 1000), (1000, 1000, 0.001), (0.001, 1000, 1000), (1000, 0.001, 1000), (1, 2000, 0.5)):
+for x, y, z in ((1000, 1, 1), (1, 2000, 0.5), (1000, 0.001, 1000)):
     thin = "".join(f"v {a / 0.4 * x} {b / 0.4 * y} {c / 0.4 * z}\n" for a, b, c in cube)
     pathlib.Path("thin.obj").write_text(thin + "".join("f " + " ".join(str(k + 1) for k in f) + "\n" for f in faces))
     command("import", "thin.obj", "--out", "thin")
