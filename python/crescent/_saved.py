@@ -103,7 +103,7 @@ def _timing(folder: Path) -> tuple[list[Any], int, list[Any]]:
         stages = [(stage["name"], stage["seconds"]) for stage in timing.get("stages", [])]
         return rows, int(timing.get("threads", 0)), stages
     except KeyError as error:
-        raise ValueError(f"{path}: expected the timing.json of a run: no {error} in an entry of arms or stages") from None
+        raise ValueError(f"{path}: expected the timing.json of a run: an entry has no {error}") from None
     except (ValueError, TypeError, AttributeError) as error:
         raise ValueError(f"{path}: expected the timing.json of a run: {error}") from None
 

@@ -137,7 +137,7 @@ def test_the_handshake_declares_the_sampler(tmp_path):
 @pytest.mark.parametrize(
     "text, code, said",
     [
-        ("import numpy as np\n\ndef sample(wo, u):\n    raise RuntimeError('no table')\n", 2, "own.py:4: RuntimeError: no table"),
+        ("\ndef sample(wo, u):\n    raise RuntimeError('no table')\n", 2, "own.py:3: RuntimeError: no table"),
         ("def sample(wo, u):\n    return 1 / 0\n", 2, "own.py:2: ZeroDivisionError"),
         ("import numpy as np\n\ndef sample(wo, u):\n    return np.ones(3) @ np.ones(2), u\n", 2, "own.py:4: "),
         ("def sample(wo, u):\n    return (\n", 2, "own.py:2: SyntaxError: "),
