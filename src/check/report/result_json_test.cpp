@@ -115,8 +115,9 @@ std::string refusal(const std::string& from, const std::string& to) {
 TEST(StoredResult, RefusesOtherTexts) {
     EXPECT_THAT(refusal("crescent check 3", "crescent check 9"), HasSubstr("check.json: "));
     EXPECT_THAT(refusal("\"state\": \"wrong\"", "\"state\": \"good\""), HasSubstr("expected a state"));
-    EXPECT_THAT(refusal("\"rings\": 1", "\"rings\": 1000000"), HasSubstr("other lengths"));
-    EXPECT_THAT(refusal("\"alpha\": 0.01", "\"alpha\": []"), HasSubstr("must be number"));
+    EXPECT_THAT(
+        refusal("\"rings\": 1", "\"rings\": 1000000"), HasSubstr("maps[0]: expected lists as long as the bins"));
+    EXPECT_THAT(refusal("\"alpha\": 0.01", "\"alpha\": []"), HasSubstr("alpha: expected a number"));
     EXPECT_THAT(refusal("{", "[" + std::string(1000, '[')), HasSubstr("check.json: "));
     EXPECT_EQ(refusal("What was found", "What else was found"), "");
 }
