@@ -1,6 +1,6 @@
 // glTF 2.0 and GLB (Khronos Group 2021, "glTF 2.0 Specification"): the triangles of the scene, placed by its nodes.
 // Every offset, size and index is checked before it is used. Integers as positions are KHR_mesh_quantization.
-// Draco: draco.h.
+// Draco: draco.h. EXT_meshopt_compression: meshopt.h.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "draco.h"
+#include "meshopt.h"
 #include "model.h"
 
 namespace crescent::importer {
@@ -181,6 +182,8 @@ struct UvUse {
     bool operator==(const UvUse&) const = default;
 };
 
+constexpr const char* meshopt_name = "EXT_meshopt_compression";
+
 class GltfReader {
 public:
     Model model;
@@ -237,7 +240,8 @@ private:
         const auto is_read = [](const std::string& name) {
             return name == "KHR_mesh_quantization" || name == "KHR_texture_transform" ||
                 name == "KHR_materials_emissive_strength" || name == "KHR_materials_pbrSpecularGlossiness" ||
-                (name == "KHR_draco_mesh_compression" && can_read_draco());
+                (name == "KHR_draco_mesh_compression" && can_read_draco()) ||
+                (name == meshopt_name && can_read_meshopt());
         };
         const auto shapes_nothing = [](const std::string& name) {
             return name.starts_with("KHR_materials_") || name == "KHR_lights_punctual" ||
@@ -419,12 +423,41 @@ private:
     std::pair<std::string_view, std::size_t> view(std::size_t index, std::size_t offset, const std::string& from) {
         const Json& one = element("bufferViews", index, from);
         const std::string place = element_place("bufferViews", index);
+        const Json* packed = can_read_meshopt() ? extension(one, meshopt_name) : nullptr;
+        const std::string_view bytes =
+            packed ? unpacked_view(*packed, index, needed(one, "byteLength", place)) : bytes_of_view(one, place);
+        const std::size_t size = bytes.size();
+        if (offset > size) fail(from, fmt::format("byteOffset {} is beyond the {} bytes of its view", offset, size));
+        return {bytes.substr(offset), whole(one, "byteStride", place).value_or(0)};
+    }
+
+    /// The bytes of a view, or of the extension of one.
+    std::string_view bytes_of_view(const Json& one, const std::string& place) {
         const std::string_view bytes = buffer(needed(one, "buffer", place), member_place(place, "buffer"));
         const std::size_t begin = whole(one, "byteOffset", place).value_or(0), size = needed(one, "byteLength", place);
         if (begin > bytes.size() || size > bytes.size() - begin)
             fail(place, fmt::format("{} bytes from {} on are beyond the {} of its buffer", size, begin, bytes.size()));
-        if (offset > size) fail(from, fmt::format("byteOffset {} is beyond the {} bytes of its view", offset, size));
-        return {bytes.substr(begin + offset, size - offset), whole(one, "byteStride", place).value_or(0)};
+        return bytes.substr(begin, size);
+    }
+
+    /// The bytes of a compressed view, decoded once. `size`: those that the view states.
+    std::string_view unpacked_view(const Json& packed, std::size_t index, std::size_t size) {
+        const auto [known, is_new] = unpacked_views_.try_emplace(index);
+        if (!is_new) return known->second;
+        const std::string place =
+            member_place(element_place("bufferViews", index), fmt::format("extensions.{}", meshopt_name));
+        MeshoptView as{.mode = text(packed, "mode"),
+            .count = needed(packed, "count", place),
+            .stride = needed(packed, "byteStride", place)};
+        if (packed.contains("filter")) as.filter = text(packed, "filter");
+        const std::string_view bytes = bytes_of_view(packed, place);
+        if (as.stride == 0 || size / as.stride != as.count || size % as.stride != 0)
+            fail(place,
+                fmt::format("{} elements of {} bytes are not the {} bytes of the view", as.count, as.stride, size));
+        try {
+            known->second = read_meshopt(bytes, as);
+        } catch (const ModelError& error) { fail(place, error.what()); }
+        return known->second;
     }
 
     Array array(std::size_t index, const std::string& from, std::string_view expected) {
@@ -744,7 +777,7 @@ private:
     ReadingScope scope_;
     Container container_;
     Json root_;
-    std::map<std::size_t, std::string> buffers_;
+    std::map<std::size_t, std::string> buffers_, unpacked_views_;
     std::size_t points_and_lines_ = 0, targets_ = 0;
     std::vector<UvUse> uv_uses_;                               // of each material of the file
     std::map<std::size_t, std::size_t> picture_of_image_;      // indices of the model's pictures

@@ -243,7 +243,7 @@ reads("sparse.gltf", 12, (0, 0, 0), (1, 1, 1))
 for name, change, words in (
     ("names", put(["extensionsRequired"], "ACME_magic"), ("extensionsRequired",)),
     ("unknown", put(["extensionsRequired"], ["ACME_magic"]), ("ACME_magic",)),
-    ("meshopt", put(["extensionsRequired"], ["EXT_meshopt_compression"]), ("EXT_meshopt_compression",)),
+    ("meshopt", put(["extensionsRequired"], ["KHR_meshopt_compression"]), ("KHR_meshopt_compression",)),
     ("long", put(["accessors", 0, "count"], 9), ("accessors[0]", "9 elements")),
     ("huge", put(["accessors", 1, "count"], 2**62), ("accessors[1]",)),
     ("view", put(["bufferViews", 1, "byteLength"], 10**6), ("bufferViews[1]",)),

@@ -183,6 +183,78 @@ for x, y, z in ((1000, 1, 1), (1, 2000, 0.5), (1000, 0.001, 1000)):
     seen = json.loads(pathlib.Path("out/metrics.json").read_text())["geometry_pixels"]
     assert seen > 320 * 240 / 100, (x, y, z, seen)
 
+# EXT_meshopt_compression, as meshoptimizer's encoders write it: a rectangle of 1 by 2, plain and with the filter of
+# exponents, its normals of one direction by octahedra, both modes of indices; and one of 0.5 by 0.25 as quaternions.
+MESHOPT = {
+    "positions": "a00000013f000000ffffff013f0000007e7d7e000000010c00000080000000000000000000000000000000000000000000000000000000000000000000000000",
+    "exponents": "a000013f000000403f2000012800000000010c0000004000012800000000000001280000000000000000000000000000000000000000000000000000f2000000f2000000f2",
+    "normals": "a00000000000000000000000000000000000000000000000000000000000000000db360000ff7f0000",
+    "quaternions": "a0013f000000fbfcfb013f000000b4b3b4010c00000082010c0000005a0000000000000000000000000000000000000000000000000000000000000000825aff7f",
+    "triangles": "e1fe000f06007687566778a9866589689801690000",
+    "indices": "d10004080a0c0200000000"}
+
+
+def meshopt_glb(name, positions="positions", indices="TRIANGLES", filter=None, component=5126, stride=12, change=None):
+    """A rectangle in compressed views; `change` edits the extensions of the views of positions, normals, indices."""
+    g, views = Glb(), []
+    normals = {"mode": "ATTRIBUTES", "filter": "OCTAHEDRAL", "count": 4, "byteStride": 8}
+    of_positions = {"mode": "ATTRIBUTES", "count": 4, "byteStride": stride, **({"filter": filter} if filter else {})}
+    for data, more in ((positions, of_positions), ("normals", normals), (indices.lower(), {"mode": indices, "count": 6, "byteStride": 2})):
+        packed = bytes.fromhex(MESHOPT[data])
+        g.view(packed)
+        size = more["count"] * more["byteStride"]
+        views.append({"buffer": 1, "byteLength": size, "extensions": {"EXT_meshopt_compression": {"buffer": 0, "byteOffset": g.views[-1]["byteOffset"], "byteLength": len(packed), **more}}})
+        if more["mode"] == "ATTRIBUTES":
+            views[-1]["byteStride"] = more["byteStride"]
+    if change:
+        change(*(view["extensions"]["EXT_meshopt_compression"] for view in views))
+    accessors = [{"bufferView": 0, "componentType": component, "normalized": component != 5126, "count": 4, "type": "VEC3"},
+                 {"bufferView": 1, "componentType": 5122, "normalized": True, "count": 4, "type": "VEC3"},
+                 {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"}]
+    names = ["EXT_meshopt_compression", "KHR_mesh_quantization"]
+    buffers = [{"byteLength": len(g.bytes)}, {"byteLength": 200, "extensions": {"EXT_meshopt_compression": {"fallback": True}}}]
+    g.write(name, {"extensionsUsed": names, "extensionsRequired": names, "buffers": buffers, "bufferViews": views, "accessors": accessors,
+                   "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2}]}], "nodes": [{"mesh": 0}]})
+
+
+
+meshopt_glb("meshopt.glb")
+tried = subprocess.run([crescent, "import", "meshopt.glb", "--out", "meshopt.mesh"], capture_output=True, text=True)
+if "not supported" in tried.stderr:  # a build without meshoptimizer
+    assert tried.returncode == 2
+    has(tried.stderr, "meshopt.glb: extensionsRequired: the extension 'EXT_meshopt_compression' is not supported")
+else:
+    assert tried.returncode == 0, tried.stdout + tried.stderr
+    for how in ({}, {"indices": "INDICES"}, {"positions": "exponents", "filter": "EXPONENTIAL"}):
+        meshopt_glb("meshopt.glb", **how)
+        has(command("import", "meshopt.glb", "--out", "meshopt.mesh"), "2 triangles, 4 vertices", "box [0, 0, 0] to [1, 2, 0]", "normals: smooth")
+        plain = Glb()
+        plain.array([(0, 0, 0), (1, 0, 0), (0, 2, 0), (1, 2, 0)], "VEC3", "f", 5126)
+        plain.array([(19660, 0, 26214)] * 4, "VEC3", "h", 5122)
+        plain.array([0, 1, 3, 0, 3, 2], "SCALAR", "H", 5123)
+        plain.accessors[1]["normalized"] = True
+        plain.write("plain.glb", {"extensionsUsed": ["KHR_mesh_quantization"], "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2}]}], "nodes": [{"mesh": 0}]})
+        command("import", "plain.glb", "--out", "plain.mesh")
+        ours, theirs = (pathlib.Path(name).read_bytes() for name in ("meshopt.mesh", "plain.mesh"))
+        assert len(ours) == len(theirs)
+        for k in range(0, len(ours) - 3, 4):  # to a step of 16 bits, which octahedra have
+            a, b = struct.unpack_from("<f", ours, k)[0], struct.unpack_from("<f", theirs, k)[0]
+            assert ours[k:k + 4] == theirs[k:k + 4] or abs(a - b) < 1e-4, (how, k, a, b)
+    meshopt_glb("meshopt.glb", positions="quaternions", filter="QUATERNION", component=5122, stride=8)
+    has(command("import", "meshopt.glb", "--out", "meshopt.mesh"), "box [0, 0, 0.500015] to [0.500015, 0.250008, 0.500015]")
+    for change, words in (
+        (lambda p, n, i: p.update(byteLength=p["byteLength"] - 9), ("bufferViews[0].extensions.EXT_meshopt_compression", "are not 4 elements of 12 bytes")),
+        (lambda p, n, i: p.update(mode="POINTS"), ("expected a mode", "not 'POINTS'")),
+        (lambda p, n, i: p.update(filter="WAVELET"), ("expected a filter", "not 'WAVELET'")),
+        (lambda p, n, i: p.update(filter="OCTAHEDRAL"), ("elements of 4 or 8 bytes",)),
+        (lambda p, n, i: n.update(count=3), ("3 elements of 8 bytes are not the 32 bytes",)),
+        (lambda p, n, i: p.update(count=1 << 60), ("bufferViews[0]",)),
+        (lambda p, n, i: i.update(filter="EXPONENTIAL"), ("expected no filter",)),
+        (lambda p, n, i: i.update(byteOffset=10**6), ("bufferViews[2].extensions.EXT_meshopt_compression", "beyond")),
+    ):
+        meshopt_glb("meshopt.glb", change=change)
+        has(command("import", "meshopt.glb", "--out", "meshopt.mesh", code=2), "meshopt.glb: ", *words)
+
 # Draco, as its own encoder writes it: a rectangle of 1 by 2 with texture coordinates.
 packed = bytes.fromhex(
     "445241434f02020101000000040201020000011fff0111ff011102ff0000000000010009030000000103090200010000000000000000000000"
