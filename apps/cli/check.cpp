@@ -192,13 +192,13 @@ std::optional<Domain> domain_of(const CheckFlags& flags) {
 }
 
 /// The sampler in a Python file or of --exec; null if there is none.
-std::shared_ptr<const ProgramSampler> program_of(const CheckFlags& flags, const ProgressMonitor& monitor) {
+std::shared_ptr<const SamplerAdapter> program_of(const CheckFlags& flags, const ProgressMonitor& monitor) {
     const bool python = names_python_sampler(flags.arm);
     if (python && !flags.settings.empty())
         throw InputError({"--set " + flags.settings.front(), 0, 0},
             "is for built-in samplers, and " + flags.arm + " has its own parameters");
     const int neighbours = flags.neighbours > 0 ? flags.neighbours : default_neighbours;
-    std::shared_ptr<const ProgramSampler> out;
+    std::shared_ptr<const SamplerAdapter> out;
     if (python) out = start_python_sampler(flags.arm, limits_of(flags, monitor), neighbours);
     else if (!flags.exec.empty())
         out = start_pipe(flags.exec, limits_of(flags, monitor), "", domain_of(flags), neighbours);
@@ -620,7 +620,7 @@ std::vector<CheckCase> others_of(
         return sampler_against(start_python_sampler(flags.against, limits_of(flags, monitor)), a);
     if (names_shader(flags.against) && flags.against.find(' ') == std::string::npos)
         return sampler_against(start_shader(flags.against, {}, limits_of(flags, monitor)), a);
-    std::shared_ptr<const ProgramSampler> other;
+    std::shared_ptr<const SamplerAdapter> other;
     try {
         other = start_pipe(flags.against, limits_of(flags, monitor));
     } catch (const InputError&) {  // start_pipe calls it --exec

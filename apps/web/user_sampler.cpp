@@ -1,6 +1,6 @@
 // The user's functions are called for many rows at once: u and w_o in, w_i and the pdf out, in the local frame, n = +z,
 // in double precision. `context` is what the third argument of the functions has: s, alpha, rho_d (3), rho_s, then the
-// number of lights and 18 numbers for each, as samplers/external_sampler.h orders them.
+// number of lights and 18 numbers for each, as samplers/sampler_adapter.h orders them.
 #include "user_sampler.h"
 
 #include <algorithm>
@@ -29,86 +29,103 @@ int bits_of_answers = 53;
 
 const std::vector<std::string> all_of_context = {"s", "alpha", "rho_d", "rho_s", "lights"};
 
-class PageSampler : public ExternalSampler {
+/// In a run it is asked at the points of a scene, in a check on one surface under one light, where a direction below
+/// the horizon counts as nothing drawn.
+class PageSampler : public SamplerAdapter {
 public:
-    std::string name() const override { return "your sampler"; }
-    int numbers() const override { return static_cast<int>(numbers_of_sample); }
-    bool uses_lights() const override { return takes_context; }
-    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
-        std::vector<double> runs;
-        const std::size_t lights = batch.lights.size();
-        for (std::size_t k = 0; k < batch.runs.size(); ++k) {
-            const ExternalRun& run = batch.runs[k];
-            runs.insert(runs.end(), {run.wo.x, run.wo.y, run.wo.z, static_cast<double>(run.rows)});
-            if (takes_context)
-                add_context(all_of_context, run, batch.lights,
-                    lights > 0 ? batch.lights_at.subspan(k * lights, lights) : batch.lights_at, runs);
-        }
-        const std::size_t stride = batch.runs.empty() ? 4 : runs.size() / batch.runs.size();
-        api_user_sample(
-            runs.data(), batch.runs.size(), stride, batch.u.data(), numbers_of_sample, &out.wi[0].x, out.pdf.data());
-    }
-};
-
-/// The user's sampler on one surface under one light. A direction below the horizon counts as nothing drawn.
-class UserAdapter : public InProcessAdapter {
-public:
-    explicit UserAdapter(const CaseSetup& setup) : surface_(setup.surface) {
-        if (!takes_context) return;
-        std::vector<ExternalLight> lights;
-        std::vector<ExternalLightAt> at;
+    explicit PageSampler(const CaseSetup& setup = {}) : surface_(setup.surface) {
         for (const CaseDiskLight& disk : setup.light.disks) {
-            lights.push_back({"disk", {disk.radiance, disk.radiance, disk.radiance}, disk.radius});
-            at.push_back({disk.center, disk.normal, {}, {}, dot(disk.normal, disk.center) < 0});
-        }
-        const double rho_d = surface_.rho_d;
-        add_context(all_of_context,
-            {{0, 0, 1}, {surface_.s, surface_.alpha, rho_d, surface_.rho_s}, 1, {rho_d, rho_d, rho_d}}, lights, at,
-            context_);
-    }
-    std::string name() const override { return "your sampler"; }
-    Traits traits() const override {
-        Traits traits;
-        traits.numbers = static_cast<int>(numbers_of_sample);
-        traits.bits = bits_of_answers;
-        return traits;
-    }
-    bool serial() const override { return true; }
-    bool limited() const override { return false; }  // the limit is an exception, which the module does not have
-    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        if (u.empty()) return;
-        count(u.size());
-        std::vector<double> run = {wo.x, wo.y, wo.z, static_cast<double>(u.size())}, given, wi(3 * u.size()),
-                            pdf(u.size());
-        run.insert(run.end(), context_.begin(), context_.end());
-        given.reserve(u.size() * numbers_of_sample);
-        for (const PrimarySample& one : u)
-            for (std::size_t k = 0; k < numbers_of_sample; ++k) given.push_back(one[static_cast<int>(k)]);
-        api_user_sample(run.data(), 1, run.size(), given.data(), numbers_of_sample, wi.data(), pdf.data());
-        for (std::size_t i = 0; i < u.size(); ++i) {
-            const bool nothing = pdf[i] == 0 || (wi[3 * i + 2] <= 0 && pdf[i] >= 0);
-            out[i] = nothing ? Draw{{0, 0, 1}, 0} : Draw{{wi[3 * i], wi[3 * i + 1], wi[3 * i + 2]}, pdf[i]};
+            lights_.push_back({"disk", {disk.radiance, disk.radiance, disk.radiance}, disk.radius});
+            lights_at_.push_back({disk.center, disk.normal, {}, {}, dot(disk.normal, disk.center) < 0});
         }
     }
-    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
-        std::vector<double> pairs, values;
-        for (const Pair& p : at)
-            if (p.wi.z > 0) pairs.insert(pairs.end(), {p.wo.x, p.wo.y, p.wo.z, p.wi.x, p.wi.y, p.wi.z});
-        const std::size_t asked = pairs.size() / 6;
-        count(asked);
-        values.resize(asked);
-        if (asked > 0) api_user_pdf(pairs.data(), asked, context_.data(), context_.size(), values.data());
-        std::size_t next = 0;
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = at[i].wi.z > 0 ? values[next++] : 0;
+    SamplerDeclaration declaration() const override {
+        SamplerDeclaration out{.name = "your sampler", .has_f = true, .has_drawn_f = true, .serial = true};
+        out.traits.numbers = static_cast<int>(numbers_of_sample);
+        out.traits.bits = bits_of_answers;
+        if (takes_context) out.uses = all_of_context;
+        return out;  // not limited: the limit is an exception, which the module does not have
     }
-    bool has_f() const override { return true; }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = brdf_value(surface_, at[i].wo, at[i].wi);
+    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
+        using Kind = SamplerQuery::Kind;
+        if (query.rows() == 0) return;
+        switch (query.kind) {
+            case Kind::sample: return sample(query, out.draws);
+            case Kind::pdf:
+            case Kind::exact_pdf: return pdf(query, out.values);
+            case Kind::mis_weight: return std::fill(out.values.begin(), out.values.end(), 1.0);
+            case Kind::f:
+            case Kind::target:
+            case Kind::reference_f:
+                for (std::size_t i = 0; i < query.rows(); ++i)
+                    out.values[i] = brdf_value(surface_, query.pairs[i].wo, query.pairs[i].wi);
+                return;
+            case Kind::f_channels:
+                for (std::size_t i = 0; i < query.rows(); ++i) {
+                    const double f = brdf_value(surface_, query.pairs[i].wo, query.pairs[i].wi);
+                    out.channels[i] = {f, f, f};
+                }
+                return;
+            case Kind::weigh: ensure(false, "the page's sampler does not weigh");
+        }
     }
 
 private:
     SurfaceSetup surface_;
-    std::vector<double> context_;
+    std::vector<SceneLight> lights_;
+    std::vector<LightAtPoint> lights_at_;
+
+    /// The one run of a check.
+    SurfaceRun run_of_check(Vec3d wo, std::size_t rows) const {
+        const double rho_d = surface_.rho_d;
+        return {wo, {surface_.s, surface_.alpha, rho_d, surface_.rho_s}, rows, {rho_d, rho_d, rho_d}};
+    }
+    /// Calls work(scene) with the points of a run, or with the one point of a check.
+    template <class Work> void at_points(const SamplerQuery& query, const Work& work) const {
+        if (query.scene) return work(*query.scene);
+        const SurfaceRun run = run_of_check(query.wo, query.rows());
+        work(SceneRows{.runs = {&run, 1}, .lights = lights_, .lights_at = lights_at_});
+    }
+
+    void sample(const SamplerQuery& query, std::span<Draw> out) const {
+        const std::size_t rows = out.size();
+        std::vector<double> runs, room, wi(3 * rows), pdf(rows);
+        const std::span<const double> u = query.u.packed(numbers_of_sample, room);
+        at_points(query, [&](const SceneRows& scene) {
+            for (std::size_t k = 0; k < scene.runs.size(); ++k) {
+                const SurfaceRun& run = scene.runs[k];
+                runs.insert(runs.end(), {run.wo.x, run.wo.y, run.wo.z, static_cast<double>(run.rows)});
+                if (takes_context) add_context(all_of_context, run, scene.lights, scene.lights_of_run(k), runs);
+            }
+            api_user_sample(runs.data(), scene.runs.size(), runs.size() / scene.runs.size(), u.data(),
+                numbers_of_sample, wi.data(), pdf.data());
+        });
+        for (std::size_t i = 0; i < rows; ++i) {
+            const bool nothing = pdf[i] == 0 || (!query.scene && wi[3 * i + 2] <= 0 && pdf[i] >= 0);
+            out[i] = nothing ? Draw{{0, 0, 1}, 0} : Draw{{wi[3 * i], wi[3 * i + 1], wi[3 * i + 2]}, pdf[i]};
+        }
+    }
+    /// The page's function has one context for all rows, and is called once a run.
+    void pdf(const SamplerQuery& query, std::span<double> out) const {
+        std::size_t first = 0;
+        at_points(query, [&](const SceneRows& scene) {
+            for (std::size_t k = 0; k < scene.runs.size(); ++k) {
+                std::vector<double> context, pairs;
+                if (takes_context)
+                    add_context(all_of_context, scene.runs[k], scene.lights, scene.lights_of_run(k), context);
+                const std::span<const Pair> of_run = query.pairs.subspan(first, scene.runs[k].rows);
+                for (const Pair& p : of_run)
+                    if (p.wi.z > 0) pairs.insert(pairs.end(), {p.wo.x, p.wo.y, p.wo.z, p.wi.x, p.wi.y, p.wi.z});
+                const std::size_t asked = pairs.size() / 6;
+                std::vector<double> values(asked);
+                if (asked > 0) api_user_pdf(pairs.data(), asked, context.data(), context.size(), values.data());
+                std::size_t next = 0;
+                for (std::size_t i = 0; i < of_run.size(); ++i)
+                    out[first + i] = of_run[i].wi.z > 0 ? values[next++] : 0;
+                first += of_run.size();
+            }
+        });
+    }
 };
 
 /// {surface: {lobe: a word or "", lambert, sharpness}, light}.
@@ -127,7 +144,7 @@ std::vector<CheckCase> cases_of(const ordered_json& query) {
     for (const ordered_json& at : query.at("wo")) {
         const double theta = at.at(0).get<double>(), azimuth = at.at(1).get<double>();
         out.push_back(make_case_on(
-            setup, theta, azimuth, built_in.empty() ? "your sampler" : built_in, std::make_shared<UserAdapter>(setup)));
+            setup, theta, azimuth, built_in.empty() ? "your sampler" : built_in, std::make_shared<PageSampler>(setup)));
         if (!built_in.empty()) out.back().adapter = sampler_on(built_in, out.back());
     }
     return out;
@@ -159,7 +176,7 @@ std::vector<Draw> draws_of(const CheckCase& at, std::size_t n) {
 
 }  // namespace
 
-std::shared_ptr<const ExternalSampler> page_sampler() {
+std::shared_ptr<const SamplerAdapter> page_sampler() {
     static const auto sampler = std::make_shared<const PageSampler>();
     return sampler;
 }

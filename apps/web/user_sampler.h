@@ -12,6 +12,6 @@ namespace crescent::web {
 inline constexpr std::string_view exec_of_page = "page";
 
 /// Draws by the functions of the page, api.user_sample and api.user_pdf; for every experiment.
-std::shared_ptr<const ExternalSampler> page_sampler();
+std::shared_ptr<const SamplerAdapter> page_sampler();
 
 }  // namespace crescent::web

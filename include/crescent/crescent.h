@@ -38,6 +38,7 @@
 #include "check/sources/external.h"
 #include "check/sources/neighbours.h"
 #include "check/sources/point_file.h"
+#include "check/sources/random_numbers.h"
 #include "check/sources/sample_file.h"
 #include "check/sources/shader.h"
 #include "check/user.h"

@@ -97,7 +97,7 @@ _LIGHT = {"radius": 1, "radiance": 3, "position": 3, "normal": 3, "edge_u": 3, "
 
 
 def columns_of(uses: Sequence[str], lights: int) -> int:
-    """Columns of a context in a program's rows, as src/samplers/external_sampler.h has them."""
+    """Columns of a context in a program's rows, as src/samplers/surface_context.h has them."""
     widths = {"rho_d": 3, "lights": 1 + lights * (1 + sum(_LIGHT.values()))}
     return sum(widths.get(name, 1) for name in uses)
 

@@ -1,124 +1,181 @@
-// A query is written into column-major arrays of doubles that Python owns, the callable is called under the lock, and
-// its result is copied with the lock released. If one number represents three channels, it is their luminance.
+// The arrays of a query are filled with the lock free, handed over and called under it, and the answer is copied with
+// the lock free. If one number represents three channels, it is their luminance.
 #include "callables.h"
 
 #include <nanobind/ndarray.h>
+
+#include "scene_context.h"
 
 namespace crescent::python {
 
 namespace {
 
-using Made = nb::ndarray<nb::numpy, double>;
 using Rows = nb::ndarray<const double, nb::ndim<2>, nb::device::cpu>;
 using Column = nb::ndarray<const double, nb::ndim<1>, nb::device::cpu>;
-
-/// Returns an array [n, k] that Python owns, filled column by column: fill(row, column).
-template <class Fill> nb::object matrix(std::size_t n, std::size_t k, Fill&& fill) {
-    auto* data = new double[n * k];
-    const nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-    {
-        const Unlocked free;
-        for (std::size_t j = 0; j < k; ++j)
-            for (std::size_t i = 0; i < n; ++i) data[j * n + i] = fill(i, j);
-    }
-    return nb::cast(Made(data, {n, k}, owner, {1, static_cast<std::int64_t>(n)}));
-}
-
-double component(Vec3d v, std::size_t j) { return j == 0 ? v.x : j == 1 ? v.y : v.z; }
-
-nb::object directions(std::span<const Pair> at, Vec3d Pair::* which) {
-    return matrix(at.size(), 3, [&](std::size_t i, std::size_t j) { return component(at[i].*which, j); });
-}
 
 void must_be(std::size_t n, std::size_t wanted) {
     if (n != wanted) throw nb::value_error("crescent._arrays let an array of another length through");
 }
 
+Draw draw_of(
+    const Callables& c, const Rows& wi, const Column& pdf, const Rows& weight, const Column& delta, std::size_t i) {
+    Draw d{{wi(i, 0), wi(i, 1), wi(i, 2)}, pdf(i)};
+    if (weight.is_valid()) {
+        d.weights = weight.shape(1) == 3 ? Vec3d{weight(i, 0), weight(i, 1), weight(i, 2)}
+                                         : Vec3d{weight(i, 0), weight(i, 0), weight(i, 0)};
+        d.weight = weight.shape(1) == 3 ? luminance(d.weights) : d.weights.x;
+    }
+    if (delta.is_valid() && delta(i) > 0) {
+        d.delta = delta(i);
+        d.pdf = 0;
+    }
+    if (c.upper_only && d.wi.z <= 0) {
+        d.pdf = 0;
+        if (d.delta == 0) d.weight.reset();  // any result of the callables is ignored there
+    }
+    return d;
+}
+
 }  // namespace
 
-/// The callables are called with the lock held; an exception stops the check and is raised again at its end.
-template <class Ask> void CallableSampler::ask(Ask&& ask) const {
+CallableSampler::CallableSampler(Callables callables) : c_(std::move(callables)) {
+    const bool has_f = c_.f.is_valid() && !c_.f.is_none();
+    constexpr std::size_t rows_a_call = 32768;
+    declaration_ = {.name = c_.name,
+        .traits = c_.traits,
+        .has_f = has_f,
+        .has_drawn_f = has_f || c_.weighs,
+        .weighs = c_.weights.is_valid() && !c_.weights.is_none(),
+        .serial = c_.serial,
+        .limited = true,
+        .uses = {c_.uses.begin(), c_.uses.end()},
+        .batch_rows = rows_a_call,
+        .device = c_.device};
+}
+
+void CallableSampler::evaluate(const SamplerQuery& query, const SamplerAnswers& out) const {
+    using Kind = SamplerQuery::Kind;
+    if (query.rows() == 0) return;
+    switch (query.kind) {
+        case Kind::sample: return sample(query, out.draws);
+        case Kind::pdf:
+        case Kind::exact_pdf: return pdf(query, out.values);
+        case Kind::mis_weight: return std::fill(out.values.begin(), out.values.end(), 1.0);
+        case Kind::f:
+        case Kind::target:
+        case Kind::reference_f: return f(query, out.values);
+        case Kind::f_channels: return f_channels(query, out.channels);
+        case Kind::weigh: return weigh(query, out.values);
+    }
+}
+
+/// Calls callable(wo, u or wi[, context]), and take(answer) with the lock held. An exception stops the work and is
+/// raised again at its end.
+template <class Take>
+void CallableSampler::call(const nb::object& callable, const SamplerQuery& query, Take&& take) const {
+    using Kind = SamplerQuery::Kind;
     if (raised_) raised_->check();
+    Table wo = outgoing_of(query);
+    Table second = query.kind == Kind::sample ? numbers_of(query.u, static_cast<std::size_t>(c_.traits.numbers))
+                                              : incident_of(query.pairs);
+    std::vector<Table> tables;
+    if (query.scene) tables = context_of(*query.scene, query.rows(), c_.uses);
+    if (query.kind == Kind::weigh) tables.push_back(densities_of(query));
     const Locked held;
     try {
-        ask();
+        if (query.scene) {
+            nb::dict context;
+            for (Table& table : tables) context[table.name().c_str()] = table.take();
+            if (c_.uses.contains("lights")) put_lights(query.scene->lights, context);
+            take(call_python(callable, wo.take(), second.take(), context));
+        } else {
+            take(call_python(callable, wo.take(), second.take()));
+        }
         if (c_.serial && PyErr_CheckSignals() != 0) throw nb::python_error();
     } catch (...) {
         if (!raised_) throw;
         raised_->keep();
         throw Interrupted{};
     }
+    answers_.fetch_add(query.rows(), std::memory_order_relaxed);
 }
 
-void CallableSampler::sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const {
-    if (u.empty()) return;
-    ask([&] {
-        const nb::object from = matrix(u.size(), 3, [&](std::size_t, std::size_t j) { return component(wo, j); });
-        const nb::object numbers = matrix(u.size(), static_cast<std::size_t>(c_.traits.numbers),
-            [&](std::size_t i, std::size_t j) { return u[i][static_cast<int>(j)]; });
-        const nb::tuple answer = nb::cast<nb::tuple>(call_python(c_.sample, from, numbers));
+void CallableSampler::sample(const SamplerQuery& query, std::span<Draw> out) const {
+    const bool without_density = !query.scene && !c_.traits.has_pdf;  // a run divides by the pdf of the draw
+    call(c_.sample, query, [&](const nb::object& given) {
+        const nb::tuple answer = nb::cast<nb::tuple>(given);
         const Rows wi = nb::cast<Rows>(answer[0]);
         const Column pdf = nb::cast<Column>(answer[1]);
         Rows weight;
         Column delta;
-        if (!answer[2].is_none()) weight = nb::cast<Rows>(answer[2]);
-        if (!answer[3].is_none()) delta = nb::cast<Column>(answer[3]);
-        must_be(wi.shape(0), u.size());
+        if (answer.size() > 2 && !answer[2].is_none()) weight = nb::cast<Rows>(answer[2]);
+        if (answer.size() > 3 && !answer[3].is_none()) delta = nb::cast<Column>(answer[3]);
+        must_be(wi.shape(0), out.size());
+        must_be(wi.shape(1), 3);
+        must_be(pdf.shape(0), out.size());
         const Unlocked free;
-        for (std::size_t i = 0; i < u.size(); ++i) {
-            Draw& d = out[i] = Draw{{wi(i, 0), wi(i, 1), wi(i, 2)}, pdf(i)};
-            if (weight.is_valid()) {
-                d.weights = weight.shape(1) == 3 ? Vec3d{weight(i, 0), weight(i, 1), weight(i, 2)}
-                                                 : Vec3d{weight(i, 0), weight(i, 0), weight(i, 0)};
-                d.weight = weight.shape(1) == 3 ? luminance(d.weights) : d.weights.x;
-            }
-            if (delta.is_valid() && delta(i) > 0) {
-                d.delta = delta(i);
-                d.pdf = 0;
-            }
-            if (!c_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
-            if (c_.upper_only && d.wi.z <= 0) {
-                d.pdf = 0;
-                if (d.delta == 0) d.weight.reset();  // any result of the callables is ignored there
-            }
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            out[i] = draw_of(c_, wi, pdf, weight, delta, i);
+            if (without_density && out[i].pdf > 0) out[i].pdf = 1;
         }
     });
-    draws_ += u.size();
-    count(u.size());
+    draws_ += out.size();
 }
 
-void CallableSampler::pdf(int, std::span<const Pair> at, std::span<double> out) const {
+void CallableSampler::pdf(const SamplerQuery& query, std::span<double> out) const {
     if (c_.pdf.is_none()) return std::fill(out.begin(), out.end(), 1.0);
-    if (at.empty()) return;
-    ask([&] {
-        const Column p = nb::cast<Column>(call_python(c_.pdf, directions(at, &Pair::wo), directions(at, &Pair::wi)));
-        must_be(p.shape(0), at.size());
+    call(c_.pdf, query, [&](const nb::object& answer) {
+        const Column p = nb::cast<Column>(answer);
+        must_be(p.shape(0), out.size());
         const Unlocked free;
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = c_.upper_only && at[i].wi.z <= 0 ? 0 : p(i);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = c_.upper_only && query.pairs[i].wi.z <= 0 ? 0 : p(i);
     });
-    count(at.size());
 }
 
-void CallableSampler::f_channels(std::span<const Pair> at, std::span<Vec3d> out) const {
-    if (at.empty() || c_.f.is_none()) return;
-    ask([&] {
-        const Rows f = nb::cast<Rows>(call_python(c_.f, directions(at, &Pair::wo), directions(at, &Pair::wi)));
-        must_be(f.shape(0), at.size());
+void CallableSampler::f_channels(const SamplerQuery& query, std::span<Vec3d> out) const {
+    if (!declaration_.has_f) return;
+    call(c_.f, query, [&](const nb::object& answer) {
+        const Rows f = nb::cast<Rows>(answer);
+        must_be(f.shape(0), out.size());
         const bool three = f.shape(1) == 3;
         const Unlocked free;
-        for (std::size_t i = 0; i < at.size(); ++i) {
+        for (std::size_t i = 0; i < out.size(); ++i) {
             out[i] = three ? Vec3d{f(i, 0), f(i, 1), f(i, 2)} : Vec3d{f(i, 0), f(i, 0), f(i, 0)};
-            if (c_.upper_only && at[i].wi.z <= 0) out[i] = {};
+            if (c_.upper_only && query.pairs[i].wi.z <= 0) out[i] = {};
         }
     });
-    count(at.size());
 }
 
-void CallableSampler::f(std::span<const Pair> at, std::span<double> out) const {
+void CallableSampler::f(const SamplerQuery& query, std::span<double> out) const {
     std::vector<Vec3d> by_channel(out.size());
-    f_channels(at, by_channel);
+    f_channels(query, by_channel);
     for (std::size_t i = 0; i < out.size(); ++i)
         out[i] = c_.traits.channels == 3 ? luminance(by_channel[i]) : by_channel[i].x;
+}
+
+void CallableSampler::weigh(const SamplerQuery& query, std::span<double> out) const {
+    const std::size_t rows = query.rows(), samplers = query.densities.size() / rows;
+    call(c_.weights, query, [&](const nb::object& answer) {
+        const Rows w = nb::cast<Rows>(answer);
+        must_be(w.shape(0), rows);
+        must_be(w.shape(1), samplers);
+        for (std::size_t i = 0; i < rows; ++i)
+            for (std::size_t k = 0; k < samplers; ++k) out[i * samplers + k] = w(i, k);
+    });
+}
+
+std::map<std::string, std::shared_ptr<const CallableSampler>> samplers_of(const CallableArms& callables) {
+    std::map<std::string, std::shared_ptr<const CallableSampler>> out;
+    for (const auto& [name, draw, pdf, weights, numbers, uses, one_thread] : callables)
+        out[name] = std::make_shared<CallableSampler>(Callables{.name = name,
+            .sample = draw,
+            .pdf = pdf,
+            .f = nb::none(),
+            .weights = weights,
+            .traits = {.numbers = numbers, .has_pdf = !pdf.is_none()},
+            .uses = {uses.begin(), uses.end()},
+            .serial = one_thread});
+    return out;
 }
 
 }  // namespace crescent::python

@@ -7,7 +7,6 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include "callable_arm.h"
 #include "callables.h"
 #include "module.h"
 
@@ -20,8 +19,8 @@ using Adapter = std::shared_ptr<const SamplerAdapter>;
 /// CheckCases over w_o, and the sampler in them.
 struct CheckCases {
     std::vector<CheckCase> all;
-    Adapter adapter;                                         // null: a built-in sampler, or an arm of an experiment
-    std::vector<std::shared_ptr<const CallableArm>> arms{};  // of an experiment: those with callables
+    Adapter adapter;                                             // null: a built-in sampler, or an arm of an experiment
+    std::vector<std::shared_ptr<const CallableSampler>> arms{};  // of an experiment: those with callables
     std::size_t size() const {
         std::size_t checked = 0;
         for (const CheckCase& t : all) checked += !t.baseline;
@@ -41,7 +40,14 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     bool reciprocal, bool own_random, std::optional<std::vector<double>> eta, bool importance, bool full,
     const Grid& grid, std::shared_ptr<DomainChart> domain, bool number, bool reciprocal_weight, int neighbours,
     const std::tuple<std::string, std::string, std::string>& evaluator) {
-    Callables c{name, std::move(sample), std::move(pdf), std::move(f), {}, weighs, upper_only, serial};
+    Callables c{.name = name,
+        .sample = std::move(sample),
+        .pdf = std::move(pdf),
+        .f = std::move(f),
+        .weights = nb::none(),
+        .weighs = weighs,
+        .upper_only = upper_only,
+        .serial = serial};
     std::tie(c.device.name, c.device.driver, c.device.precision) = evaluator;
     c.traits.numbers = numbers;
     c.traits.u_bits = u_bits;

@@ -7,7 +7,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include "callable_arm.h"
+#include "callables.h"
 
 namespace crescent::python {
 

@@ -14,7 +14,8 @@
 #include "check/against_draws.h"
 #include "check/constants.h"
 #include "check/report/print.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
+#include "check/sources/decorators.h"
 #include "check/verdicts/statistics.h"
 #include "output/format.h"
 

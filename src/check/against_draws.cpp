@@ -144,7 +144,7 @@ public:
         }
     }
     void scrambled(StreamKey key, std::uint32_t first, std::uint32_t last) {
-        if (source_.traits.own_random || !source_.adapter.can_draw()) return;
+        if (source_.traits.own_random || !source_.declaration.can_draw) return;
         key.purpose = Purpose::scrambles;
         key.technique = static_cast<std::uint8_t>(source_.technique);
         for (int set = 0; set < replicate_sets; ++set) {

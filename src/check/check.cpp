@@ -9,7 +9,8 @@
 #include "check/decide/check_sampler.h"
 #include "check/explain/causes.h"
 #include "check/report/verdicts.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
+#include "check/sources/decorators.h"
 #include "check/verdict.h"
 
 namespace crescent {
@@ -140,7 +141,7 @@ std::vector<CheckCase> with_remaining_limits(std::span<const CheckCase> check_ca
     const std::size_t in_all = std::min(settings.questions * w_o, settings.questions_in_all) + settings.further_in_all;
     for (CheckCase& t : out)
         if (t.adapter->limited())
-            t.adapter = std::make_shared<LimitedAdapter>(t.adapter, in_all - std::min(in_all, w_o * evaluations_extra));
+            t.adapter = limited_in_number(t.adapter, in_all - std::min(in_all, w_o * evaluations_extra));
     return out;
 }
 

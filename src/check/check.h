@@ -12,7 +12,7 @@
 #include "base/progress.h"
 #include "check/estimate/budget.h"
 #include "check/report/print.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "check/verdict.h"
 
 namespace crescent {

@@ -13,7 +13,7 @@ namespace crescent {
 namespace check_test {
 
 /// Lambert by the cosine, p times `factor`; a program that gives `rate` answers per second and has `allowed` seconds.
-class Program : public SamplerAdapter {
+class Program : public SamplerSource {
 public:
     double factor = 1, rate = 1e5, allowed = 0;
     std::uint64_t fails_at = ~std::uint64_t{0};  // number of answers before it fails

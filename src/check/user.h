@@ -28,7 +28,8 @@
 
 #include "check/check.h"
 #include "check/sources/point_sampler.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/decorators.h"
+#include "check/sources/check_case.h"
 #include "check/sources/user_sampler.h"
 
 namespace crescent::user {

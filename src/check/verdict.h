@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "check/sources/evaluation_device.h"
+#include "samplers/evaluation_device.h"
 
 // In output order. The families of check/verdicts/ name the verdict that they make wrong. The list is used by `crescent
 // check` and its output, --expect, `crescent list verdicts` and the tests.

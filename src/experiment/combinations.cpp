@@ -46,9 +46,10 @@ private:
         return combination;
     }
 
-    std::shared_ptr<const ExternalSampler> weight_function(const ArmPlan& arm, const std::string& path) const {
+    std::shared_ptr<const SamplerAdapter> weight_function(const ArmPlan& arm, const std::string& path) const {
         if (!arm.combination.weights_python) return nullptr;
-        if (const auto given = samplers_.find(arm.name); given != samplers_.end() && given->second->has_weights())
+        if (const auto given = samplers_.find(arm.name);
+            given != samplers_.end() && given->second->declaration().weighs)
             return given->second;
         throw InputError(experiment_.place_of(path + ".weights_python"),
             fmt::format("{}.weights_python: expected a run in Python (crescent.run): the program cannot call '{}'",

@@ -17,7 +17,7 @@
 #include "experiment/assertion.h"
 #include "output/tone_map.h"
 #include "samplers/combination_plan.h"
-#include "samplers/external_sampler.h"
+#include "samplers/sampler_adapter.h"
 #include "scene/scene_data.h"
 
 namespace crescent {

@@ -11,7 +11,7 @@
 #include "math/statistics.h"
 #include "metrics/metrics.h"
 #include "render/shading_points.h"
-#include "samplers/external_sampler.h"
+#include "samplers/sampler_adapter.h"
 #include "scene/scene.h"
 #include "scene/scene_data.h"
 

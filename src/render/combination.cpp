@@ -134,7 +134,7 @@ private:
 
 Combination::Combination(std::string name, CombinationPlan plan, Techniques parts,
     std::shared_ptr<const Technique> target, const SourceLocation& weights_at, const SourceLocation& probabilities_at,
-    std::shared_ptr<const ExternalSampler> weigh)
+    std::shared_ptr<const SamplerAdapter> weigh)
     : name_(std::move(name)),
       plan_(std::move(plan)),
       of_(std::move(parts)),
@@ -196,7 +196,7 @@ void Combination::shares_at(const ShadingPoints& points, std::size_t point, std:
     list.evaluate(formula_inputs(points, run_of(points, point, 0)), out);
 }
 
-void Combination::draw(const ExternalBatch& /*batch*/, const ExternalDraws& /*out*/) const {
+void Combination::evaluate(const SamplerQuery& /*query*/, const SamplerAnswers& /*out*/) const {
     ensure(false, "a combination is estimated at shading points");
 }
 

@@ -12,7 +12,7 @@
 #include "render/kernel.h"
 #include "render/technique.h"
 #include "samplers/combination_plan.h"
-#include "samplers/external_sampler.h"
+#include "samplers/sampler_adapter.h"
 
 namespace crescent {
 
@@ -32,20 +32,18 @@ struct SampleCost {
     std::uint64_t densities = 0;   // evaluations of a density, except those of draws
 };
 
-class Combination : public ExternalSampler {
+class Combination : public SamplerAdapter {
 public:
     /// `target`: the density of ris with a sampler as target; else null. `weights_at`, `probabilities_at`: their places
     /// in the experiment. `weigh`: gives the weights of mis in their place, or null. Throws InputError if they cannot
     /// be read.
     Combination(std::string name, CombinationPlan plan, Techniques parts, std::shared_ptr<const Technique> target,
         const SourceLocation& weights_at, const SourceLocation& probabilities_at,
-        std::shared_ptr<const ExternalSampler> weigh = nullptr);
+        std::shared_ptr<const SamplerAdapter> weigh = nullptr);
 
-    std::string name() const override { return name_; }
-    int numbers() const override { return 2; }
-    /// A combination is estimated at shading points, by sample().
-    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override;
-    const Combination* as_combination() const override { return this; }
+    SamplerDeclaration declaration() const override { return {.name = name_, .traits = {.has_pdf = false}}; }
+    /// Is not called: a combination is estimated at shading points, by sample().
+    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override;
 
     const CombinationPlan& plan() const { return plan_; }
     SampleCost cost() const;
@@ -89,10 +87,15 @@ private:
     std::shared_ptr<const Technique> target_;
     WeightList weights_, probabilities_;
     std::shared_ptr<const Technique> mixture_;  // of a mixture
-    std::shared_ptr<const ExternalSampler> weigh_;
+    std::shared_ptr<const SamplerAdapter> weigh_;
     std::vector<int> built_in_;           // of each sampler, see Technique
     std::vector<std::uint64_t> repeats_;  // samples_of each
 };
+
+/// Returns the combination that a sampler is, or null.
+inline const Combination* combination_of(const SamplerAdapter* sampler) {
+    return dynamic_cast<const Combination*>(sampler);
+}
 
 /// Estimates like a kernel of the table. `isa`: a name of isas(), "" for the best. `numbers`: others than those of
 /// films, or null. `in_kernels`: false for the general path alone, which has the same bits.

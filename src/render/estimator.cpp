@@ -23,8 +23,8 @@ namespace {
 void run_kernel(const std::string& isa, const SamplerRef& arm, KernelCall call) {
     std::vector<std::byte> memory(call.shading_points->kernel_memory());
     call.memory = memory.data();
-    if (arm.outside && arm.outside->as_combination())
-        return estimate_combination(*arm.outside->as_combination(), call, isa);
+    if (const Combination* combination = combination_of(arm.outside))
+        return estimate_combination(*combination, call, isa);
     if (arm.outside) return estimate_external(*arm.outside, call);
     const int index = arm_index(arm.sampler);
     ensure(index >= 0, "the parser lets only known samplers through");
@@ -111,7 +111,7 @@ std::size_t run_length(const ShadingPoints& points, std::size_t first, std::size
 }  // namespace
 
 SampleCost cost_of_sample(const SamplerRef& arm) {
-    const Combination* combination = arm.outside ? arm.outside->as_combination() : nullptr;
+    const Combination* combination = combination_of(arm.outside);
     if (combination) return combination->cost();
     const std::uint64_t directions = directions_per_sample(arm.sampler);
     return {directions, directions, directions - 1};
@@ -336,10 +336,10 @@ template <class F> struct Prefetched {
     Drawn<F> sample(Vec3<F> /*wo*/, Vec2<F> /*u*/) const { return *next++; }
 };
 
-Drawn<float> usable(const Vec3<double>& wi, double p) {
-    if (p == 0) return {{0, 0, 1}, {0}};
-    if (!is_usable(wi, p)) return {{0, 0, 1}, {std::numeric_limits<float>::quiet_NaN()}};
-    return {as<float>(wi), {static_cast<float>(p)}};
+Drawn<float> usable(const Draw& draw) {
+    if (draw.pdf == 0) return {{0, 0, 1}, {0}};
+    if (!is_usable(draw.wi, draw.pdf)) return {{0, 0, 1}, {std::numeric_limits<float>::quiet_NaN()}};
+    return {as<float>(draw.wi), {static_cast<float>(draw.pdf)}};
 }
 
 /// Appends the random numbers of `n` samples of a pixel from `first` on, `count` per sample. The first two are those of
@@ -372,20 +372,21 @@ void add_numbers(std::uint32_t pixel, std::uint32_t seed, std::uint64_t first, s
 
 }  // namespace
 
-void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
+void estimate_external(const SamplerAdapter& sampler, const KernelCall& call) {
+    const SamplerDeclaration declaration = sampler.declaration();
     const ShadingPoints& shading_points = *call.shading_points;
     const std::uint64_t n = call.sample_counts.back();
-    const auto numbers = static_cast<std::size_t>(sampler.numbers());
+    const auto numbers = static_cast<std::size_t>(declaration.traits.own_numbers());
     const PointKernel<Prefetched<float>> kernel = point_kernel<Prefetched<float>>(shading_points);
     // The same batches for any number of threads; a shading point of more samples is fetched in parts.
-    const std::uint64_t longest_batch = sampler.batch_rows();
+    const std::uint64_t longest_batch = declaration.batch_rows;
     const std::uint64_t points_a_batch = std::max<std::uint64_t>(1, longest_batch / n);
-    const std::vector<ExternalLight> lights =
-        sampler.uses_lights() ? lights_of(shading_points) : std::vector<ExternalLight>{};
-    std::vector<ExternalRun> runs;
-    std::vector<ExternalLightAt> lights_at;
-    std::vector<double> u, pdf;
-    std::vector<Vec3<double>> wi;
+    const std::vector<SceneLight> lights =
+        declaration.uses_lights() ? lights_of(shading_points) : std::vector<SceneLight>{};
+    std::vector<SurfaceRun> runs;
+    std::vector<LightAtPoint> lights_at;
+    std::vector<double> u;
+    std::vector<Draw> draws;
     std::vector<Drawn<float>> drawn;
     for (std::size_t i = 0; i < shading_points.count; i += points_a_batch) {
         const std::size_t end = std::min<std::size_t>(shading_points.count, i + points_a_batch);
@@ -403,10 +404,11 @@ void estimate_external(const ExternalSampler& sampler, const KernelCall& call) {
                 if (!lights.empty()) add_lights_at(shading_points, index, lights_at);
                 add_numbers(shading_points.pixel[index], call.seed, first, count, numbers, u);
             }
-            wi.resize(runs.size() * count);
-            pdf.resize(wi.size());
-            sampler.draw({.runs = runs, .u = u, .lights = lights, .lights_at = lights_at}, {wi, pdf});
-            for (std::size_t k = 0; k < wi.size(); ++k) drawn.push_back(usable(wi[k], pdf[k]));
+            draws.resize(runs.size() * count);
+            const SceneRows scene{.runs = runs, .lights = lights, .lights_at = lights_at};
+            sampler.evaluate(
+                {.kind = SamplerQuery::Kind::sample, .u = {u, numbers}, .scene = &scene}, {.draws = draws});
+            for (const Draw& draw : draws) drawn.push_back(usable(draw));
         }
         for (std::size_t index = i; index < end; ++index)
             kernel(call, index, Prefetched<float>(drawn.data() + (index - i) * n));

@@ -12,7 +12,7 @@
 #include "render/film.h"
 #include "render/kernel.h"
 #include "render/tiles.h"
-#include "samplers/external_sampler.h"
+#include "samplers/sampler_adapter.h"
 #include "scene/scene.h"
 
 namespace crescent {
@@ -71,6 +71,6 @@ void for_each_tile(
 
 /// Has the form of a kernel of the table. A sample is bad if its direction is not of unit length to 1e-4, or if its pdf
 /// is NaN, negative, infinite in single precision, or 0 in single precision but not in double.
-void estimate_external(const ExternalSampler& sampler, const KernelCall& call);
+void estimate_external(const SamplerAdapter& sampler, const KernelCall& call);
 
 }  // namespace crescent

@@ -64,15 +64,15 @@ private:
     }
 };
 
-/// Calls work(batch, first row, rows) for consecutive parts of the rows, none longer than the sampler takes.
-template <class Work> void in_batches(const ExternalSampler& sampler, const PointRows& point_rows, Work&& work) {
+/// Calls work(scene, first row, rows) for consecutive parts of the rows, none longer than the sampler takes.
+template <class Work> void in_batches(const SamplerDeclaration& declaration, const PointRows& point_rows, Work&& work) {
     const ShadingPoints& p = point_rows.points;
-    const std::vector<ExternalLight> lights = sampler.uses_lights() ? lights_of(p) : std::vector<ExternalLight>{};
-    std::vector<ExternalRun> runs;
-    std::vector<ExternalLightAt> lights_at;
+    const std::vector<SceneLight> lights = declaration.uses_lights() ? lights_of(p) : std::vector<SceneLight>{};
+    std::vector<SurfaceRun> runs;
+    std::vector<LightAtPoint> lights_at;
     std::size_t first = 0, rows = 0;
     const auto flush = [&] {
-        if (rows > 0) work(ExternalBatch{.runs = runs, .u = {}, .lights = lights, .lights_at = lights_at}, first, rows);
+        if (rows > 0) work(SceneRows{.runs = runs, .lights = lights, .lights_at = lights_at}, first, rows);
         first += rows;
         rows = 0;
         runs.clear();
@@ -80,53 +80,61 @@ template <class Work> void in_batches(const ExternalSampler& sampler, const Poin
     };
     for (const PointRun& run : point_rows.runs)
         for (std::size_t done = 0; done < run.rows;) {
-            const std::size_t part = std::min(run.rows - done, sampler.batch_rows() - rows);
+            const std::size_t part = std::min(run.rows - done, declaration.batch_rows - rows);
             runs.push_back(run_at(p, run.point, widen(run.wo), part));
             if (!lights.empty()) add_lights_at(p, run.point, lights_at);
             done += part;
             rows += part;
-            if (rows == sampler.batch_rows()) flush();
+            if (rows == declaration.batch_rows) flush();
         }
     flush();
 }
 
+/// Sets `pairs` to w_o and w_i of rows from `first` on.
+void set_pairs(const SceneRows& scene, std::span<const Vec3<float>> wi, std::size_t first, std::vector<Pair>& pairs) {
+    pairs.clear();
+    for (const SurfaceRun& run : scene.runs)
+        for (std::size_t i = 0; i < run.rows; ++i) pairs.push_back({run.wo, widen(wi[first + pairs.size()])});
+}
+
 class ExternalTechnique : public Technique {
 public:
-    explicit ExternalTechnique(std::shared_ptr<const ExternalSampler> sampler) : sampler_(std::move(sampler)) {}
-    int numbers() const override { return sampler_->numbers(); }
+    explicit ExternalTechnique(std::shared_ptr<const SamplerAdapter> sampler)
+        : sampler_(std::move(sampler)), declaration_(sampler_->declaration()) {}
+    int numbers() const override { return declaration_.traits.own_numbers(); }
 
     void draw(const PointRows& point_rows, std::span<const double> u, std::span<PointDraw> out) const override {
         const auto count = static_cast<std::size_t>(numbers());
-        std::vector<Vec3<double>> wi;
-        std::vector<double> pdf;
-        in_batches(*sampler_, point_rows, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
-            wi.resize(rows);
-            pdf.resize(rows);
-            ExternalBatch with_numbers = batch;
-            with_numbers.u = u.subspan(first * count, rows * count);
-            sampler_->draw(with_numbers, {wi, pdf});
-            for (std::size_t i = 0; i < rows; ++i) out[first + i] = usable(wi[i], pdf[i]);
+        std::vector<Draw> draws;
+        in_batches(declaration_, point_rows, [&](const SceneRows& scene, std::size_t first, std::size_t rows) {
+            draws.resize(rows);
+            sampler_->evaluate({.kind = SamplerQuery::Kind::sample,
+                                   .u = {u.subspan(first * count, rows * count), count},
+                                   .scene = &scene},
+                {.draws = draws});
+            for (std::size_t i = 0; i < rows; ++i) out[first + i] = usable(draws[i]);
         });
     }
     void density(const PointRows& point_rows, std::span<const Vec3<float>> wi, std::span<double> out) const override {
-        std::vector<Vec3<double>> directions;
-        in_batches(*sampler_, point_rows, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
-            directions.clear();
-            for (const Vec3<float>& w : wi.subspan(first, rows)) directions.push_back(widen(w));
-            sampler_->density(batch, directions, out.subspan(first, rows));
+        std::vector<Pair> pairs;
+        in_batches(declaration_, point_rows, [&](const SceneRows& scene, std::size_t first, std::size_t rows) {
+            set_pairs(scene, wi, first, pairs);
+            sampler_->evaluate({.kind = SamplerQuery::Kind::pdf, .pairs = pairs, .scene = &scene},
+                {.values = out.subspan(first, rows)});
         });
         for (double& p : out)
             if (!(p >= 0 && p <= std::numeric_limits<float>::max())) p = not_usable;
     }
 
 private:
-    static PointDraw usable(const Vec3<double>& wi, double p) {
-        if (p == 0) return {};
-        if (!is_usable(wi, p)) return {{0, 0, 1}, not_usable};
-        return {as<float>(wi), p};
+    static PointDraw usable(const Draw& draw) {
+        if (draw.pdf == 0) return {};
+        if (!is_usable(draw.wi, draw.pdf)) return {{0, 0, 1}, not_usable};
+        return {as<float>(draw.wi), draw.pdf};
     }
 
-    std::shared_ptr<const ExternalSampler> sampler_;
+    std::shared_ptr<const SamplerAdapter> sampler_;
+    SamplerDeclaration declaration_;
 };
 
 class MixtureTechnique : public Technique {
@@ -193,22 +201,24 @@ int most_numbers(const Techniques& parts) {
     return largest;
 }
 
-std::shared_ptr<const Technique> external_technique(std::shared_ptr<const ExternalSampler> sampler) {
-    if (!sampler->has_density())
+std::shared_ptr<const Technique> external_technique(std::shared_ptr<const SamplerAdapter> sampler) {
+    if (!sampler->traits().has_pdf)
         throw OutputError(
             "'" + sampler->name() + "' has no pdf of a direction, which a combination needs: expected a function pdf");
     return std::make_shared<ExternalTechnique>(std::move(sampler));
 }
 
-void external_weights(const ExternalSampler& sampler, const PointRows& point_rows, std::span<const Vec3<float>> wi,
+void external_weights(const SamplerAdapter& sampler, const PointRows& point_rows, std::span<const Vec3<float>> wi,
     std::span<const double> p, std::span<double> out) {
     const std::size_t of_row = wi.empty() ? 0 : p.size() / wi.size();
-    std::vector<Vec3<double>> directions;
-    in_batches(sampler, point_rows, [&](const ExternalBatch& batch, std::size_t first, std::size_t rows) {
-        directions.clear();
-        for (const Vec3<float>& w : wi.subspan(first, rows)) directions.push_back(widen(w));
-        sampler.weigh(
-            batch, directions, p.subspan(first * of_row, rows * of_row), out.subspan(first * of_row, rows * of_row));
+    std::vector<Pair> pairs;
+    in_batches(sampler.declaration(), point_rows, [&](const SceneRows& scene, std::size_t first, std::size_t rows) {
+        set_pairs(scene, wi, first, pairs);
+        sampler.evaluate({.kind = SamplerQuery::Kind::weigh,
+                             .pairs = pairs,
+                             .scene = &scene,
+                             .densities = p.subspan(first * of_row, rows * of_row)},
+            {.values = out.subspan(first * of_row, rows * of_row)});
     });
 }
 
@@ -317,7 +327,7 @@ LocalLight<double> local_light(const LightArrays& arrays, std::size_t index) {
     return out;
 }
 
-ExternalLightAt disk_at(const DiskArrays& disk, std::size_t index) {
+LightAtPoint disk_at(const DiskArrays& disk, std::size_t index) {
     const Vec3d center{double(disk.cx[index]), double(disk.cy[index]), double(disk.cz[index])};
     const Vec3d normal{double(disk.nx[index]), double(disk.ny[index]), double(disk.nz[index])};
     return {.center = center,
@@ -327,8 +337,8 @@ ExternalLightAt disk_at(const DiskArrays& disk, std::size_t index) {
         .shines = shines_flat(center, normal, static_cast<double>(disk.radius), disk.two_sided)};
 }
 
-template <class Kind> ExternalLightAt light_at(const LocalLight<double>& light) {
-    ExternalLightAt out{light.a, {}, {}, {}, Kind::shines(light)};
+template <class Kind> LightAtPoint light_at(const LocalLight<double>& light) {
+    LightAtPoint out{light.a, {}, {}, {}, Kind::shines(light)};
     if constexpr (requires { Kind::half_edges(light); }) {
         const auto [u, v] = Kind::half_edges(light);
         out.edge_u = u;
@@ -340,8 +350,8 @@ template <class Kind> ExternalLightAt light_at(const LocalLight<double>& light) 
 
 }  // namespace
 
-std::vector<ExternalLight> lights_of(const ShadingPoints& shading_points) {
-    std::vector<ExternalLight> out;
+std::vector<SceneLight> lights_of(const ShadingPoints& shading_points) {
+    std::vector<SceneLight> out;
     if (shading_points.count == 0) return out;
     for (const DiskArrays& disk : shading_points.disks)
         out.push_back({lights::Disk::name, disk.radiance, static_cast<double>(disk.radius)});
@@ -352,13 +362,13 @@ std::vector<ExternalLight> lights_of(const ShadingPoints& shading_points) {
     return out;
 }
 
-void add_lights_at(const ShadingPoints& shading_points, std::size_t index, std::vector<ExternalLightAt>& to) {
+void add_lights_at(const ShadingPoints& shading_points, std::size_t index, std::vector<LightAtPoint>& to) {
     for (const DiskArrays& disk : shading_points.disks) to.push_back(disk_at(disk, index));
     for (const LightArrays& arrays : shading_points.others)
         with_light_kind(arrays.kind, [&]<class Kind>() { to.push_back(light_at<Kind>(local_light(arrays, index))); });
 }
 
-ExternalRun run_at(const ShadingPoints& points, std::size_t index, Vec3<double> wo, std::size_t rows) {
+SurfaceRun run_at(const ShadingPoints& points, std::size_t index, Vec3<double> wo, std::size_t rows) {
     const Rgb& lambert = points.lambert[index];
     return {.wo = wo,
         .surface = {.s = double(points.s[index]),

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "render/shading_points.h"
-#include "samplers/external_sampler.h"
 #include "samplers/sampler.h"
+#include "samplers/sampler_adapter.h"
 #include "samplers/weight_formula.h"
 
 namespace crescent {
@@ -58,9 +58,9 @@ int most_numbers(const Techniques& parts);
 /// A sampler of samplers/all.h with one direction a sample, in scalar code.
 std::shared_ptr<const Technique> built_in_technique(std::string_view sampler);
 /// Throws OutputError if the sampler cannot evaluate its density.
-std::shared_ptr<const Technique> external_technique(std::shared_ptr<const ExternalSampler> sampler);
+std::shared_ptr<const Technique> external_technique(std::shared_ptr<const SamplerAdapter> sampler);
 /// Writes the sampler's weights for each wi, [row][K], from the densities p, [row][K].
-void external_weights(const ExternalSampler& sampler, const PointRows& rows, std::span<const Vec3<float>> wi,
+void external_weights(const SamplerAdapter& sampler, const PointRows& rows, std::span<const Vec3<float>> wi,
     std::span<const double> p, std::span<double> out);
 /// p = sum_k weight_k p_k: u[0] chooses a part and is stretched back to (0, 1).
 std::shared_ptr<const Technique> mixture_technique(Techniques parts, WeightList weights);
@@ -85,13 +85,13 @@ void draw_chosen(const Techniques& parts, const PointRows& rows, std::span<const
 // ---- What samplers from outside receive of shading points, and which of their draws are usable.
 
 /// Every light, in the scene's order; empty where there is none or no point.
-std::vector<ExternalLight> lights_of(const ShadingPoints& shading_points);
+std::vector<SceneLight> lights_of(const ShadingPoints& shading_points);
 
 /// Appends each of these lights as shading point `index` sees it.
-void add_lights_at(const ShadingPoints& shading_points, std::size_t index, std::vector<ExternalLightAt>& to);
+void add_lights_at(const ShadingPoints& shading_points, std::size_t index, std::vector<LightAtPoint>& to);
 
 /// Rows at shading point `index`.
-ExternalRun run_at(const ShadingPoints& shading_points, std::size_t index, Vec3<double> wo, std::size_t rows);
+SurfaceRun run_at(const ShadingPoints& shading_points, std::size_t index, Vec3<double> wo, std::size_t rows);
 
 /// A draw is usable if its direction is of unit length to 1e-4 and its pdf is above 0 and finite also in single
 /// precision, in which the estimate is computed. pdf 0, which means that nothing was drawn, is for the caller.

@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "base/text.h"
 #include "check/sources/cases.h"
+#include "check/sources/decorators.h"
 #include "math/functions.h"
 #include "math/simd/random.h"
 #include "render/combination.h"
@@ -207,8 +208,8 @@ private:
 CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
     CaseLighting out;
     out.fill = luminance(scene.fill());
-    const std::vector<ExternalLight> lights = lights_of(points);
-    std::vector<ExternalLightAt> seen;
+    const std::vector<SceneLight> lights = lights_of(points);
+    std::vector<LightAtPoint> seen;
     add_lights_at(points, 0, seen);
     for (std::size_t k = 0; k < lights.size(); ++k) {
         if (!seen[k].shines) continue;
@@ -346,10 +347,8 @@ private:
     std::shared_ptr<const SamplerAdapter> adapter_at(const Point& point) const {
         const ArmPlan* arm = experiment_.find_arm(sampler_);
         if (const auto found = outside_.find(sampler_); found != outside_.end()) {
-            if (found->second->as_combination()) {
-                const std::shared_ptr<const Combination> c(found->second, found->second->as_combination());
-                return limited_in_time(combined_at(point, c), seconds_);
-            }
+            if (const auto combination = std::dynamic_pointer_cast<const Combination>(found->second))
+                return limited_in_time(combined_at(point, combination), seconds_);
             return std::make_shared<OneTechnique>(sampler_, point, limited_, external_technique(found->second));
         }
         const std::string name = arm ? arm->sampler : sampler_;

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "experiment/experiment.h"
-#include "samplers/external_sampler.h"
+#include "samplers/sampler_adapter.h"
 
 namespace crescent {
 

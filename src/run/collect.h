@@ -10,7 +10,7 @@
 #include "metrics/metrics.h"
 #include "report/report.h"
 #include "run/execute.h"
-#include "samplers/external_sampler.h"
+#include "samplers/sampler_adapter.h"
 
 namespace crescent {
 

@@ -18,7 +18,7 @@
 #include "render/tiles.h"
 #include "run/backend.h"
 #include "run/plan.h"
-#include "samplers/external_sampler.h"
+#include "samplers/sampler_adapter.h"
 #include "scene/scene.h"
 
 namespace crescent {

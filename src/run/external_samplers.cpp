@@ -17,51 +17,31 @@ namespace crescent {
 
 namespace {
 
-/// What it throws names the arm.
-class Named : public ExternalSampler {
-public:
-    Named(std::string arm, std::shared_ptr<const ExternalSampler> sampler)
-        : arm_(std::move(arm)), of_(std::move(sampler)) {}
-    std::string name() const override { return of_->name(); }
-    int numbers() const override { return of_->numbers(); }
-    std::size_t batch_rows() const override { return of_->batch_rows(); }
-    bool uses_lights() const override { return of_->uses_lights(); }
-    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
-        named([&] { of_->draw(batch, out); });
-    }
-    bool has_density() const override { return of_->has_density(); }
-    void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
-        named([&] { of_->density(batch, wi, out); });
-    }
-
-private:
-    template <class Call> void named(Call&& call) const {
-        try {
-            call();
-        } catch (const SamplerError& fault) {
-            throw OutputError(fmt::format("the arm '{}' terminated: {}", arm_, fault.what()));
-        }
-    }
-
-    std::string arm_;
-    std::shared_ptr<const ExternalSampler> of_;
-};
+/// The sampler of an arm, which its errors name.
+std::shared_ptr<const SamplerAdapter> named_arm(const std::string& arm, std::shared_ptr<const SamplerAdapter> sampler) {
+    return std::make_shared<DecoratedSampler>(
+        std::move(sampler), [arm](const SamplerAdapter& inner, const SamplerQuery& query, const SamplerAnswers& out) {
+            try {
+                inner.evaluate(query, out);
+            } catch (const SamplerError& fault) {
+                throw OutputError(fmt::format("the arm '{}' terminated: {}", arm, fault.what()));
+            }
+        });
+}
 
 /// Copies of a program, each a process that answers one batch at a time. Another one starts when a batch finds all of
 /// them at work, one for each thread at most.
-class Copies : public ExternalSampler {
+class Copies : public SamplerAdapter {
 public:
-    using Start = std::function<std::shared_ptr<const ProgramSampler>()>;
+    using Start = std::function<std::shared_ptr<const SamplerAdapter>()>;
     explicit Copies(Start start) : start_(std::move(start)), first_(start_()), free_{first_} {}
-    std::string name() const override { return first_->name(); }
-    int numbers() const override { return first_->numbers(); }
-    std::size_t batch_rows() const override { return first_->batch_rows(); }
-    bool uses_lights() const override { return first_->uses_lights(); }
-    bool has_density() const override { return first_->has_density(); }
-    Traits traits() const { return first_->traits(); }
-    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override { Taken(*this)->draw(batch, out); }
-    void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
-        Taken(*this)->density(batch, wi, out);
+    SamplerDeclaration declaration() const override {
+        SamplerDeclaration out = first_->declaration();
+        out.serial = false;
+        return out;
+    }
+    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
+        Taken(*this)->evaluate(query, out);
     }
 
 private:
@@ -75,18 +55,18 @@ private:
         }
         Taken(const Taken&) = delete;
         Taken& operator=(const Taken&) = delete;
-        const ProgramSampler* operator->() const { return program_.get(); }
+        const SamplerAdapter* operator->() const { return program_.get(); }
 
     private:
         const Copies& from_;
-        std::shared_ptr<const ProgramSampler> program_;
+        std::shared_ptr<const SamplerAdapter> program_;
     };
 
-    std::shared_ptr<const ProgramSampler> take() const {
+    std::shared_ptr<const SamplerAdapter> take() const {
         {
             const std::lock_guard<std::mutex> guard(lock_);
             if (!free_.empty()) {
-                std::shared_ptr<const ProgramSampler> program = std::move(free_.back());
+                std::shared_ptr<const SamplerAdapter> program = std::move(free_.back());
                 free_.pop_back();
                 return program;
             }
@@ -95,9 +75,9 @@ private:
     }
 
     Start start_;
-    std::shared_ptr<const ProgramSampler> first_;
+    std::shared_ptr<const SamplerAdapter> first_;
     mutable std::mutex lock_;
-    mutable std::vector<std::shared_ptr<const ProgramSampler>> free_;
+    mutable std::vector<std::shared_ptr<const SamplerAdapter>> free_;
 };
 
 /// An estimate divides f cos by the density of the drawn direction: a sampler without one cannot be used as an arm.
@@ -109,8 +89,7 @@ void refuse(const Traits& traits) {
     if (!traits.has_pdf) throw OutputError("it has no pdf to divide by");
 }
 
-std::shared_ptr<const ExternalSampler> open(
-    const ArmPlan& arm, const Experiment& experiment, const PipeLimits& limits) {
+std::shared_ptr<const SamplerAdapter> open(const ArmPlan& arm, const Experiment& experiment, const PipeLimits& limits) {
     try {
         if (arm.plugin) return open_plugin(*arm.plugin, limits);
         const auto copies = std::make_shared<Copies>([arm, limits] {
@@ -137,7 +116,7 @@ ExternalSamplers open_external(const Experiment& experiment, double timeout_s, E
     limits.limit_answers(timeout_s);
     for (const ArmPlan& arm : experiment.arms)
         if (arm.is_external() && !given.contains(arm.name))
-            given[arm.name] = std::make_shared<Named>(arm.name, open(arm, experiment, limits));
+            given[arm.name] = named_arm(arm.name, open(arm, experiment, limits));
     add_combinations(experiment, given);
     return given;
 }

@@ -11,11 +11,11 @@ namespace external_samplers_test {
 
 using ::testing::HasSubstr;
 
-class Fixed : public ExternalSampler {
+class Fixed : public SamplerSource {
 public:
     std::string name() const override { return "fixed"; }
-    int numbers() const override { return 2; }
-    void draw(const ExternalBatch&, const ExternalDraws&) const override {}
+    void sample(int, Vec3d, std::span<const PrimarySample>, std::span<Draw>) const override {}
+    void pdf(int, std::span<const Pair>, std::span<double>) const override {}
 };
 
 /// The small scene with the arm "mine".

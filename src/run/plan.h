@@ -12,7 +12,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "experiment/experiment.h"
-#include "samplers/external_sampler.h"
+#include "samplers/sampler_adapter.h"
 #include "scene/scene.h"
 
 namespace crescent {
@@ -23,7 +23,7 @@ struct Job {
     std::vector<std::uint64_t> n;  // ascending
     double s = 0;
     std::uint32_t seed = 0;
-    std::shared_ptr<const ExternalSampler> outside = {};  // set by execute() if the arm is not built in
+    std::shared_ptr<const SamplerAdapter> outside = {};  // set by execute() if the arm is not built in
 };
 
 /// A part of an experiment's series of seeds, counted from 1, both ends included; last = 0: to the end of the series.

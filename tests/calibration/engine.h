@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "check/verdict.h"
 
 namespace crescent::calibration {

@@ -6,7 +6,7 @@
 
 #include "base/errors.h"
 #include "base/text.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "tests/calibration/engine.h"
 
 #define CRESCENT_ENGINES(engine) engine(engine_0_2)
@@ -19,35 +19,16 @@ CRESCENT_ENGINES(CRESCENT_DECLARED)
 
 namespace {
 
-class Counted : public ForwardingAdapter {
-public:
-    using Count = std::shared_ptr<std::atomic<std::uint64_t>>;
-    Counted(std::shared_ptr<const SamplerAdapter> inner, Count count)
-        : ForwardingAdapter(std::move(inner)), count_(std::move(count)) {}
-    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        *count_ += u.size();
-        inner().sample(t, wo, u, out);
-    }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        *count_ += at.size();
-        inner().pdf(t, at, out);
-    }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        *count_ += at.size();
-        inner().exact_pdf(t, at, out);
-    }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        *count_ += at.size();
-        inner().f(at, out);
-    }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        *count_ += at.size();
-        inner().f_channels(at, out);
-    }
+using Count = std::shared_ptr<std::atomic<std::uint64_t>>;
 
-private:
-    Count count_;
-};
+/// The sampler, whose answers are counted.
+std::shared_ptr<const SamplerAdapter> counted(std::shared_ptr<const SamplerAdapter> sampler, const Count& count) {
+    return std::make_shared<DecoratedSampler>(
+        std::move(sampler), [count](const SamplerAdapter& inner, const SamplerQuery& query, const SamplerAnswers& out) {
+            if (query.is_counted()) *count += query.rows();
+            inner.evaluate(query, out);
+        });
+}
 
 double cpu_seconds() {
     double out = 0;
@@ -95,7 +76,7 @@ Result measured(
             if (t.baseline) continue;  // it evaluates only f of a sampler whose calls are counted already
             ++wo;
             auto& one = counted[t.adapter.get()];
-            if (!one) one = std::make_shared<Counted>(t.adapter, count);
+            if (!one) one = counted(t.adapter, count);
             t.adapter = one;
         }
         out = engine.run(all, request);

@@ -11,7 +11,7 @@
 
 #include "base/errors.h"
 #include "check/sources/external.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "math/statistics.h"
 #include "tests/calibration/records.h"
 #include "tests/calibration/serve.h"

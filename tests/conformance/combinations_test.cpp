@@ -146,7 +146,7 @@ TEST(Combinations, HaveTheBitsOfAnyNumberOfThreadsAndOfAPrefix) {
 TEST(Combinations, StateTheirCost) {
     const auto cost = [](const std::string& declared) {
         const Experiment e = with("[arms.tested]\n" + declared + "\n");
-        return open_external(e).at("tested")->as_combination()->cost();
+        return combination_of(open_external(e).at("tested").get())->cost();
     };
     const SampleCost every = cost("kind = \"mis\"\nof = [\"cosine\", \"light-area\"]\nsamples = [1, 3]");
     EXPECT_EQ(every.directions, 4u);

@@ -22,7 +22,7 @@ struct Factor {
 
 /// A correct sampler whose results are multiplied by a random number of mean 1; its draws keep their own pdf, times
 /// another.
-class Estimating : public SamplerAdapter {
+class Estimating : public SamplerSource {
 public:
     SyntheticSampler right;
     Factor factor;

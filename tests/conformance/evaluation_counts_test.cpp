@@ -10,7 +10,8 @@
 #include "check/check.h"
 #include "check/report/print.h"
 #include "check/sources/cases.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/decorators.h"
+#include "check/sources/check_case.h"
 #include "check/user.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/faulty/planted.h"
@@ -21,7 +22,7 @@ namespace crescent {
 namespace evaluation_counts_test {
 
 /// A sampler with the restrictions of a program behind a pipe: a single thread queries it, and its queries are counted.
-class Counted : public SamplerAdapter {
+class Counted : public SamplerSource {
 public:
     explicit Counted(std::shared_ptr<const SamplerAdapter> inner) : inner_(std::move(inner)) {}
     std::string name() const override { return inner_->name(); }
@@ -117,25 +118,20 @@ TEST(Programs, AreAskedNoMoreWhereNothingIsSettled) {
 }
 
 /// A program that mixes up the rows of its blocks: of draws, of pdf(w) or of f(w).
-class Mixed : public ForwardingAdapter {
+class Mixed : public DecoratedSampler {
 public:
     enum class Answers { draws, pdf, f };
     enum class How { last_repeated, first_two_exchanged, late_rows_of_long_blocks };
     Mixed(std::shared_ptr<const SamplerAdapter> sampler, Answers answers, How how)
-        : ForwardingAdapter(std::move(sampler)), answers_(answers), how_(how) {}
-    bool serial() const override { return true; }
-    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        inner().sample(t, wo, u, out);
-        if (answers_ == Answers::draws) mix(out);
-    }
-    void pdf(int t, std::span<const Pair> at, std::span<double> out) const override {
-        inner().pdf(t, at, out);
-        if (answers_ == Answers::pdf) mix(out);
-    }
-    void exact_pdf(int t, std::span<const Pair> at, std::span<double> out) const override { pdf(t, at, out); }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        inner().f(at, out);
-        if (answers_ == Answers::f) mix(out);
+        : DecoratedSampler(std::move(sampler), {}, [](SamplerDeclaration& d) { d.serial = true; }),
+          answers_(answers),
+          how_(how) {}
+    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
+        using Kind = SamplerQuery::Kind;
+        inner().evaluate(query, out);
+        if (answers_ == Answers::draws) mix(out.draws);
+        if (answers_ == Answers::pdf && (query.kind == Kind::pdf || query.kind == Kind::exact_pdf)) mix(out.values);
+        if (answers_ == Answers::f && query.kind == Kind::f) mix(out.values);
     }
 
 private:

@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "check/estimate/chart.h"
-#include "check/sources/sampler_adapter.h"
+#include "samplers/domains/sphere_chart.h"
+#include "check/sources/check_case.h"
 #include "math/simd/frame.h"
 
 namespace crescent::check {
@@ -31,7 +31,7 @@ inline double power_pdf(Vec3d axis, double s, Vec3d w) {
     return c > 0 ? (s + 1) / two_pi * math::exp(s * math::log(c)) : 0;
 }
 
-struct FunctionSampler : SamplerAdapter {
+struct FunctionSampler : SamplerSource {
     std::function<Vec3d(Vec3d wo, const PrimarySample& u)> draw = cosine_draw;  // {}: no sample
     std::function<double(Vec3d wo, Vec3d wi)> p = cosine_pdf;
     std::function<double(Vec3d wo, Vec3d wi)> f_value{};          // none: without f

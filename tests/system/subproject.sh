@@ -64,7 +64,7 @@ fields() { # TYPE HEADER
 {
     printf '#include <crescent/check.h>\n#include <crescent/gtest.h>\n'
     count=0
-    for type in TestSettings:check/check.h Traits:check/sources/sampler_adapter.h; do
+    for type in TestSettings:check/check.h Traits:samplers/traits.h; do
         for field in $(fields "${type%:*}" "${type#*:}"); do
             printf 'crescent::%s field_%d{.%s = {}};\n' "${type%:*}" $((++count)) "$field"
         done

@@ -27,7 +27,7 @@ struct Stage {
     /// compared with its reference value.
     static double of_f(const Source& source, const Look& first, double draws) {
         if (!source.has_f()) return 0;
-        return first.points + draws * (source.adapter.has_true_f() ? 2 : 1);
+        return first.points + draws * (source.declaration.has_true_f ? 2 : 1);
     }
     void extend(Source& source, const Plan& plan, Look to, std::uint32_t of_f, StreamKey key, int look) {
         to.points = std::max(to.points, done.points + 2 * static_cast<std::uint32_t>(plan.tree.leaves().size()));

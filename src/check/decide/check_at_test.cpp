@@ -11,7 +11,7 @@ namespace crescent::check {
 namespace check_at_test {
 
 /// A cosine sampler with one fault.
-struct Cosine : SamplerAdapter {
+struct Cosine : SamplerSource {
     double factor = 1, leak = 0, hole = 0;  // factor on pdf; share of uniform draws; mass of a cap that is never drawn
     double turn = 1;                        // share of the circle over which azimuths are drawn
     bool nothing = false, elsewhere = false;
@@ -115,7 +115,7 @@ TEST(CheckAtOneWo, FindsFaultsOfTheStatedSizes) {
 }
 
 /// Counts every call. p: a noisy sky, a cosine with a spike of 1/10 of the draws, or a cosine; f = p pi if it has one.
-struct Counted : SamplerAdapter {
+struct Counted : SamplerSource {
     enum Shape { cosine, noise, spike } shape;
     bool with_f, leaks;
     mutable std::uint64_t calls = 0;

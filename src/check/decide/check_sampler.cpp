@@ -15,7 +15,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "check/constants.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent::check {
 

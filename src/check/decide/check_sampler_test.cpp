@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {

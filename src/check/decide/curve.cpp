@@ -63,7 +63,7 @@ struct Derivatives {
 
 std::optional<SmallFault> draws_on_curve(Source& source, const StreamKey& key) {
     const int numbers = source.traits.numbers;
-    if (source.traits.own_random || !source.adapter.can_draw() || numbers < 2 || !source.has_density()) return {};
+    if (source.traits.own_random || !source.declaration.can_draw || numbers < 2 || !source.has_density()) return {};
     std::vector<PrimarySample> u = first_numbers(key, tested, source.traits), around;
     for (PrimarySample& x : u) {
         for (int k = 0; k < numbers; ++k) x[k] = std::clamp(x[k], 2 * step, 1 - 2 * step);

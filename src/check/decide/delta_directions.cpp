@@ -44,7 +44,7 @@ std::vector<Draw> drawn_at(const Source& source, Vec3d wo, std::uint32_t n, cons
 /// Whether the direction rotates with w_o about n, as at a flat boundary.
 bool turns_with_wo(const Source& source, Vec3d wi, const StreamKey& key) {
     constexpr double angle = 2.4;  // radians; no symmetry of a pattern
-    if (!source.adapter.can_draw()) return false;
+    if (!source.declaration.can_draw) return false;
     const math::SinCos rotation = math::sincos(angle);
     const auto turned = [&](Vec3d w) {
         return Vec3d{rotation.cos * w.x - rotation.sin * w.y, rotation.sin * w.x + rotation.cos * w.y, w.z};
@@ -147,7 +147,7 @@ std::optional<SmallFault> reverse_power_fault(
 std::optional<SmallFault> reverse_path(
     const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key) {
     const Traits& traits = source.traits;
-    if (!traits.reciprocal || !traits.has_surface() || !source.adapter.can_draw()) return {};
+    if (!traits.reciprocal || !traits.has_surface() || !source.declaration.can_draw) return {};
     for (const DeltaPart& p : parts) {
         if (p.wi.z < grazing_cosine && (traits.wo != Traits::WoDomain::both || p.wi.z > -grazing_cosine)) continue;
         // Of the same kind: reflected if w_i is a reflection of w_o, else transmitted.

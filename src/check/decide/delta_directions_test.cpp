@@ -10,7 +10,7 @@ namespace crescent::check {
 namespace delta_directions_test {
 
 /// A specular coat that is chosen with probability q, over Lambert of albedo `base`.
-struct Coat : SamplerAdapter {
+struct Coat : SamplerSource {
     double q = 0.3, chosen = 0.3, base = 0.5, mirrored_share = 0.2;
     double of_other_draws = 1;  // factor on the weight of every second draw of the part
     Vec3d turned{-1, -1, 1};    // reflected direction in units of w_o
@@ -98,7 +98,7 @@ TEST(DeltaPartsOfASampler, ReturnAlongTheReversePath) {
 }
 
 /// Smooth glass that reflects 0.1 and refracts by the index `drawn`, where 1.5 is stated.
-struct Boundary : SamplerAdapter {
+struct Boundary : SamplerSource {
     double drawn = 1.5;
     std::string name() const override { return "boundary"; }
     Traits traits() const override {

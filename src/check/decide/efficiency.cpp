@@ -11,7 +11,7 @@
 #include "check/constants.h"
 #include "check/decide/check_at.h"
 #include "check/estimate/observations.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "math/functions.h"
 
 namespace crescent::check {

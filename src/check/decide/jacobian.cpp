@@ -278,7 +278,7 @@ Round test_points(Source& source, const StreamKey& key) {
 
 std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
     std::vector<MapDensity> out;
-    if (source.traits.own_random || !source.adapter.can_draw() || source.traits.numbers < 2 ||
+    if (source.traits.own_random || !source.declaration.can_draw || source.traits.numbers < 2 ||
         source.traits.numbers > 3)
         return out;
     const std::vector<PrimarySample> u = first_numbers(key, points, source.traits);

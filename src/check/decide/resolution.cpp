@@ -26,7 +26,7 @@ Values values_at(Source& source, const Plan& plan, Vec3d w) {
 
 ResolutionEffect resolution_effect(Source& source, const Plan& plan, StreamKey key) {
     ResolutionEffect out;
-    if (source.traits.u_bits != 24 || source.traits.own_random || !source.adapter.can_draw()) return out;
+    if (source.traits.u_bits != 24 || source.traits.own_random || !source.declaration.can_draw) return out;
     key.purpose = Purpose::corners;
     key.part = 24;
     const std::vector<PrimarySample> u = first_numbers(key, moved_draws, source.traits);

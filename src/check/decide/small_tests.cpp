@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "check/constants.h"
-#include "check/estimate/chart.h"
+#include "samplers/domains/sphere_chart.h"
 
 namespace crescent::check {
 
@@ -113,7 +113,7 @@ std::optional<SmallFault> rows_of_file(const Source& source) {
 }
 
 std::optional<SmallFault> corners_of_u(Source& source) {
-    if (!source.adapter.can_draw()) return {};
+    if (!source.declaration.can_draw) return {};
     const std::vector<PrimarySample> u = corner_numbers(source.traits.numbers);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
@@ -144,7 +144,7 @@ template <class Call> void in_blocks(const Call& call) {
 }  // namespace
 
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
-    if (source.traits.own_random || !source.adapter.can_draw()) return {};
+    if (source.traits.own_random || !source.declaration.can_draw) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, rows_in_blocks);
     std::vector<Draw> together(u.size()), again(u.size()), backwards(u.size());
     source.draw(u, together);
@@ -174,7 +174,7 @@ std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
 }
 
 std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& key) {
-    if (!source.adapter.can_draw()) return {};
+    if (!source.declaration.can_draw) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, rows_in_blocks);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
@@ -228,7 +228,7 @@ std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& ke
 
 std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
     std::vector<int> out;
-    if (source.traits.own_random || !source.adapter.can_draw()) return out;
+    if (source.traits.own_random || !source.declaration.can_draw) return out;
     const std::vector<PrimarySample> u = some_numbers(source, key, 64);
     std::vector<Draw> draws(u.size()), others(u.size());
     source.draw(u, draws);
@@ -245,7 +245,7 @@ std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
 
 std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     // With more than two numbers, one may choose a texel and others the place in it.
-    if (source.traits.numbers > 2 || source.traits.own_random || !source.adapter.can_draw()) return {};
+    if (source.traits.numbers > 2 || source.traits.own_random || !source.declaration.can_draw) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, 64);
     const auto draws_moved_by = [&](int k, double shift) {
         std::vector<PrimarySample> v = u;

@@ -11,7 +11,7 @@ namespace tail_test {
 
 /// p ~ cos^s about n, mixed with a share of cosine; f is Lambert of albedo 1. Without the cosine the weights are u^-k,
 /// k = (s - 1) / (s + 1).
-struct PowerLobe : SamplerAdapter {
+struct PowerLobe : SamplerSource {
     double s = 1, share = 0;
     std::string name() const override { return "power"; }
     Traits traits() const override {

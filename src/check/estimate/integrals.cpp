@@ -111,7 +111,7 @@ public:
             p_.resize(w_.size());
             f_.assign(w_.size(), {});
             source_.density(w_, p_);
-            if (of_f_) source_.f_cos(w_, f_, source_.adapter.has_true_f());
+            if (of_f_) source_.f_cos(w_, f_, source_.declaration.has_true_f);
             mis_.assign(w_.size(), 1);
             if (of_f_ && source_.adapter.techniques() > 1) source_.mis_weights(w_, mis_);
             measure_rounding(std::span(grids).subspan(first, last - first));
@@ -126,7 +126,7 @@ public:
 private:
     Source& source_;
     const Plan& plan_;
-    bool of_f_, tabulated_ = !source_.adapter.can_draw();
+    bool of_f_, tabulated_ = !source_.declaration.can_draw;
     Stream stream_;
     Integrals out_;
     std::vector<ChartPoint> chart_;  // of w_
@@ -213,7 +213,7 @@ private:
         p_.resize(w_.size());
         f_.assign(w_.size(), {});
         source_.density(w_, p_);
-        source_.f_cos(w_, f_, source_.adapter.has_true_f());
+        source_.f_cos(w_, f_, source_.declaration.has_true_f);
         LightIntegrals& l = out_.light;
         for (std::size_t j = 0; j < per_point.size(); ++j) {
             const double a = lost_at(2 * j), b = lost_at(2 * j + 1), k = per_point[j];

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "check/estimate/chart.h"
+#include "samplers/domains/sphere_chart.h"
 #include "check/estimate/plan.h"
 
 namespace crescent::check {

@@ -12,7 +12,7 @@ namespace crescent::check {
 namespace integrals_test {
 
 /// Half vectors by GGX in arithmetic of type F, for one roughness; p = D m.z / (4 w_o.m).
-template <class F> struct HalfVector : SamplerAdapter {
+template <class F> struct HalfVector : SamplerSource {
     static constexpr F alpha2 = F(0.04);
     std::string name() const override { return "GGX"; }
     Traits traits() const override {

@@ -266,7 +266,7 @@ private:
 
     /// Weights of the draws: returned by the sampler, else f cos / pdf. Compares both and adds to the mean.
     void compare_weights(std::span<const PrimarySample> u, int set) {
-        const bool evaluated = source_.has_f(), truth = evaluated && source_.adapter.has_true_f();
+        const bool evaluated = source_.has_f(), truth = evaluated && source_.declaration.has_true_f;
         f_.assign(w_.size(), {});
         if (evaluated) source_.f_cos(w_, f_);
         if (truth) {
@@ -378,7 +378,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         if (!source.has_density()) to.weight_leaves.resize(plan.tree.leaves().size());
     }
     Observer observer(source, plan, integrals, to);
-    const bool with_weights = source.has_f() || source.adapter.has_drawn_f();
+    const bool with_weights = source.has_f() || source.declaration.has_drawn_f;
     std::vector<PrimarySample> u;
     StreamKey draws = key;
     draws.purpose = Purpose::draws;
@@ -391,7 +391,7 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         observer.batch(draws, from, u, with_weights && from < of_f);
     }
     if (!to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
-    if (source.traits.own_random || !source.adapter.can_draw()) return;
+    if (source.traits.own_random || !source.declaration.can_draw) return;
     const std::uint32_t evaluations_each = observer.pdf_is_confirmed() || !source.has_density() ? 1 : 2;
     const std::uint32_t first = static_cast<std::uint32_t>(to.scrambled) / replicate_sets,
                         last = std::max(first, look.scrambled / replicate_sets / evaluations_each);
@@ -481,7 +481,7 @@ std::array<double, 3> delta_flux(Source& source, const std::vector<DeltaPart>& p
             else out[c] += carried * flux_factor(source, p.wi, channel);
         }
     if (std::ranges::all_of(onward, [](double v) { return v == 0; })) return out;
-    const bool at_normal = math::hypot(source.wo.x, source.wo.y) < near_normal && source.adapter.can_draw();
+    const bool at_normal = math::hypot(source.wo.x, source.wo.y) < near_normal && source.declaration.can_draw;
     const Vec3d slanted = at_normal ? through_holes(source) : Vec3d{};
     for (std::size_t c = 0; c < channels; ++c) {
         const int channel = static_cast<int>(c);

@@ -12,7 +12,7 @@
 
 #include "check/constants.h"
 #include "check/estimate/budget.h"
-#include "check/estimate/chart.h"
+#include "samplers/domains/sphere_chart.h"
 #include "check/estimate/source.h"
 #include "check/estimate/stream.h"
 

@@ -6,8 +6,9 @@
 #include <fmt/format.h>
 
 #include "check/constants.h"
-#include "check/estimate/chart.h"
-#include "check/sources/sampler_adapter.h"
+#include "samplers/domains/sphere_chart.h"
+#include "check/sources/check_case.h"
+#include "check/sources/decorators.h"
 #include "math/simd/frame.h"
 #include "math/statistics.h"
 
@@ -274,7 +275,7 @@ std::vector<LocalStep> steps_of(Source& source, const std::vector<PrimarySample>
 }  // namespace
 
 std::vector<LocalStep> local_steps(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w) {
-    if (source.traits.own_random || !source.adapter.can_draw()) return {};
+    if (source.traits.own_random || !source.declaration.can_draw) return {};
     const auto first = std::min<std::ptrdiff_t>(draws_to_begin, std::ssize(w));
     const std::vector<LocalStep> some =
         steps_of(source, {u.begin(), u.begin() + first}, {w.begin(), w.begin() + first});
@@ -340,7 +341,7 @@ std::vector<Vec3d> places_of(Source& source, const StreamKey& key) {
 
 EvaluationNoise look_for_noise(Source& source, const StreamKey& key) {
     EvaluationNoise out;
-    if (!source.adapter.can_draw()) return out;  // a file has one answer for each direction
+    if (!source.declaration.can_draw) return out;  // a file has one answer for each direction
     const std::vector<Vec3d> directions = places_of(source, key), near = beside(directions, fine_step),
                              far = beside(directions, coarse_step);
     const SamplerAdapter& sampler = uncached(source.adapter);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "check/estimate/stream.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/recorded_sampler.h"
 
 namespace crescent::check {
 
@@ -26,12 +26,18 @@ struct InvalidAnswers {
 class Source {
 public:
     Source(const SamplerAdapter& adapter, int technique, Vec3d wo, const CaseLighting& light)
-        : adapter(adapter), technique(technique), wo(wo), light(light), traits(adapter.traits()) {}
+        : adapter(adapter),
+          technique(technique),
+          wo(wo),
+          light(light),
+          declaration(adapter.declaration()),
+          traits(declaration.traits) {}
 
     const SamplerAdapter& adapter;
     const int technique;
     const Vec3d wo;
     const CaseLighting& light;
+    const SamplerDeclaration declaration;
     const Traits traits;
     /// Whether p, and f, are random estimates that are right only in the mean: h must not depend on them.
     bool estimates = false, f_estimates = false;
@@ -46,7 +52,7 @@ public:
     bool single() const { return traits.bits == 24; }
     Resolution resolution() const { return resolution_of(traits); }
     bool has_density() const { return traits.has_pdf && !by_draws; }
-    bool has_f() const { return adapter.has_f(); }
+    bool has_f() const { return declaration.has_f; }
     int channels() const { return traits.channels == 3 ? 3 : 1; }
 
     void draw(std::span<const PrimarySample> u, std::span<Draw> out);

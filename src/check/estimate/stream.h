@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <span>
 
-#include "check/estimate/chart.h"
-#include "check/sources/sampler_adapter.h"
+#include "samplers/domains/sphere_chart.h"
+#include "check/sources/check_case.h"
 #include "math/simd/random.h"
 
 namespace crescent::check {

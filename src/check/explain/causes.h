@@ -11,7 +11,7 @@
 
 #include "check/decide/check_sampler.h"
 #include "check/explain/hypothesis.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent::check {
 

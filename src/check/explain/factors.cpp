@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "check/constants.h"
-#include "check/estimate/chart.h"
+#include "samplers/domains/sphere_chart.h"
 #include "math/functions.h"
 #include "math/simd/frame.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent::check {
 
@@ -12,22 +12,17 @@ namespace {
 
 constexpr double least_log = 14;  // nats below the median of p: value for a draw where the density is 0
 
-class Supposed : public ForwardingAdapter {
-public:
-    Supposed(std::shared_ptr<const SamplerAdapter> inner, const Hypothesis& h, double constant)
-        : ForwardingAdapter(std::move(inner)), h_(h), constant_(constant) {}
-    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override { exact_pdf(t, pairs, out); }
-    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
-        h_.density(inner(), t, pairs, out);
-        for (double& v : out) v *= constant_;
-    }
-    bool has_f() const override { return false; }
-    bool has_true_f() const override { return false; }
-
-private:
-    const Hypothesis& h_;
-    double constant_;
-};
+/// The sampler with the supposed density in place of its own. `h` must outlive it.
+DecoratedSampler supposed(std::shared_ptr<const SamplerAdapter> sampler, const Hypothesis& h, double constant) {
+    const auto evaluate = [&h, constant](
+                              const SamplerAdapter& inner, const SamplerQuery& query, const SamplerAnswers& out) {
+        const bool is_density = query.kind == SamplerQuery::Kind::pdf || query.kind == SamplerQuery::Kind::exact_pdf;
+        if (!is_density) return inner.evaluate(query, out);
+        h.density(inner, query.technique, query.pairs, out.values);
+        for (double& v : out.values) v *= constant;
+    };
+    return {std::move(sampler), evaluate, without_f};
+}
 
 /// A look of the size at which the fault was found, after a small look for large differences.
 CheckBudget budget_for(const CheckAt& found, bool few) {
@@ -220,7 +215,7 @@ bool passes(Hypothesis& h, std::span<const Place> places, std::uint32_t seed) {
     for (std::size_t k = 0; k < places.size(); ++k) {
         const Place& place = places[k];
         const auto check = [&](std::uint32_t with) {
-            return checked_again(Supposed(place.check_case->adapter, h, h.constants[k]), place, with);
+            return checked_again(supposed(place.check_case->adapter, h, h.constants[k]), place, with);
         };
         CheckAt c = check(seed);
         if (difference_remains(c) && h.free) {

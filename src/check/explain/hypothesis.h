@@ -44,6 +44,12 @@ double misfit_of(std::span<const Row> rows);
 /// of many (BIC and `least_gain`).
 Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, std::size_t largest_count);
 
+/// For a sampler whose density alone is tested.
+inline void without_f(SamplerDeclaration& declaration) {
+    declaration.has_f = false;
+    declaration.has_true_f = false;
+}
+
 /// Masses of draws and p at a place: p over the density of the draws, from the masses or from the bridge, whichever is
 /// more precise, with its standard error.
 struct MassRatio {

@@ -306,7 +306,7 @@ std::optional<std::string> lobe_sentence(const LobeChooser& chooser, const Share
 }  // namespace
 
 std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key) {
-    if (source.traits.own_random || !source.adapter.can_draw() || source.traits.numbers < 2) return {};
+    if (source.traits.own_random || !source.declaration.can_draw || source.traits.numbers < 2) return {};
     std::vector<PrimarySample> others;
     for (std::uint32_t i = 0; others.size() < settings_of_others && i < 1000; ++i) {
         const PrimarySample u = numbers_at(key, i, source.numbers(), source.resolution());

@@ -40,20 +40,18 @@ struct Warp {
     }
 };
 
-class Warped : public ForwardingAdapter {
-public:
-    Warped(std::shared_ptr<const SamplerAdapter> inner, Warp warp) : ForwardingAdapter(std::move(inner)), warp_(warp) {}
-    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+/// The sampler with this warp of a number, for a test of its density alone.
+DecoratedSampler warped(std::shared_ptr<const SamplerAdapter> sampler, const Warp& warp) {
+    const auto evaluate = [warp](const SamplerAdapter& inner, SamplerQuery query, const SamplerAnswers& out) {
+        std::vector<PrimarySample> room;
+        const std::span<const PrimarySample> u = query.u.samples(room);
         std::vector<PrimarySample> v(u.begin(), u.end());
-        for (PrimarySample& x : v) x[warp_.number] = warp_.of(x[warp_.number]);
-        inner().sample(t, wo, v, out);
-    }
-    bool has_f() const override { return false; }
-    bool has_true_f() const override { return false; }
-
-private:
-    Warp warp_;
-};
+        for (PrimarySample& x : v) x[warp.number] = warp.of(x[warp.number]);
+        query.u = std::span<const PrimarySample>(v);
+        inner.evaluate(query, out);
+    };
+    return {std::move(sampler), evaluate, without_f};
+}
 
 /// Whether the ratio of the map is that of the warp at nine of ten points, and not 1 there.
 bool explains(const Warp& warp, std::span<const Place> places) {
@@ -78,7 +76,7 @@ std::optional<Cause> warp_cause(std::span<const Place> places) {
             for (bool from_one : {false, true}) {
                 const Warp warp{k, power, from_one};
                 if (!explains(warp, places)) continue;
-                const Warped corrected(places[0].check_case->adapter, warp);
+                const DecoratedSampler corrected = warped(places[0].check_case->adapter, warp);
                 if (!follows_density(corrected, places, 1)) continue;
                 return Cause{.factor = "root",
                     .exponent = power,

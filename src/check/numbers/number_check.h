@@ -8,7 +8,7 @@
 
 #include "base/progress.h"
 #include "check/check.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent::check {
 

@@ -12,7 +12,7 @@ namespace crescent::check {
 namespace {
 namespace number_check_test {
 
-class Values : public SamplerAdapter {
+class Values : public SamplerSource {
 public:
     explicit Values(double (*value)(double)) : value_(value) {}
     std::string name() const override { return "values"; }

@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "check/constants.h"
 #include "check/estimate/budget.h"
-#include "check/estimate/chart.h"
+#include "samplers/domains/sphere_chart.h"
 #include "check/estimate/source.h"
 #include "check/estimate/stream.h"
 #include "math/statistics.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent::check {
 

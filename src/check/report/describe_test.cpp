@@ -4,14 +4,14 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "check/estimate/chart.h"
+#include "samplers/domains/sphere_chart.h"
 
 namespace crescent::check {
 namespace describe_test {
 
 /// Uniform over a cone of half angle `angle` about `axis`; a share of the draws is a delta part, another returns no
 /// sample.
-struct ConeOfDraws : SamplerAdapter {
+struct ConeOfDraws : SamplerSource {
     double angle = 0.5, delta = 0, nothing = 0;
     bool cosine = false, below = false;
     std::string name() const override { return "cone"; }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "check/verdict.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"

@@ -6,7 +6,7 @@
 namespace crescent::check {
 namespace verdicts_test {
 
-struct Uniform : SamplerAdapter {
+struct Uniform : SamplerSource {
     double factor = 1;
     explicit Uniform(double by) : factor(by) {}
     std::string name() const override { return "uniform"; }

@@ -1,6 +1,7 @@
 // Every built-in arm on its declared surfaces, or on every lobe; under a fill, disks, a ball or a rectangle; at 8 w_o,
 // or 16 in full mode. --set changes a surface.
 #include "check/sources/cases.h"
+#include "check/sources/decorators.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,7 @@
 
 #include "base/errors.h"
 #include "check/sources/reciprocal_weights.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "math/functions.h"
 
 namespace crescent {
@@ -249,18 +250,29 @@ std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settin
 
 namespace {
 
-/// A built-in arm for a user's BRDF.
-template <template <class> class A> class ForUserBrdf : public BuiltIn<A> {
-public:
-    ForUserBrdf(std::shared_ptr<const SamplerAdapter> owner, Vec3d wo)
-        : BuiltIn<A>({}, wo, {}), owner_(std::move(owner)) {}
-    void f(std::span<const Pair> pairs, std::span<double> out) const override { owner_->f(pairs, out); }
-    bool serial() const override { return owner_->serial(); }
-    bool limited() const override { return owner_->limited(); }
-
-private:
-    std::shared_ptr<const SamplerAdapter> owner_;
-};
+/// A built-in arm with a user's f.
+std::shared_ptr<const SamplerAdapter> with_f_of(
+    std::shared_ptr<const SamplerAdapter> arm, const std::shared_ptr<const SamplerAdapter>& owner) {
+    using Kind = SamplerQuery::Kind;
+    const auto evaluate = [owner](const SamplerAdapter& inner, SamplerQuery query, const SamplerAnswers& out) {
+        if (query.kind == Kind::f_channels) {
+            std::vector<double> values(out.channels.size());
+            owner->f(query.pairs, values);
+            for (std::size_t i = 0; i < values.size(); ++i) out.channels[i] = {values[i], values[i], values[i]};
+            return;
+        }
+        const bool is_f = query.kind == Kind::f || query.kind == Kind::target || query.kind == Kind::reference_f;
+        if (is_f) owner->f(query.pairs, out.values);
+        else inner.evaluate(query, out);
+    };
+    const auto declare = [owner](SamplerDeclaration& declaration) {
+        const SamplerDeclaration given = owner->declaration();
+        declaration.has_f = declaration.has_drawn_f = given.has_f;
+        declaration.serial = given.serial;
+        declaration.limited = given.limited;
+    };
+    return std::make_shared<DecoratedSampler>(std::move(arm), evaluate, declare);
+}
 
 }  // namespace
 
@@ -302,47 +314,13 @@ std::vector<CheckCase> make_user_cases(
             adapter->has_f() && traits.has_pdf && !traits.delta && theta < 90 && traits.has_surface();
         if (!can_be_ranked) continue;  // cosine and uniform sample neither delta parts nor the other side
         const Vec3d wo = tilt(theta, azimuth);
-        for (const std::shared_ptr<const SamplerAdapter>& peer :
-            {std::shared_ptr<const SamplerAdapter>(std::make_shared<ForUserBrdf<Uniform>>(adapter, wo)),
-                std::shared_ptr<const SamplerAdapter>(std::make_shared<ForUserBrdf<Cosine>>(adapter, wo))}) {
-            check_cases.push_back(make_user_case(peer, theta, azimuth));
+        for (const char* peer : {"uniform", "cosine"}) {
+            check_cases.push_back(make_user_case(with_f_of(make_adapter(peer, {}, wo), adapter), theta, azimuth));
             check_cases.back().baseline = true;
         }
     }
     return check_cases;
 }
-
-namespace {
-
-/// A built-in arm with a user's f.
-class WithUserF : public SamplerAdapter {
-public:
-    WithUserF(std::shared_ptr<const SamplerAdapter> arm, std::shared_ptr<const SamplerAdapter> owner)
-        : arm_(std::move(arm)), owner_(std::move(owner)) {}
-    std::string name() const override { return arm_->name(); }
-    Traits traits() const override { return arm_->traits(); }
-    int techniques() const override { return arm_->techniques(); }
-    std::string technique_name(int t) const override { return arm_->technique_name(t); }
-    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        arm_->sample(t, wo, u, out);
-    }
-    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override { arm_->pdf(t, pairs, out); }
-    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
-        arm_->exact_pdf(t, pairs, out);
-    }
-    void mis_weight(int t, std::span<const Pair> pairs, std::span<double> out) const override {
-        arm_->mis_weight(t, pairs, out);
-    }
-    bool has_f() const override { return owner_->has_f(); }
-    void f(std::span<const Pair> pairs, std::span<double> out) const override { owner_->f(pairs, out); }
-    bool serial() const override { return owner_->serial(); }
-    bool limited() const override { return owner_->limited(); }
-
-private:
-    std::shared_ptr<const SamplerAdapter> arm_, owner_;
-};
-
-}  // namespace
 
 namespace {
 
@@ -362,7 +340,7 @@ std::vector<CheckCase> sampler_named_against(const std::string& name, std::span<
         CheckCase b = t;
         b.arm = name;
         b.theory = {};
-        b.adapter = std::make_shared<WithUserF>(sampler_on(name, t), named_side(t.adapter, "A"));  // f is A's
+        b.adapter = with_f_of(sampler_on(name, t), named_side(t.adapter, "A"));  // f is A's
         out.push_back(std::move(b));
     }
     return out;
@@ -372,56 +350,33 @@ namespace {
 
 /// A sampler over a domain with an infinite line, on the chart of another sampler: directions of both are then those of
 /// the same points.
-class OnChart : public ForwardingAdapter {
-public:
-    OnChart(std::shared_ptr<const SamplerAdapter> inner, std::shared_ptr<const DomainChart> chart)
-        : ForwardingAdapter(std::move(inner)), own_(this->inner().traits().domain), chart_(std::move(chart)) {}
-    Traits traits() const override {
-        Traits out = inner().traits();
-        out.domain = chart_;
-        return out;
-    }
-    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        inner().sample(t, wo, u, out);
-        const bool has_pdf = inner().traits().has_pdf;
-        for (Draw& d : out) {
+std::shared_ptr<const SamplerAdapter> on_chart(
+    std::shared_ptr<const SamplerAdapter> sampler, const std::shared_ptr<const DomainChart>& chart) {
+    const Traits traits = sampler->traits();
+    const auto evaluate = [own = traits.domain, chart, has_pdf = traits.has_pdf](
+                              const SamplerAdapter& inner, SamplerQuery query, const SamplerAnswers& out) {
+        std::vector<Pair> on_own_chart(query.pairs.begin(), query.pairs.end());
+        for (Pair& p : on_own_chart) p.wi = chart->in_chart(*own, p.wi);
+        const std::span<const Pair> pairs = query.pairs;
+        query.pairs = on_own_chart;
+        inner.evaluate(query, out);
+        for (Draw& d : out.draws) {
             if (!(d.pdf > 0) || !std::isfinite(dot(d.wi, d.wi))) continue;
-            const Vec3d moved = own_->in_chart(*chart_, d.wi);
-            if (has_pdf) d.pdf = own_->density(d.wi, d.pdf) / chart_->density(moved, 1);
+            const Vec3d moved = own->in_chart(*chart, d.wi);
+            if (has_pdf) d.pdf = own->density(d.wi, d.pdf) / chart->density(moved, 1);
             d.wi = moved;
         }
-    }
-    void pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
-        inner().pdf(t, on_own_chart(pairs), out);
-        rescale(pairs, out);
-    }
-    void exact_pdf(int t, std::span<const Pair> pairs, std::span<double> out) const override {
-        inner().exact_pdf(t, on_own_chart(pairs), out);
-        rescale(pairs, out);
-    }
-    void f(std::span<const Pair> pairs, std::span<double> out) const override {
-        inner().f(on_own_chart(pairs), out);
-        rescale(pairs, out);
-    }
-    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
-        inner().f_channels(on_own_chart(pairs), out);
-        rescale(pairs, out);
-    }
-
-private:
-    std::shared_ptr<const DomainChart> own_, chart_;
-
-    std::vector<Pair> on_own_chart(std::span<const Pair> pairs) const {
-        std::vector<Pair> out(pairs.begin(), pairs.end());
-        for (Pair& p : out) p.wi = chart_->in_chart(*own_, p.wi);
-        return out;
-    }
-    /// From a density on the chart of `inner` to one on the common chart.
-    double factor(Vec3d w) const { return own_->density(chart_->in_chart(*own_, w), 1) / chart_->density(w, 1); }
-    template <class Value> void rescale(std::span<const Pair> pairs, std::span<Value> values) const {
-        for (std::size_t i = 0; i < pairs.size(); ++i) values[i] = values[i] * factor(pairs[i].wi);
-    }
-};
+        if (query.kind == SamplerQuery::Kind::mis_weight) return;
+        // From a density on the sampler's own chart to one on the common chart.
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            const double factor = own->density(on_own_chart[i].wi, 1) / chart->density(pairs[i].wi, 1);
+            if (!out.values.empty()) out.values[i] *= factor;
+            if (!out.channels.empty()) out.channels[i] = out.channels[i] * factor;
+        }
+    };
+    return std::make_shared<DecoratedSampler>(
+        std::move(sampler), evaluate, [chart](SamplerDeclaration& d) { d.traits.domain = chart; });
+}
 
 /// B over the domain of A. Throws InputError if it has another one.
 std::shared_ptr<const SamplerAdapter> over_the_domain_of(
@@ -433,7 +388,7 @@ std::shared_ptr<const SamplerAdapter> over_the_domain_of(
         throw InputError({"--against", 0, 0}, "is not for samplers with weight=reciprocal, which have no density");
     const std::shared_ptr<const DomainChart> chart = a.traits().domain;
     const bool infinite = chart && chart->domain().is_infinite();
-    return infinite ? std::make_shared<OnChart>(b, chart) : b;
+    return infinite ? on_chart(b, chart) : b;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "base/vec.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "samplers/all.h"
 #include "scene/lobes/all.h"
 
@@ -84,7 +84,7 @@ template <class F> ShadingPoint<F> with_around(ShadingPoint<F> point, const Case
 }
 
 /// A is an arm template; planted faults are arms too.
-template <template <class> class A> class BuiltIn : public SamplerAdapter {
+template <template <class> class A> class BuiltIn : public SamplerSource {
 public:
     /// The arm on a surface, seen from wo.
     BuiltIn(const SurfaceSetup& surface, Vec3d wo, const CaseLighting& light)

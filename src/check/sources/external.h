@@ -10,8 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "check/sources/sampler_adapter.h"
-#include "samplers/external_sampler.h"
+#include "samplers/sampler_adapter.h"
 
 namespace crescent {
 
@@ -33,20 +32,14 @@ struct PipeLimits {
     }
 };
 
-/// A program, checked by itself or as an arm of an experiment. Its requests are sequential, also for several callers.
-class ProgramSampler : public ExternalSampler, public SamplerAdapter {
-public:
-    std::string name() const override = 0;
-};
-
 inline constexpr int default_neighbours = 8;
 
-/// Starts `command` with /bin/sh -c. Throws SamplerError with the request, the answer and the expected answer;
-/// InputError if the shell cannot start it, or if it answers `error TEXT` to the handshake, where TEXT may begin with
-/// FILE:LINE:COLUMN; OutputError if it answers `missing TEXT`. `label` is the prefix of its stderr output and of that
-/// text; "": the command. `domain`: what it draws, if its handshake does not say so. `neighbours`: supplied
-/// to a program that merges reservoirs.
-std::shared_ptr<const ProgramSampler> start_pipe(const std::string& command, const PipeLimits& limits = {},
+/// Starts `command` with /bin/sh -c: a sampler whose requests are sequential, also for several callers. Throws
+/// SamplerError with the request, the answer and the expected answer; InputError if the shell cannot start it, or if it
+/// answers `error TEXT` to the handshake, where TEXT may begin with FILE:LINE:COLUMN; OutputError if it answers
+/// `missing TEXT`. `label` is the prefix of its stderr output and of that text; "": the command. `domain`: what it
+/// draws, if its handshake does not say so. `neighbours`: supplied to a program that merges reservoirs.
+std::shared_ptr<const SamplerAdapter> start_pipe(const std::string& command, const PipeLimits& limits = {},
     const std::string& label = "", const std::optional<Domain>& domain = {}, int neighbours = default_neighbours);
 
 // ---- The declaration of a program; docs/samplers.md has the keys.
@@ -84,7 +77,7 @@ bool names_python_sampler(const std::string& word);
 /// Starts the Python interpreter with crescent.serve, which answers for this sampler over a pipe. The interpreter is
 /// CRESCENT_PYTHON, which the installed command sets to its own, or else python3. Throws InputError if the sampler
 /// cannot be loaded, OutputError if the interpreter or the package is missing.
-std::shared_ptr<const ProgramSampler> start_python_sampler(
+std::shared_ptr<const SamplerAdapter> start_python_sampler(
     const std::string& word, const PipeLimits& limits, int neighbours = default_neighbours);
 
 // ---- Samplers in shader files: `crescent check bsdf.wgsl`.
@@ -95,7 +88,7 @@ bool names_shader(const std::string& word);
 /// Starts the Python interpreter with crescent_shader, which answers for this file over a pipe; `words` are its options
 /// (docs/shaders.md). Throws InputError for a mistake in the file or a snippet, with its place; OutputError if a
 /// compiler, a driver or the package is missing.
-std::shared_ptr<const ProgramSampler> start_shader(
+std::shared_ptr<const SamplerAdapter> start_shader(
     const std::string& file, const std::vector<std::string>& words, const PipeLimits& limits);
 
 /// The shell command that runs a Python module with these words.
@@ -105,16 +98,10 @@ std::string python_command(const std::string& module, const std::vector<std::str
 // experiment. A separate process (plugin_host.h), one for each calling thread, loads the library, so that changes to
 // the process stay there.
 
-/// As an arm it takes any surface point; a check uses one surface.
-class PluginSampler : public ExternalSampler, public InProcessAdapter {
-public:
-    std::string name() const override = 0;
-};
-
-/// Opens the library at `path`; as a SamplerAdapter it is called on `surface`. Throws OutputError if the file is not
-/// such a library, with what is missing, and SamplerError if it ends its process, throws or takes longer than
-/// limits.call_seconds, here or in a later call.
-std::shared_ptr<const PluginSampler> open_plugin(const std::string& path, const PipeLimits& limits = {},
-    const ExternalSurface& surface = {.s = 32, .alpha = 0.24253562503633297, .diffuse = 0.5, .lobe = 0.5});
+/// Opens the library at `path`. A run asks it at the points of a scene, a check on `surface`. Throws OutputError if the
+/// file is not such a library, with what is missing, and SamplerError if it ends its process, throws or takes longer
+/// than limits.call_seconds, here or in a later call.
+std::shared_ptr<const SamplerAdapter> open_plugin(const std::string& path, const PipeLimits& limits = {},
+    const SurfaceParameters& surface = {.s = 32, .alpha = 0.24253562503633297, .diffuse = 0.5, .lobe = 0.5});
 
 }  // namespace crescent

@@ -20,8 +20,8 @@
 #include "base/text.h"
 #include "check/sources/neighbours.h"
 #include "check/sources/pipe_io.h"
-#include "check/sources/sampler_adapter.h"
-#include "samplers/external_sampler.h"
+#include "check/sources/random_numbers.h"
+#include "samplers/surface_context.h"
 
 namespace crescent {
 
@@ -51,7 +51,7 @@ InputError error_of_program(std::string_view text, const std::string& label) {
     return InputError({label, 0, 0}, printable(text));
 }
 
-class PipeSampler : public ProgramSampler {
+class PipeSampler : public SamplerAdapter {
 public:
     PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label,
         const std::optional<Domain>& domain, int neighbours)
@@ -75,80 +75,32 @@ public:
     PipeSampler(const PipeSampler&) = delete;
     PipeSampler& operator=(const PipeSampler&) = delete;
 
-    std::string name() const override { return hello_.name; }
-    Traits traits() const override { return hello_.traits; }
-    bool serial() const override { return true; }
-    bool has_f() const override { return has_f_; }
-    bool has_drawn_f() const override { return has_f_ || hello_.weight; }
+    SamplerDeclaration declaration() const override {
+        return {.name = hello_.name,
+            .traits = hello_.traits,
+            .has_f = has_f_,
+            .has_drawn_f = has_f_ || hello_.weight,
+            .serial = true,
+            .limited = true,
+            .uses = hello_.uses,
+            .device = hello_.device};
+    }
     QueryUsage spending() const override { return connection_.spending(); }
-    EvaluationDevice device() const override { return hello_.device; }
 
-    int numbers() const override { return hello_.traits.own_numbers(); }
-    bool uses_lights() const override { return hello_.uses_lights(); }
-    bool has_density() const override { return hello_.traits.has_pdf; }
-
-    void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        std::vector<double> in;
-        in.reserve(u.size() * columns_of_sample(example_lights));
-        std::vector<double> context = example_;
-        if (hello_.merge) add_neighbours(neighbours_of(wo, neighbours_), context);
-        for (const PrimarySample& v : u)
-            add_row(wo_to_send(wo), [&](std::size_t k) { return v[static_cast<int>(k)]; }, context, in);
-        query_samples(in, example_lights, out.size(),
-            [&](std::size_t i, std::span<const double> answer, bool delta) { out[i] = drawn(answer, delta, u[i]); });
-    }
-    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
+    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
+        using Kind = SamplerQuery::Kind;
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
-        const std::size_t numbers = own_numbers(), lights = batch.lights.size();
-        std::vector<double> in, context;
-        in.reserve(out.pdf.size() * columns_of_sample(lights));
-        const double* u = batch.u.data();
-        for (std::size_t r = 0; r < batch.runs.size(); ++r) {
-            const ExternalRun& run = batch.runs[r];
-            context.clear();
-            add_context(hello_.uses, run, batch.lights,
-                lights == 0 ? batch.lights_at : batch.lights_at.subspan(r * lights, lights), context);
-            for (std::size_t i = 0; i < run.rows; ++i, u += numbers)
-                add_row(wo_to_send(run.wo), [&](std::size_t k) { return u[k]; }, context, in);
+        switch (query.kind) {
+            case Kind::sample: return sample(query, out.draws);
+            case Kind::pdf:
+            case Kind::exact_pdf: return values("pdf_", "pdf", "one number", query, 1, out.values);
+            case Kind::mis_weight: return std::fill(out.values.begin(), out.values.end(), 1.0);
+            case Kind::f:
+            case Kind::target:
+            case Kind::reference_f: return f(query, out.values);
+            case Kind::f_channels: return f_channels(query, out.channels);
+            case Kind::weigh: ensure(false, "a program does not weigh samplers");
         }
-        query_samples(in, lights, out.pdf.size(), [&](std::size_t i, std::span<const double> answer, bool delta) {
-            const Draw d = drawn(answer, delta, {});
-            out.wi[i] = d.wi;
-            out.pdf[i] = d.pdf;
-        });
-    }
-    void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
-        const std::lock_guard<std::mutex> one_at_a_time(lock_);
-        const std::size_t lights = batch.lights.size();
-        std::vector<Pair> pairs;
-        std::vector<double> contexts, context;
-        for (std::size_t r = 0; r < batch.runs.size(); ++r) {
-            const ExternalRun& run = batch.runs[r];
-            context.clear();
-            add_context(hello_.uses, run, batch.lights,
-                lights == 0 ? batch.lights_at : batch.lights_at.subspan(r * lights, lights), context);
-            for (std::size_t i = 0; i < run.rows; ++i) {
-                pairs.push_back({run.wo, wi[pairs.size()]});
-                contexts.insert(contexts.end(), context.begin(), context.end());
-            }
-        }
-        values("pdf_", "pdf", "one number", pairs, 1, out, contexts, lights);
-    }
-    void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
-        values("pdf_", "pdf", "one number", pairs, 1, out, example_, example_lights);
-    }
-    void f(std::span<const Pair> pairs, std::span<double> out) const override {
-        if (hello_.traits.channels == 1)
-            return values(f_operation(), f_verb(), "one number", pairs, 1, out, example_, example_lights);
-        std::vector<Vec3d> by_channel(out.size());
-        f_channels(pairs, by_channel);
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = luminance(by_channel[i]);
-    }
-    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
-        if (hello_.traits.channels == 1) return SamplerAdapter::f_channels(pairs, out);
-        std::vector<double> answers(3 * out.size());
-        values("f___", "f", "three numbers, one a channel", pairs, 3, answers, example_, example_lights);
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = {answers[3 * i], answers[3 * i + 1], answers[3 * i + 2]};
     }
 
 private:
@@ -161,6 +113,62 @@ private:
     std::vector<double> example_;  // the columns of the context in a check
     bool has_f_ = false;
     mutable std::mutex lock_;
+    mutable std::vector<double> request_, answers_;  // of samples; guarded by lock_
+
+    /// Calls work(w_o, rows, context) for the runs of a query: those of a scene, or all rows at the example.
+    template <class Work> void for_each_run(const SamplerQuery& query, const Work& work) const {
+        if (!query.scene) return work(query.wo, query.rows(), example_);
+        std::vector<double> context;
+        for (std::size_t r = 0; r < query.scene->runs.size(); ++r) {
+            const SurfaceRun& run = query.scene->runs[r];
+            context.clear();
+            add_context(hello_.uses, run, query.scene->lights, query.scene->lights_of_run(r), context);
+            work(run.wo, run.rows, context);
+        }
+    }
+    static std::size_t lights_of(const SamplerQuery& query) {
+        return query.scene ? query.scene->lights.size() : example_lights;
+    }
+
+    void sample(const SamplerQuery& query, std::span<Draw> out) const {
+        const std::size_t lights = lights_of(query), numbers = own_numbers();
+        std::vector<double> room, around;
+        std::span<const double> u = query.u.packed(numbers, room);
+        const std::span<double> in = first_of(request_, out.size() * columns_of_sample(lights));
+        double* to = in.data();
+        for_each_run(query, [&](Vec3d wo, std::size_t rows, const std::vector<double>& context) {
+            around = context;
+            if (hello_.merge) add_neighbours(neighbours_of(wo, neighbours_), around);
+            to = write_rows(wo, u.first(rows * numbers), around, to);
+            u = u.subspan(rows * numbers);
+        });
+        std::vector<PrimarySample> all_numbers;  // which spread a point of the domain
+        if (domain()) {
+            const std::span<const PrimarySample> samples = query.u.samples(all_numbers);
+            query_samples(in, lights, out.size(),
+                [&](std::size_t i, std::span<const double> a, bool) { out[i] = drawn_point(a, samples[i]); });
+        } else {
+            query_samples(in, lights, out.size(),
+                [&](std::size_t i, std::span<const double> a, bool delta) { out[i] = drawn(a, delta); });
+        }
+    }
+    void f(const SamplerQuery& query, std::span<double> out) const {
+        if (hello_.traits.channels == 1) return values(f_operation(), f_verb(), "one number", query, 1, out);
+        std::vector<Vec3d> by_channel(out.size());
+        f_channels(query, by_channel);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = luminance(by_channel[i]);
+    }
+    void f_channels(const SamplerQuery& query, std::span<Vec3d> out) const {
+        if (hello_.traits.channels == 1) {
+            std::vector<double> of_all(out.size());
+            f(query, of_all);
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] = {of_all[i], of_all[i], of_all[i]};
+            return;
+        }
+        std::vector<double> answers(3 * out.size());
+        values("f___", "f", "three numbers, one a channel", query, 3, answers);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = {answers[3 * i], answers[3 * i + 1], answers[3 * i + 2]};
+    }
 
     std::size_t own_numbers() const { return static_cast<std::size_t>(hello_.traits.own_numbers()); }
     const DomainChart* domain() const { return hello_.traits.domain.get(); }
@@ -191,8 +199,8 @@ private:
         if (hello_.weight) out += weights() == 1 ? " weight" : " weight weight weight";
         return out + (hello_.delta ? "', or 'delta q' in place of pdf" : "'");
     }
-    static PipeConnection::Write writer(const char* verb, std::size_t columns, const std::vector<double>& in) {
-        return [verb, columns, &in](std::size_t i, std::string& line) {
+    static PipeConnection::Write writer(const char* verb, std::size_t columns, std::span<const double> in) {
+        return [verb, columns, in](std::size_t i, std::string& line) {
             line = verb;
             for (std::size_t k = 0; k < columns; ++k) append(line, in[i * columns + k]);
         };
@@ -203,12 +211,22 @@ private:
             hello_.merge ? 1 + Neighbour::columns * static_cast<std::size_t>(neighbours_) : std::size_t{0};
         return columns_of_wo() + own_numbers() + context_columns(hello_.uses, lights) + merged;
     }
-    /// Appends a row of a request for a sample; u(k): its random numbers.
-    template <class U>
-    void add_row(Vec3d wo, const U& u, const std::vector<double>& context, std::vector<double>& in) const {
-        add_wo(wo, in);
-        for (std::size_t k = 0; k < own_numbers(); ++k) in.push_back(number_for(u(k)));
-        in.insert(in.end(), context.begin(), context.end());
+    /// Writes the rows of a request for samples at one w_o. u: their random numbers, row by row. Returns the end.
+    double* write_rows(Vec3d wo, std::span<const double> u, std::span<const double> context, double* to) const {
+        std::vector<double> before;
+        add_wo(wo_to_send(wo), before);
+        const std::size_t numbers = own_numbers();
+        for (std::size_t k = 0; k < u.size(); k += numbers) {
+            to = std::copy(before.begin(), before.end(), to);
+            for (const double number : u.subspan(k, numbers)) *to++ = number_for(number);
+            to = std::copy(context.begin(), context.end(), to);
+        }
+        return to;
+    }
+    /// The first `size` values of a buffer, which grows and is kept.
+    static std::span<double> first_of(std::vector<double>& buffer, std::size_t size) {
+        if (buffer.size() < size) buffer.resize(size);
+        return std::span(buffer).first(size);
     }
     void add_wo(Vec3d wo, std::vector<double>& in) const {
         if (columns_of_wo() > 0) in.insert(in.end(), {wo.x, wo.y, wo.z});
@@ -226,21 +244,20 @@ private:
     }
     /// Requests samples for rows of w_o, u and the context; calls take(i, answer, delta) for each row in order.
     template <class Take>
-    void query_samples(const std::vector<double>& in, std::size_t lights, std::size_t count, const Take& take) const {
+    void query_samples(std::span<const double> in, std::size_t lights, std::size_t count, const Take& take) const {
         const std::size_t given = columns_of_sample(lights), got = columns_of_draw();
-        std::vector<double> answers(count * got);
+        const std::span<double> answers = first_of(answers_, count * got);
         std::vector<bool> delta(hello_.blocks ? 0 : count);
         if (hello_.blocks) query_block("smpl", "sample", count, given, got, in, answers, lights);
         else
             connection_.lines(
                 count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
-                    return read_sample(s, std::span(answers).subspan(i * got, got), delta, i);
+                    return read_sample(s, answers.subspan(i * got, got), delta, i);
                 });
-        for (std::size_t i = 0; i < count; ++i)
-            take(i, std::span<const double>(answers).subspan(i * got, got), !hello_.blocks && delta[i]);
+        for (std::size_t i = 0; i < count; ++i) take(i, answers.subspan(i * got, got), !hello_.blocks && delta[i]);
     }
     void query_block(const char* operation, const char* verb, std::size_t count, std::size_t given, std::size_t got,
-        const std::vector<double>& in, std::span<double> out, std::size_t lights) const {
+        std::span<const double> in, std::span<double> out, std::size_t lights) const {
         if (count == 0) return;
         std::string header;
         const auto add_count = [&](std::size_t number) {
@@ -276,8 +293,7 @@ private:
         return blank(s);
     }
     /// No sample if pdf is 0, or if the draw is below the horizon of a sampler of the hemisphere.
-    Draw drawn(std::span<const double> a, bool delta, const PrimarySample& u) const {
-        if (domain()) return drawn_point(a, u);
+    Draw drawn(std::span<const double> a, bool delta) const {
         if (is_number()) {
             Draw value{{0, 0, 1}, 1};
             take_weight(a, value);
@@ -318,35 +334,33 @@ private:
     Draw drawn_point(std::span<const double> a, const PrimarySample& u) const {
         const std::size_t columns = columns_of_point();
         // W of a reservoir represents the pdf: 0 is no sample.
-        Draw d = draw_of_point(*domain(), a.first(columns), a[columns], u, numbers());
+        Draw d = draw_of_point(*domain(), a.first(columns), a[columns], u, hello_.traits.own_numbers());
         if (!hello_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
         if (d.pdf > 0) take_weight(a.subspan(columns + with_pdf()), d);
         return d;
     }
 
-    /// pdf or f; both are 0, without a request, below the horizon of a sampler of the hemisphere. `context`: the
-    /// columns common to all rows, or those of each row.
-    void values(const char* operation, const char* verb, std::string_view expected, std::span<const Pair> pairs,
-        std::size_t columns, std::span<double> out, const std::vector<double>& context, std::size_t lights) const {
-        const std::size_t columns_of_context = context_columns(hello_.uses, lights),
-                          given = columns_of_wo() + columns_of_point() + columns_of_context;
-        const bool each = columns_of_context > 0 && context.size() > columns_of_context;  // a context for each row
+    /// pdf or f; both are 0, without a request, below the horizon of a sampler of the hemisphere.
+    void values(const char* operation, const char* verb, std::string_view expected, const SamplerQuery& query,
+        std::size_t columns, std::span<double> out) const {
+        const std::span<const Pair> pairs = query.pairs;
+        const std::size_t lights = lights_of(query);
+        const std::size_t given = columns_of_wo() + columns_of_point() + context_columns(hello_.uses, lights);
         std::vector<double> in, factor(pairs.size());  // factor: of an answer; 0 without a request
-        for (std::size_t row = 0; row < pairs.size(); ++row) {
-            const Pair& p = pairs[row];
-            if (hello_.hemisphere && !(p.wi.z > 0)) continue;
-            const std::size_t before = in.size();
-            add_wo(wo_to_send(p.wo), in);
-            factor[row] = add_point(p.wi, in);
-            if (operation[0] == 'f' && hello_.f_cos && !domain()) factor[row] = p.wi.z != 0 ? 1 / std::fabs(p.wi.z) : 0;
-            if (!(factor[row] > 0)) {
-                in.resize(before);
-                continue;
+        std::size_t row = 0;
+        for_each_run(query, [&](Vec3d, std::size_t rows, const std::vector<double>& context) {
+            for (const std::size_t end = row + rows; row < end; ++row) {
+                const Pair& p = pairs[row];
+                if (hello_.hemisphere && !(p.wi.z > 0)) continue;
+                const std::size_t before = in.size();
+                add_wo(wo_to_send(p.wo), in);
+                factor[row] = add_point(p.wi, in);
+                if (operation[0] == 'f' && hello_.f_cos && !domain())
+                    factor[row] = p.wi.z != 0 ? 1 / std::fabs(p.wi.z) : 0;
+                if (factor[row] > 0) in.insert(in.end(), context.begin(), context.end());
+                else in.resize(before);
             }
-            const auto context_row =
-                std::span(context).subspan(each ? row * columns_of_context : 0, columns_of_context);
-            in.insert(in.end(), context_row.begin(), context_row.end());
-        }
+        });
         const std::size_t count = in.size() / given;
         std::vector<double> answers(count * columns);
         if (hello_.blocks) query_block(operation, verb, count, given, columns, in, answers, lights);
@@ -402,11 +416,15 @@ private:
     /// Fits the charts of infinite lines to draws, over all w_o that the program takes.
     void fit_domain() {
         if (!domain()->domain().is_infinite()) return;
-        std::vector<double> in, points;
+        std::vector<double> in(draws_of_chart * columns_of_sample(example_lights)), points;
+        const std::size_t numbers = own_numbers();
         double theta = 0;  // degrees
-        for (const PrimarySample& u : numbers_of_chart(numbers())) {
+        double* to = in.data();
+        for (const PrimarySample& u : numbers_of_chart(hello_.traits.own_numbers())) {
+            std::array<double, PrimarySample::most_numbers> row{};
+            for (std::size_t k = 0; k < numbers; ++k) row[k] = u[static_cast<int>(k)];
             theta = theta < 75 ? theta + 15 : 15;
-            add_row(tilt(theta), [&](std::size_t k) { return u[static_cast<int>(k)]; }, example_, in);
+            to = write_rows(tilt(theta), std::span(row).first(numbers), example_, to);
         }
         query_samples(in, example_lights, draws_of_chart, [&](std::size_t, std::span<const double> a, bool) {
             const std::span<const double> point = a.first(columns_of_point());
@@ -459,7 +477,7 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const ProgramSampler> start_pipe(const std::string& command, const PipeLimits& limits,
+std::shared_ptr<const SamplerAdapter> start_pipe(const std::string& command, const PipeLimits& limits,
     const std::string& label, const std::optional<Domain>& domain, int neighbours) {
     return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label, domain, neighbours);
 }
@@ -726,7 +744,7 @@ bool can_import(const char* module) {
 }
 
 /// Starts a module of the package `package`, which answers for the file `label`.
-std::shared_ptr<const ProgramSampler> start_python_module(const char* module, const std::vector<std::string>& words,
+std::shared_ptr<const SamplerAdapter> start_python_module(const char* module, const std::vector<std::string>& words,
     const char* package, const PipeLimits& limits, const std::string& label, int neighbours = default_neighbours) {
     // An interpreter that the shell cannot start (126, 127) is reported in the same way as a missing package.
     const std::string command =
@@ -752,7 +770,7 @@ std::string python_command(const std::string& module, const std::vector<std::str
     return out;
 }
 
-std::shared_ptr<const ProgramSampler> start_python_sampler(
+std::shared_ptr<const SamplerAdapter> start_python_sampler(
     const std::string& word, const PipeLimits& limits, int neighbours) {
     return start_python_module("crescent.serve", {word}, "crescent-bench", limits, word, neighbours);
 }
@@ -765,7 +783,7 @@ bool names_shader(const std::string& word) {
     return std::ranges::any_of(suffixes, [&](std::string_view suffix) { return word.ends_with(suffix); });
 }
 
-std::shared_ptr<const ProgramSampler> start_shader(
+std::shared_ptr<const SamplerAdapter> start_shader(
     const std::string& file, const std::vector<std::string>& words, const PipeLimits& limits) {
     std::vector<std::string> arguments = words;
     arguments.insert(arguments.end(), {"--", file});

@@ -9,7 +9,7 @@
 
 #include "base/errors.h"
 #include "base/progress.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent {
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "check/sources/pipe_io.h"
-#include "check/sources/sampler_adapter.h"
-#include "samplers/external_sampler.h"
+#include "check/sources/check_case.h"
+#include "samplers/surface_context.h"
 
 namespace crescent {
 namespace pipe_test {

@@ -24,8 +24,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "check/sources/plugin_host.h"
-#include "check/sources/sampler_adapter.h"
-#include "samplers/external_sampler.h"
+#include "samplers/sampler_adapter.h"
 
 namespace crescent {
 
@@ -38,7 +37,7 @@ struct PluginInfo {
     std::string name;
     int numbers = 2;
     bool pdf = false, f = false, serial = false;
-    std::vector<std::string> uses{};  // of context_names(); empty: the four columns of ABI 1
+    std::vector<std::string> uses{};  // of context_names(); empty: s, alpha, diffuse and lobe
 };
 
 struct Call {
@@ -103,7 +102,7 @@ public:
     /// Sends one request: its runs, and the random numbers or directions of its rows. The answer is valid until the
     /// next request.
     PluginRows query(
-        char operation, const ExternalBatch& batch, std::span<const double> given, std::size_t rows, const Call& call) {
+        char operation, const SceneRows& batch, std::span<const double> given, std::size_t rows, const Call& call) {
         const PluginRows block(memory_.at(), rows, given.size() / rows);
         std::ranges::copy(given, block.given);
         const std::size_t lights = batch.lights.size();
@@ -114,13 +113,11 @@ public:
             .columns = static_cast<std::uint32_t>(surface)};
         std::vector<double> columns;
         for (std::size_t i = 0; i < batch.runs.size(); ++i) {
-            const ExternalRun& r = batch.runs[i];
+            const SurfaceRun& r = batch.runs[i];
             columns.insert(columns.end(), {static_cast<double>(r.rows), r.wo.x, r.wo.y, r.wo.z});
             if (info_.uses.empty())
                 columns.insert(columns.end(), {r.surface.s, r.surface.alpha, r.surface.diffuse, r.surface.lobe});
-            else
-                add_context(
-                    info_.uses, r, batch.lights, batch.lights_at.subspan(lights ? i * lights : 0, lights), columns);
+            else add_context(info_.uses, r, batch.lights, batch.lights_of_run(i), columns);
         }
         std::string front(reinterpret_cast<const char*>(&head), sizeof head);
         front.append(reinterpret_cast<const char*>(columns.data()), columns.size() * sizeof(double));
@@ -228,104 +225,105 @@ private:
     }
 };
 
-class Plugin : public PluginSampler {
+class Plugin : public SamplerAdapter {
 public:
-    Plugin(const std::string& path, const PipeLimits& limits, const ExternalSurface& surface)
+    Plugin(const std::string& path, const PipeLimits& limits, const SurfaceParameters& surface)
         : path_(path), limits_(limits), surface_(surface) {
         free_.push_back(std::make_unique<Host>(path_, limits_));
         info_ = free_.front()->info();
     }
 
-    std::string name() const override { return info_.name; }
-    int numbers() const override { return info_.numbers; }
-    bool serial() const override { return info_.serial; }
-    Traits traits() const override {
-        Traits traits;
-        traits.numbers = info_.numbers;
-        traits.has_pdf = info_.pdf;
-        return traits;
+    SamplerDeclaration declaration() const override {
+        return {.name = info_.name,
+            .traits = {.numbers = info_.numbers, .has_pdf = info_.pdf},
+            .has_f = info_.f,
+            .has_drawn_f = info_.f,
+            .serial = info_.serial,
+            .limited = true,
+            .uses = info_.uses};
     }
-    bool has_f() const override { return info_.f; }
+    QueryUsage spending() const override { return {answers_.load(std::memory_order_relaxed), 0, 0}; }
 
-    void draw(const ExternalBatch& batch, const ExternalDraws& out) const override {
-        const Call call{"crescent_sampler_sample", batch.runs.front().wo};
-        on_host([&](Host& host) {
-            const PluginRows rows = host.query('s', batch, batch.u, out.pdf.size(), call);
-            std::copy_n(rows.wi, 3 * out.wi.size(), doubles(out.wi).data());
-            std::copy_n(rows.values, out.pdf.size(), out.pdf.begin());
-        });
-    }
-
-    void sample(int /*technique*/, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        std::vector<double> numbers, pdf;
-        std::vector<Vec3d> wi;
-        for (std::size_t first = 0; first < u.size(); first += plugin_rows) {
-            const std::size_t rows = std::min<std::size_t>(plugin_rows, u.size() - first);
-            numbers.clear();
-            wi.resize(rows);
-            pdf.resize(rows);
-            for (const PrimarySample& row : u.subspan(first, rows))
-                for (int k = 0; k < info_.numbers; ++k) numbers.push_back(row[k]);
-            const std::vector<ExternalRun> run = {on_surface(wo, surface_, rows)};
-            draw(with_example_light(run, numbers), {wi, pdf});
-            for (std::size_t i = 0; i < rows; ++i) out[first + i] = Draw{wi[i], pdf[i]};
+    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
+        using Kind = SamplerQuery::Kind;
+        switch (query.kind) {
+            case Kind::sample: sample(query, out.draws); break;
+            case Kind::pdf:
+            case Kind::exact_pdf: values('p', "crescent_sampler_pdf", query, out.values); break;
+            case Kind::f:
+            case Kind::target:
+            case Kind::reference_f: values('f', "crescent_sampler_f", query, out.values); break;
+            case Kind::f_channels: {
+                std::vector<double> of_all(out.channels.size());
+                values('f', "crescent_sampler_f", query, of_all);
+                for (std::size_t i = 0; i < of_all.size(); ++i) out.channels[i] = {of_all[i], of_all[i], of_all[i]};
+                break;
+            }
+            case Kind::mis_weight: return std::fill(out.values.begin(), out.values.end(), 1.0);
+            case Kind::weigh: ensure(false, "a plugin does not weigh samplers");
         }
-        count(u.size());
-    }
-    void pdf(int /*technique*/, std::span<const Pair> pairs, std::span<double> out) const override {
-        values('p', "crescent_sampler_pdf", pairs, surface_, out);
-    }
-    void f(std::span<const Pair> pairs, std::span<double> out) const override {
-        values('f', "crescent_sampler_f", pairs, surface_, out);
-    }
-    bool uses_lights() const override { return std::ranges::find(info_.uses, "lights") != info_.uses.end(); }
-    bool has_density() const override { return info_.pdf; }
-    void density(const ExternalBatch& batch, std::span<const Vec3d> wi, std::span<double> out) const override {
-        std::vector<Vec3d> directions(wi.begin(), wi.end());
-        const Call call{"crescent_sampler_pdf", batch.runs.front().wo};
-        on_host([&](Host& host) {
-            const PluginRows block = host.query('p', batch, doubles(directions), directions.size(), call);
-            std::copy_n(block.values, directions.size(), out.begin());
-        });
+        answers_.fetch_add(query.rows(), std::memory_order_relaxed);
     }
 
 private:
-    /// The surface of a check: a grey albedo.
-    static ExternalRun on_surface(Vec3d wo, const ExternalSurface& surface, std::size_t rows) {
-        return {
-            .wo = wo, .surface = surface, .rows = rows, .rho_d = {surface.diffuse, surface.diffuse, surface.diffuse}};
-    }
-    /// Adds the light of a check if the plugin uses lights.
-    ExternalBatch with_example_light(std::span<const ExternalRun> runs, std::span<const double> u) const {
-        if (!uses_lights()) return {runs, u};
-        static thread_local std::vector<ExternalLightAt> seen;
-        seen.assign(runs.size(), example_.at);
-        return {.runs = runs, .u = u, .lights = {&example_.light, 1}, .lights_at = seen};
-    }
-    static std::span<double> doubles(std::span<Vec3d> v) { return {&v.data()->x, 3 * v.size()}; }
-
-    void values(char operation, const char* function, std::span<const Pair> pairs, const ExternalSurface& on,
-        std::span<double> out) const {
-        std::vector<ExternalRun> runs;
-        std::vector<Vec3d> wi;
-        for (std::size_t first = 0; first < pairs.size(); first += plugin_rows) {
-            const std::size_t rows = std::min<std::size_t>(plugin_rows, pairs.size() - first);
+    /// Calls work(scene, first row, rows) for parts of the rows that fit a request: at the points of a scene, or on the
+    /// surface of a check, a run for each w_o.
+    template <class Work> void in_requests(const SamplerQuery& query, const Work& work) const {
+        if (query.scene) return work(*query.scene, std::size_t{0}, query.rows());
+        std::vector<SurfaceRun> runs;
+        std::vector<LightAtPoint> lights_at;
+        const bool with_light = std::ranges::find(info_.uses, "lights") != info_.uses.end();
+        for (std::size_t first = 0; first < query.rows(); first += plugin_rows) {
+            const std::size_t rows = std::min<std::size_t>(plugin_rows, query.rows() - first);
             runs.clear();
-            wi.clear();
-            for (const auto& [wo, direction] : pairs.subspan(first, rows)) {
-                const bool same =
-                    !runs.empty() && runs.back().wo.x == wo.x && runs.back().wo.y == wo.y && runs.back().wo.z == wo.z;
-                if (!same) runs.push_back(on_surface(wo, on, 0));
-                ++runs.back().rows;
-                wi.push_back(direction);
+            if (query.kind == SamplerQuery::Kind::sample) runs.push_back(on_surface(query.wo, rows));
+            else
+                for (const Pair& pair : query.pairs.subspan(first, rows)) {
+                    if (runs.empty() || !same(runs.back().wo, pair.wo)) runs.push_back(on_surface(pair.wo, 0));
+                    ++runs.back().rows;
+                }
+            SceneRows scene{.runs = runs};
+            if (with_light) {
+                lights_at.assign(runs.size(), example_.at);
+                scene.lights = {&example_.light, 1};
+                scene.lights_at = lights_at;
             }
+            work(scene, first, rows);
+        }
+    }
+    static bool same(Vec3d a, Vec3d b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+    /// The surface of a check: a grey albedo.
+    SurfaceRun on_surface(Vec3d wo, std::size_t rows) const {
+        const double grey = surface_.diffuse;
+        return {.wo = wo, .surface = surface_, .rows = rows, .rho_d = {grey, grey, grey}};
+    }
+
+    void sample(const SamplerQuery& query, std::span<Draw> out) const {
+        const auto numbers = static_cast<std::size_t>(info_.numbers);
+        std::vector<double> room;
+        const std::span<const double> u = query.u.packed(numbers, room);
+        in_requests(query, [&](const SceneRows& scene, std::size_t first, std::size_t rows) {
+            const Call call{"crescent_sampler_sample", scene.runs.front().wo};
             on_host([&](Host& host) {
-                const PluginRows block =
-                    host.query(operation, with_example_light(runs, {}), doubles(wi), rows, {function, runs[0].wo});
+                const PluginRows block = host.query('s', scene, u.subspan(first * numbers, rows * numbers), rows, call);
+                for (std::size_t i = 0; i < rows; ++i) {
+                    const double* w = block.wi + 3 * i;
+                    out[first + i] = Draw{{w[0], w[1], w[2]}, block.values[i]};
+                }
+            });
+        });
+    }
+    void values(char operation, const char* function, const SamplerQuery& query, std::span<double> out) const {
+        std::vector<double> wi;
+        in_requests(query, [&](const SceneRows& scene, std::size_t first, std::size_t rows) {
+            wi.clear();
+            for (const Pair& pair : query.pairs.subspan(first, rows))
+                wi.insert(wi.end(), {pair.wi.x, pair.wi.y, pair.wi.z});
+            on_host([&](Host& host) {
+                const PluginRows block = host.query(operation, scene, wi, rows, {function, scene.runs.front().wo});
                 std::copy_n(block.values, rows, out.subspan(first, rows).begin());
             });
-        }
-        count(pairs.size());
+        });
     }
 
     /// Calls with a host that no other thread uses. After a failure neither the host nor the plugin is used again.
@@ -355,20 +353,21 @@ private:
 
     std::string path_;
     PipeLimits limits_;
-    ExternalSurface surface_;
+    SurfaceParameters surface_;
     PluginInfo info_;
     ExampleLight example_ = example_light();
+    mutable std::atomic<std::uint64_t> answers_{0};
     mutable std::mutex serial_, lock_;
     mutable std::vector<std::unique_ptr<Host>> free_;  // both guarded by lock_
     mutable std::string fault_;
 };
 
-static_assert(sizeof(Vec3d) == 3 * sizeof(double) && sizeof(ExternalSurface) == 4 * sizeof(double));
+static_assert(sizeof(SurfaceParameters) == 4 * sizeof(double));
 
 }  // namespace
 
-std::shared_ptr<const PluginSampler> open_plugin(
-    const std::string& path, const PipeLimits& limits, const ExternalSurface& surface) {
+std::shared_ptr<const SamplerAdapter> open_plugin(
+    const std::string& path, const PipeLimits& limits, const SurfaceParameters& surface) {
     return std::make_shared<Plugin>(path, limits, surface);
 }
 

@@ -13,7 +13,7 @@
 
 #include "base/errors.h"
 #include "base/progress.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent {
 namespace plugin_test {
@@ -32,7 +32,7 @@ protected:
         return file;
     }
     /// The message of the error thrown by a draw.
-    template <class Error> std::string error(const PluginSampler& plugin) {
+    template <class Error> std::string error(const SamplerAdapter& plugin) {
         const std::vector<PrimarySample> u(10, {0.25, 0.5});
         std::vector<Draw> out(u.size());
         try {
@@ -50,7 +50,7 @@ protected:
 TEST_F(Plugins, AnswerManyThreadsAtOnce) {
     const auto plugin = open_plugin(compiled(""));
     EXPECT_EQ(plugin->name(), "libodd.so");
-    EXPECT_EQ(plugin->numbers(), 2);
+    EXPECT_EQ(plugin->traits().numbers, 2);
     EXPECT_TRUE(plugin->traits().has_pdf);
     EXPECT_FALSE(plugin->has_f());
     std::vector<std::thread> threads;

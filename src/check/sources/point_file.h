@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent {
 

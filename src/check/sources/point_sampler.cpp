@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "check/sources/random_numbers.h"
 
 namespace crescent {
 
@@ -48,9 +49,9 @@ public:
         }
     }
     void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
-        evaluate(s_.pdf, "pdf", pairs, out);
+        answer(s_.pdf, "pdf", pairs, out);
     }
-    void f(std::span<const Pair> pairs, std::span<double> out) const override { evaluate(s_.f, "f", pairs, out); }
+    void f(std::span<const Pair> pairs, std::span<double> out) const override { answer(s_.f, "f", pairs, out); }
 
 private:
     using Point = std::array<double, Domain::most_coordinates>;
@@ -72,7 +73,7 @@ private:
                 fmt::join(std::span(numbers).first(static_cast<std::size_t>(s_.numbers)), ", ")));
         }
     }
-    void evaluate(const PointSampler::Function& call, const char* what, std::span<const Pair> pairs,
+    void answer(const PointSampler::Function& call, const char* what, std::span<const Pair> pairs,
         std::span<double> out) const {
         if (!call) return std::fill(out.begin(), out.end(), 1.0);
         count(pairs.size());

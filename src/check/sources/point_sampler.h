@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent {
 

@@ -13,21 +13,39 @@ namespace crescent {
 
 namespace {
 
-class BoundedWeights : public ForwardingAdapter {
-public:
-    explicit BoundedWeights(std::shared_ptr<const SamplerAdapter> inner)
-        : ForwardingAdapter(std::move(inner)), traits_(this->inner().traits()) {}
+class BoundedWeights : public DecoratedSampler {
+    using Kind = SamplerQuery::Kind;
 
-    void sample(int t, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        const double q = scale_at(wo);
-        inner().sample(t, wo, u, out);
-        const std::vector<double> target = targets_at(wo, out);
+public:
+    explicit BoundedWeights(std::shared_ptr<const SamplerAdapter> sampler)
+        : DecoratedSampler(std::move(sampler), {}), traits_(inner().traits()) {}
+
+    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
+        switch (query.kind) {
+            case Kind::sample: return sample(query, out.draws);
+            case Kind::f: return f(query.pairs, out.values);
+            case Kind::target: return inner().f(query.pairs, out.values);
+            case Kind::f_channels: {
+                std::vector<double> values(out.channels.size());
+                f(query.pairs, values);
+                for (std::size_t i = 0; i < values.size(); ++i) out.channels[i] = {values[i], values[i], values[i]};
+                return;
+            }
+            default: inner().evaluate(query, out);
+        }
+    }
+
+private:
+    void sample(const SamplerQuery& query, std::span<Draw> out) const {
+        const double q = scale_at(query.wo);
+        inner().evaluate(query, {.draws = out});
+        const std::vector<double> target = targets_at(query.wo, out);
         for (std::size_t i = 0; i < out.size(); ++i) {
             Draw& d = out[i];
             if (d.weight) *d.weight *= bounded(target[i], q);
         }
     }
-    void f(std::span<const Pair> pairs, std::span<double> out) const override {
+    void f(std::span<const Pair> pairs, std::span<double> out) const {
         inner().f(pairs, out);
         Vec3d wo{};
         double q = 0;
@@ -42,12 +60,7 @@ public:
             out[i] = target > 0 ? bounded(target, q) * (out[i] / target) : target;
         }
     }
-    void target(std::span<const Pair> pairs, std::span<double> out) const override { inner().f(pairs, out); }
-    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
-        SamplerAdapter::f_channels(pairs, out);
-    }
 
-private:
     Traits traits_;
     mutable Mutex lock_;
     mutable std::map<std::tuple<double, double, double>, double> scales_;

@@ -12,7 +12,7 @@
 
 #include "base/errors.h"
 #include "check/sources/density_grid.h"
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/recorded_sampler.h"
 
 namespace crescent {
 

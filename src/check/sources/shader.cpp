@@ -53,7 +53,7 @@ ShaderValue::ShaderValue(std::initializer_list<double> vector) {
     for (const double v : vector) text_ += (text_.empty() ? "" : ",") + float_text(v);
 }
 
-std::shared_ptr<const ProgramSampler> shader_sampler(const std::string& file, const ShaderOptions& options) {
+std::shared_ptr<const SamplerAdapter> shader_sampler(const std::string& file, const ShaderOptions& options) {
     return start_shader(file, words_of(options), options.limits);
 }
 

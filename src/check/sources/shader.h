@@ -58,6 +58,6 @@ struct ShaderOptions {
 /// It runs python3, or the interpreter in CRESCENT_PYTHON, with the package crescent-bench[shader]. Throws InputError
 /// for a mistake in the file or a snippet, with its place; OutputError if the package, a compiler or a driver is
 /// missing.
-std::shared_ptr<const ProgramSampler> shader_sampler(const std::string& file, const ShaderOptions& options = {});
+std::shared_ptr<const SamplerAdapter> shader_sampler(const std::string& file, const ShaderOptions& options = {});
 
 }  // namespace crescent

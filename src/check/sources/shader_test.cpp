@@ -70,7 +70,7 @@ TEST_F(ShaderSampler, NamesAPartThatIsMissing) {
 
 /// The answers to requests for a pdf have too many numbers.
 TEST(ProgramSamplers, AreCheckedAndPrintedAsAStructIs) {
-    const std::shared_ptr<const ProgramSampler> sampler = start_pipe(
+    const std::shared_ptr<const SamplerAdapter> sampler = start_pipe(
         "read hello; echo hello 2 my lobe; while read line; do case $line in f*) echo -;; *) echo 0 0 1 1;; "
         "esac; done");
     EXPECT_EQ(testing::PrintToString(sampler), "my lobe");

@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent::user {
 

@@ -260,19 +260,25 @@ Density::Density(const Experiment& e, const std::string& sampler, double s, doub
     find_peak();
 }
 
-Density::Density(const Experiment& e, const ExternalSampler& outside, double s, double tilt) : tilt_(tilt) {
+Density::Density(const Experiment& e, const SamplerAdapter& outside, double s, double tilt) : tilt_(tilt) {
     const ShadingPoint<double> shading_point = point_of(e, s, tilt);
-    ask_ = [&outside, wo = shading_point.wo,
-               on = ExternalSurface{shading_point.s, shading_point.alpha, shading_point.diffuse, shading_point.lobe}](
+    const SamplerDeclaration declaration = outside.declaration();
+    ask_ = [&outside, longest = declaration.batch_rows, wo = shading_point.wo,
+               on = SurfaceParameters{shading_point.s, shading_point.alpha, shading_point.diffuse, shading_point.lobe}](
                std::span<const Vec3d> wi, std::span<double> out) {
-        for (std::size_t first = 0; first < wi.size(); first += outside.batch_rows()) {
-            const std::size_t rows = std::min(wi.size() - first, outside.batch_rows());
-            const ExternalRun run{wo, on, rows, {on.diffuse, on.diffuse, on.diffuse}};
-            outside.density({{&run, 1}, {}}, wi.subspan(first, rows), out.subspan(first, rows));
+        std::vector<Pair> pairs;
+        for (const Vec3d w : wi) pairs.push_back({wo, w});
+        for (std::size_t first = 0; first < wi.size(); first += longest) {
+            const std::size_t rows = std::min(wi.size() - first, longest);
+            const SurfaceRun run{wo, on, rows, {on.diffuse, on.diffuse, on.diffuse}};
+            const SceneRows scene{.runs = {&run, 1}};
+            outside.evaluate(
+                {.kind = SamplerQuery::Kind::pdf, .pairs = std::span(pairs).subspan(first, rows), .scene = &scene},
+                {.values = out.subspan(first, rows)});
         }
         for (double& p : out) p = p > 0 && std::isfinite(p) ? p : 0.0;
     };
-    if (!outside.has_density() || outside.uses_lights()) ask_ = one_by_one([](const Vec3d&) { return 0.0; });
+    if (!declaration.traits.has_pdf || declaration.uses_lights()) ask_ = one_by_one([](const Vec3d&) { return 0.0; });
     find_peak();
 }
 

@@ -8,6 +8,7 @@
 
 #include "math/functions.h"
 #include "output/tone_map.h"
+#include "render/combination.h"
 #include "report/plates/charts.h"
 #include "report/plates/sheet.h"
 #include "samplers/info.h"
@@ -129,7 +130,7 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot) {
 }
 
 /// Returns null if the sampler is built in, or if there is none to evaluate.
-const ExternalSampler* from_external(const Sheet& sheet, const std::string& arm) {
+const SamplerAdapter* from_external(const Sheet& sheet, const std::string& arm) {
     return sheet.in.outside ? sheet.in.outside(arm) : nullptr;
 }
 
@@ -141,7 +142,7 @@ std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
     }
     std::vector<Part> parts;
     for (const RunKey& k : keys) {
-        const ExternalSampler* external = from_external(sheet, k.arm);
+        const SamplerAdapter* external = from_external(sheet, k.arm);
         parts.push_back({k, external ? Density(e, *external, k.s, tilt) : Density(e, sampler_of(k.arm, e), k.s, tilt)});
     }
     return parts;
@@ -178,11 +179,12 @@ double peak_in_plane(const Part& part) {
 std::string why_no_density(const Sheet& sheet, const std::string& arm) {
     const Experiment& e = sheet.experiment();
     const SamplerInfo* info = find_arm_info(sampler_of(arm, e));
-    const ExternalSampler* external = from_external(sheet, arm);
+    const SamplerAdapter* external = from_external(sheet, arm);
+    const SamplerDeclaration declared = external ? external->declaration() : SamplerDeclaration{};
     return arm_name(arm, e) +
-        (external && external->as_combination()       ? " joins several densities, each with its own weight"
-                : external && external->uses_lights() ? " uses lights, and there are none here"
-                : external && external->has_density() ? " says that its density is 0 in the plane of incidence"
+        (combination_of(external)                     ? " joins several densities, each with its own weight"
+                : declared.uses_lights()              ? " uses lights, and there are none here"
+                : external && declared.traits.has_pdf ? " says that its density is 0 in the plane of incidence"
                 : external       ? " is a library without crescent_sampler_pdf: its density is not known"
                 : !info          ? " is external, and its density cannot be evaluated"
                 : info->combines ? " joins several densities, each with its own weight"

@@ -23,14 +23,13 @@ TEST(Rose, StatesThePeaksOfTheDensities) {
 }
 
 /// cos / pi as an external sampler, or a sampler that cannot return its density.
-struct ExternalCosine : ExternalSampler {
+struct ExternalCosine : SamplerSource {
     bool asked = true;
     std::string name() const override { return "cosine"; }
-    int numbers() const override { return 2; }
-    void draw(const ExternalBatch&, const ExternalDraws&) const override {}
-    bool has_density() const override { return asked; }
-    void density(const ExternalBatch&, std::span<const Vec3d> wi, std::span<double> out) const override {
-        for (std::size_t i = 0; i < wi.size(); ++i) out[i] = std::max(wi[i].z, 0.0) / pi;
+    Traits traits() const override { return {.has_pdf = asked}; }
+    void sample(int, Vec3d, std::span<const PrimarySample>, std::span<Draw>) const override {}
+    void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
+        for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = std::max(pairs[i].wi.z, 0.0) / pi;
     }
 };
 

@@ -12,7 +12,7 @@ namespace crescent {
 
 namespace {
 
-class FromRecipe : public SamplerAdapter {
+class FromRecipe : public SamplerSource {
 public:
     explicit FromRecipe(SyntheticSampler r) : recipe_(std::move(r)) {}
     std::string name() const override { return recipe_.family + " (" + recipe_.parameters + ")"; }

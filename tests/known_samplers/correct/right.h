@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 
 namespace crescent {
 

@@ -17,7 +17,7 @@ struct FaultInjection {
     std::function<double(int technique, const Pair&, double w)> mis{};
 };
 
-class FaultySampler : public SamplerAdapter {
+class FaultySampler : public SamplerSource {
 public:
     FaultySampler(std::shared_ptr<const SamplerAdapter> right, FaultInjection bend)
         : right_(std::move(right)), bend_(std::move(bend)) {}

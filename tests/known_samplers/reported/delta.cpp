@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "check/sources/sampler_adapter.h"
+#include "check/sources/check_case.h"
 #include "math/functions.h"
 #include "tests/known_samplers/correct/renderers.h"
 #include "tests/known_samplers/reported/known.h"

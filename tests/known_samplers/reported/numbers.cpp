@@ -32,7 +32,7 @@ SyntheticSampler changed(std::function<void(const PrimarySample&, Draw&)> change
 }
 
 /// Returns its previous draw.
-class Delayed : public SamplerAdapter {
+class Delayed : public SamplerSource {
 public:
     std::string name() const override { return "delayed"; }
     void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
@@ -51,7 +51,7 @@ private:
 };
 
 /// The last bits of a block depend on vector instructions, as in NumPy.
-class Packed : public SamplerAdapter {
+class Packed : public SamplerSource {
 public:
     std::string name() const override { return "packed"; }
     void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {

@@ -1,6 +1,6 @@
 // Maps with a constant Jacobian, but for infinite lines, whose charts have the quantiles of pilot draws as knots, with
 // gaps beyond them that grow as the last ones do.
-#include "check/domains/domain_chart.h"
+#include "samplers/domains/domain_chart.h"
 
 #include <algorithm>
 #include <array>

@@ -10,8 +10,8 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
-#include "check/domains/domain.h"
-#include "check/estimate/chart.h"
+#include "samplers/domains/domain.h"
+#include "samplers/domains/sphere_chart.h"
 
 namespace crescent {
 

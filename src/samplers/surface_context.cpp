@@ -1,5 +1,5 @@
 // One table: each quantity with its number of columns and their values.
-#include "samplers/external_sampler.h"
+#include "samplers/surface_context.h"
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ double kind_number(std::string_view kind) {
 
 void add_vector(const Vec3<double>& v, std::vector<double>& to) { to.insert(to.end(), {v.x, v.y, v.z}); }
 
-void add_light(const ExternalLight& light, const ExternalLightAt& seen, std::vector<double>& to) {
+void add_light(const SceneLight& light, const LightAtPoint& seen, std::vector<double>& to) {
     to.push_back(kind_number(light.kind));
     to.push_back(light.radius);
     to.insert(to.end(), light.radiance.begin(), light.radiance.end());
@@ -49,8 +49,8 @@ std::size_t context_columns(std::span<const std::string> uses, std::size_t light
     return columns;
 }
 
-void add_context(std::span<const std::string> uses, const ExternalRun& point, std::span<const ExternalLight> lights,
-    std::span<const ExternalLightAt> seen, std::vector<double>& to) {
+void add_context(std::span<const std::string> uses, const SurfaceRun& point, std::span<const SceneLight> lights,
+    std::span<const LightAtPoint> seen, std::vector<double>& to) {
     for (const std::string& name : uses) {
         if (name == "s") to.push_back(point.surface.s);
         else if (name == "alpha") to.push_back(point.surface.alpha);
@@ -84,7 +84,7 @@ ExampleLight example_light() {
 }
 
 std::vector<double> example_context(std::span<const std::string> uses) {
-    const ExternalRun point{
+    const SurfaceRun point{
         .wo = {0, 0, 1}, .surface = {32, 0.24253562503633297, 0.5, 0.5}, .rows = 1, .rho_d = {0.5, 0.5, 0.5}};
     const ExampleLight example = example_light();
     std::vector<double> out;

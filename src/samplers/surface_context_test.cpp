@@ -1,5 +1,5 @@
 // The columns that describe a surface point and its lights to a program.
-#include "samplers/external_sampler.h"
+#include "samplers/surface_context.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ using ::testing::ElementsAre;
 using Names = std::vector<std::string>;
 
 TEST(ContextColumns, AreInTheOrderOfTheNames) {
-    const ExternalRun point{{0, 0, 1}, {20, 0.3, 0.5, 0.25}, 1, {0.1, 0.2, 0.4}};
+    const SurfaceRun point{{0, 0, 1}, {20, 0.3, 0.5, 0.25}, 1, {0.1, 0.2, 0.4}};
     const auto columns = [&](const Names& uses) {
         std::vector<double> out;
         add_context(uses, point, {}, {}, out);
@@ -24,8 +24,8 @@ TEST(ContextColumns, AreInTheOrderOfTheNames) {
 }
 
 TEST(ContextColumns, OfALightAreItsKindRadianceAndPlace) {
-    const ExternalLight light{"sphere", {3, 4, 5}, 0.5};
-    const ExternalLightAt at{{1, 2, 3}, {0, 0, -1}, {6, 0, 0}, {0, 7, 0}, true};
+    const SceneLight light{"sphere", {3, 4, 5}, 0.5};
+    const LightAtPoint at{{1, 2, 3}, {0, 0, -1}, {6, 0, 0}, {0, 7, 0}, true};
     std::vector<double> out;
     add_context(Names{"lights"}, {}, {&light, 1}, {&at, 1}, out);
     EXPECT_THAT(out, ElementsAre(1, 1, 0.5, 3, 4, 5, 1, 2, 3, 0, 0, -1, 6, 0, 0, 0, 7, 0, 1));

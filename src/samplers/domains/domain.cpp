@@ -1,5 +1,5 @@
 // A domain is a list of parts. Names are read part by part, between the letters x.
-#include "check/domains/domain.h"
+#include "samplers/domains/domain.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,71 +1,14 @@
-// Lights of a case, its text, and adapters that limit the number of queries.
-#include "check/sources/sampler_adapter.h"
+// A limit of queries, a cache of answers, one program for several cases of a w_o, and errors that name their side.
+#include "check/sources/decorators.h"
 
-#include <algorithm>
-#include <cmath>
 #include <gtest/gtest.h>
+
 #include <vector>
 
-#include "math/simd/random.h"
 #include "tests/support/function_sampler.h"
 
 namespace crescent {
-namespace sampler_adapter_test {
-
-constexpr CaseDiskLight overhead{20, {0, 0, 2}, {0, 0, -1}, 1};
-
-TEST(CaseLights, AreMetAtTheirDistance) {
-    EXPECT_DOUBLE_EQ(*overhead.distance({0, 0, 1}), 2);
-    const double rim = std::atan(0.5) * 180 / pi;
-    EXPECT_NEAR(*overhead.distance(tilt(rim - 0.1)), std::sqrt(5), 0.01);
-    EXPECT_FALSE(overhead.distance(tilt(rim + 0.1)));
-    CaseDiskLight turned = overhead;
-    turned.normal = {0, 0, 1};
-    EXPECT_FALSE(turned.distance({0, 0, 1}));  // its dark side
-}
-
-TEST(CaseLights, TheNearestCounts) {
-    CaseLighting light;
-    light.fill = 0.5;
-    light.disks = {{12, {0, 0, 3}, {0, 0, -1}, 3}, overhead};
-    EXPECT_FALSE(light.even());
-    EXPECT_EQ(light({0, 0, 1}), 20);
-    EXPECT_EQ(light.first_met({0, 0, 1})->distance, 2);
-    EXPECT_EQ(light(tilt(40)), 12);
-    EXPECT_EQ(light(tilt(80)), 0.5);
-    EXPECT_EQ(light(tilt(100)), 0);
-    EXPECT_TRUE(CaseLighting().even());
-}
-
-TEST(CaseLights, OfOtherKindsHaveTheirPower) {
-    CaseAreaLight ball{3, lights::Sphere{{0, 0, 4}, 1}};
-    EXPECT_NEAR(*ball.distance({0, 0, 1}), 3, 1e-9);
-    EXPECT_FALSE(ball.distance(tilt(30)));
-    CaseLighting light;
-    light.area_lights = {ball};
-    light.disks = {{20, {0, 0, 3.5}, {0, 0, -1}, 5}};  // behind the front of the ball
-    EXPECT_EQ(light({0, 0, 1}), 3);
-    EXPECT_EQ(light(tilt(45)), 20);
-    ball.radiance = 6;
-    EXPECT_DOUBLE_EQ(ball.power(), 2 * light.area_lights[0].power());
-}
-
-TEST(CheckCases, AreDescribedByTheirDirectionAndParameters) {
-    CheckCase t;
-    t.theta_deg = 60;
-    t.azimuth_deg = 250;
-    t.parameters = {{"s", 32}};
-    t.brdf = "Lambert";
-    t.lighting = "fill";
-    EXPECT_EQ(t.text(), "w_o 60 deg az 250, s=32, Lambert, fill");
-    auto sky = std::make_shared<check::FunctionSampler>();
-    sky->of.wo = Traits::WoDomain::none;
-    CheckCase of_sky;
-    of_sky.adapter = sky;
-    EXPECT_EQ(of_sky.text(), without_wo);
-    EXPECT_NEAR(tilt(30, 90).y, 0.5, 1e-12);
-    EXPECT_NEAR(tilt(120).z, -0.5, 1e-12);
-}
+namespace decorators_test {
 
 /// Counts its answers.
 struct Counting : InProcessAdapter {
@@ -74,35 +17,19 @@ struct Counting : InProcessAdapter {
     void pdf(int, std::span<const Pair> at, std::span<double>) const override { count(at.size()); }
 };
 
-TEST(LimitedAdapters, RefuseTheQueryAboveTheirLimit) {
+TEST(LimitedSamplers, RefuseTheQueryAboveTheirLimit) {
     const auto inner = std::make_shared<Counting>();
-    const LimitedAdapter limited(inner, 10);
+    const auto limited = limited_in_number(inner, 10);
     std::vector<PrimarySample> u(6);
     std::vector<Draw> draws(6);
     std::vector<Pair> at(4);
     std::vector<double> p(4);
-    limited.sample(0, {}, u, draws);
-    limited.pdf(0, at, p);
-    EXPECT_EQ(limited.spending().answers, 10u);
-    EXPECT_THROW(limited.exact_pdf(0, std::span(at).first(1), std::span(p).first(1)), SamplerTimeout);
+    limited->sample(0, {}, u, draws);
+    limited->pdf(0, at, p);
+    EXPECT_EQ(limited->spending().answers, 10u);
+    EXPECT_THROW(limited->exact_pdf(0, std::span(at).first(1), std::span(p).first(1)), SamplerTimeout);
     EXPECT_EQ(inner->spending().answers, 10u);  // it was not called
 }
-
-// ---- Random numbers of samplers under test.
-
-TEST(DrawnNumbers, AreThoseOfTheEstimator) {
-    const PrimarySample u = drawn_numbers(7, 3, 11, 0, 2);
-    EXPECT_EQ(u.x, static_cast<double>(draw(7, 3, 11).x));
-    EXPECT_EQ(u.y, static_cast<double>(draw(7, 3, 11).y));
-    const PrimarySample eight = drawn_numbers(7, 3, 11, 0, 8);
-    EXPECT_EQ(eight.x, u.x);
-    for (int a = 0; a < 8; ++a)
-        for (int b = 0; b < a; ++b) EXPECT_NE(eight[a], eight[b]);
-    EXPECT_NE(drawn_numbers(7, 3, 11, 1, 2).x, u.x);  // of another technique
-    for (int k = 0; k < 8; ++k) EXPECT_EQ(std::fmod(eight[k] * 0x1p24, 1), 0);
-}
-
-// ---- A cache of answers, one program for several cases of a w_o, and errors that name their side.
 
 /// A cosine sampler that counts its calls and fails on request.
 struct Program : check::FunctionSampler {
@@ -197,5 +124,5 @@ TEST(SidesOfAComparison, AreNamedInErrors) {
     EXPECT_EQ(named_side(plain, "A"), plain);
 }
 
-}  // namespace sampler_adapter_test
+}  // namespace decorators_test
 }  // namespace crescent

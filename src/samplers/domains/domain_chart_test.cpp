@@ -1,5 +1,5 @@
 // Charts of domains: their measure, points and directions there and back, words, and what is refused.
-#include "check/domains/domain_chart.h"
+#include "samplers/domains/domain_chart.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
