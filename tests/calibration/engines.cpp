@@ -22,7 +22,7 @@ namespace {
 using Count = std::shared_ptr<std::atomic<std::uint64_t>>;
 
 /// The sampler, whose answers are counted.
-std::shared_ptr<const SamplerAdapter> counted(std::shared_ptr<const SamplerAdapter> sampler, const Count& count) {
+std::shared_ptr<const SamplerAdapter> with_count(std::shared_ptr<const SamplerAdapter> sampler, const Count& count) {
     return std::make_shared<DecoratedSampler>(
         std::move(sampler), [count](const SamplerAdapter& inner, const SamplerQuery& query, const SamplerAnswers& out) {
             if (query.is_counted()) *count += query.rows();
@@ -76,7 +76,7 @@ Result measured(
             if (t.baseline) continue;  // it evaluates only f of a sampler whose calls are counted already
             ++wo;
             auto& one = counted[t.adapter.get()];
-            if (!one) one = counted(t.adapter, count);
+            if (!one) one = with_count(t.adapter, count);
             t.adapter = one;
         }
         out = engine.run(all, request);
