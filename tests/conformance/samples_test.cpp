@@ -1,9 +1,11 @@
 // Samplers known only from files: a table of p at points is less informative beyond its last row.
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "check/report/print.h"
 #include "check/sources/sample_file.h"
@@ -17,7 +19,9 @@ namespace samples_test {
 /// A von Mises-Fisher lobe of kappa 20 about `axis`, its draws and p at the centres of 128 x 64 cells.
 std::shared_ptr<const SamplerAdapter> lobe_in_files(Vec3d axis) {
     constexpr double kappa = 20;
-    const std::string samples = testing::TempDir() + "lobe_samples.csv", table = testing::TempDir() + "lobe_p.csv";
+    // Two of these programs may run at the same time.
+    const std::string samples = testing::TempDir() + fmt::format("lobe-samples-{}.csv", ::getpid());
+    const std::string table = testing::TempDir() + fmt::format("lobe-p-{}.csv", ::getpid());
     const Frame<double> frame = frame_about(axis);
     const auto p = [&](Vec3d w) {
         return kappa / (2 * pi * (1 - std::exp(-2 * kappa))) * std::exp(kappa * (dot(w, axis) - 1));
@@ -39,7 +43,10 @@ std::shared_ptr<const SamplerAdapter> lobe_in_files(Vec3d axis) {
         }
     s.close();
     t.close();
-    return std::make_shared<SampleFile>(samples, table);
+    const auto out = std::make_shared<SampleFile>(samples, table);
+    std::filesystem::remove(samples);
+    std::filesystem::remove(table);
+    return out;
 }
 
 TEST(SamplesOfFiles, CoarseTableNearAPoleIsNotWrong) {
