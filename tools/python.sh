@@ -57,6 +57,10 @@ add_python_module() {
     packages+=(wgpu)  # of shaders
     python=$(find_python) && (make_environment "$1" "$python" "${packages[@]}") ||
         { say "going on without the Python package: its environment could not be made"; return; }
+    # For the slangc in it: PyTorch, which it asks for, is not installed.
+    ls "$1"/lib/python3*/site-packages/slangtorch/bin/slangc >/dev/null 2>&1 ||
+        "$1/bin/python" -m pip -q --disable-pip-version-check install --no-deps slangtorch \
+            >"$log_dir/slangc.log" 2>&1 || say "going on without slangc (log: $log_dir/slangc.log)"
     grep -qxF "CRESCENT_PYTHON:BOOL=ON" "$root/build/CMakeCache.txt" 2>/dev/null &&
         grep -qF "$1/bin/python" "$root/build/CMakeCache.txt" && return
     configure release

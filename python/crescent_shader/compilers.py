@@ -7,6 +7,7 @@ user's file or snippet.
 from __future__ import annotations
 
 import hashlib
+import importlib.util
 import os
 import re
 import shutil
@@ -96,6 +97,16 @@ def _tool(name: str, package: str) -> str:
     if found := shutil.which(name):
         return found
     raise MissingPart(f"no {name} on the PATH: {package}")
+
+
+def slangc() -> str:
+    """The compiler of Slang: on the PATH, or that of the package slangtorch, which is not imported; or MissingPart."""
+    spec = importlib.util.find_spec("slangtorch")
+    for folder in (spec.submodule_search_locations or ()) if spec else ():
+        if not shutil.which("slangc") and (program := Path(folder) / "bin" / "slangc").is_file():
+            return str(program)
+    releases = "https://github.com/shader-slang/slang/releases"
+    return _tool("slangc", f"install Slang, {releases}, or: pip install --no-deps slangtorch")
 
 
 def _run(command: list[str], folder: str) -> subprocess.CompletedProcess[str]:
@@ -215,7 +226,7 @@ def compiled(request: Request, program: Program) -> Code:
         return Code(program.plain(), "crescent_main", program.lines)
     text = program.with_places()
     if request.language == "slang":
-        tool = _tool("slangc", "install Slang, https://github.com/shader-slang/slang/releases")
+        tool = slangc()
         options = ["-target", "wgsl", "-entry", "crescent_main", "-stage", "compute", "-O2"]
         return Code(_compile(request, text, tool, options, ".slang", ".wgsl").decode(), "crescent_main")
     tool = _tool("glslangValidator", "install glslang, in Debian the package glslang-tools")

@@ -422,9 +422,9 @@ def _is_statements(text: str, name: str) -> bool:
 
 
 def closed(text: str) -> str:
-    """Statements with the last semicolon."""
+    """Statements with the last semicolon, which an initialiser list needs too and a block may have."""
     code = without_comments(text).rstrip()
-    return text if not code or code[-1] in ";}" else text[: len(code)] + ";" + text[len(code) :]
+    return text if not code or code[-1] == ";" else text[: len(code)] + ";" + text[len(code) :]
 
 
 def _body(request: Request, operation: str, channels: int, weights: int) -> list[Line]:

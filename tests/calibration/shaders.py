@@ -27,9 +27,22 @@ import numpy as np
 from fresh_pipe import Rng, log_uniform, print_table
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "python"))
+
+from crescent_shader import MissingPart  # noqa: E402
+from crescent_shader.compilers import slangc  # noqa: E402
+
+
+def has_slangc() -> bool:
+    try:
+        return bool(slangc())
+    except MissingPart:
+        return False
+
+
 LOBES = ROOT / "tests" / "known_samplers" / "shaders"
 LANGUAGES = ("wgsl", *(["glsl", "hlsl"] if shutil.which("glslangValidator") else []))
-LANGUAGES += ("slang",) if shutil.which("slangc") else ()
+LANGUAGES += ("slang",) if has_slangc() else ()
 
 
 @dataclass(frozen=True)

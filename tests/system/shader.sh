@@ -14,7 +14,7 @@ mkdir tmp
 cp printed adapters
 languages=wgsl
 if command -v glslangValidator >/dev/null; then languages+=" glsl hlsl"; fi
-if command -v slangc >/dev/null; then languages+=" slang"; fi
+if "$CRESCENT_PYTHON" -c 'import crescent_shader.compilers as c; c.slangc()' 2>/dev/null; then languages+=" slang"; fi
 lobes="$CRESCENT_SOURCE/tests/known_samplers/shaders/lobes"
 check() { "$CRESCENT" check --quiet --wo 40 "$@"; }
 
@@ -30,6 +30,23 @@ for language in $languages; do
     expect 1 check "$file" --sample 'wi = ggx_sample(wo, u, alpha)' --pdf 'ggx_pdf(wo, wi, alpha) * 1.03' --set alpha=0.3
     grep -q "normalised" printed || die "a factor of 1.03 has no verdict: $(cat printed)"
 done
+if [[ $languages = *slang* ]]; then  # what the others lack: methods, interfaces, generics, initialiser lists
+    cat >material.slang <<'S'
+interface IBsdf { float3 sample(float2 u); float pdf(float3 wi); }
+struct Lambert : IBsdf {
+    float scale;
+    float3 sample(float2 u) { float r = sqrt(u.x), a = 6.2831853 * u.y; return float3(r * cos(a), r * sin(a), sqrt(1 - u.x)); }
+    float pdf(float3 wi) { return scale * max(wi.z, 0) / 3.14159265; }
+}
+float density<T : IBsdf>(T bsdf, float3 wi) { return bsdf.pdf(wi); }
+S
+    expect 0 check material.slang --sample 'wi = m.sample(u); pdf = m.pdf(wi)' --pdf 'density(m, wi)' \
+        --let 'Lambert m = { 1.0 }'
+    expect 1 check material.slang --sample 'wi = m.sample(u)' --pdf 'm.pdf(wi)' --let 'Lambert m = { 1.03 }'
+    printf 'float3 a(float2 u) {\n    return float3(u, y);\n}\n' >bad.slang
+    expect 2 check bad.slang --sample 'wi = a(u)' --pdf 1.0
+    grep -qF "bad.slang:2:" said || die "a mistake in Slang has no place: $(cat said)"
+fi
 file=$lobes.wgsl
 expect 0 check "$file" --sample 'wi = hg_sample(wo, u, g)' --pdf 'hg(wo, wi, g)' --f-cos 'hg(wo, wi, g)' --set g=0.6 \
     --domain sphere --sides both
