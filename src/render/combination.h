@@ -41,7 +41,9 @@ public:
         const SourceLocation& weights_at, const SourceLocation& probabilities_at,
         std::shared_ptr<const SamplerAdapter> weigh = nullptr);
 
-    SamplerDeclaration declaration() const override { return {.name = name_, .traits = {.has_pdf = false}}; }
+    SamplerDeclaration declaration() const override {
+        return {.name = name_, .traits = {.has_pdf = false}, .device = device_of(of_)};
+    }
     /// Is not called: a combination is estimated at shading points, by sample().
     void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override;
 

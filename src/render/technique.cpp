@@ -102,6 +102,7 @@ public:
     explicit ExternalTechnique(std::shared_ptr<const SamplerAdapter> sampler)
         : sampler_(std::move(sampler)), declaration_(sampler_->declaration()) {}
     int numbers() const override { return declaration_.traits.own_numbers(); }
+    EvaluationDevice device() const override { return declaration_.device; }
 
     void draw(const PointRows& point_rows, std::span<const double> u, std::span<PointDraw> out) const override {
         const auto count = static_cast<std::size_t>(numbers());
@@ -141,6 +142,7 @@ class MixtureTechnique : public Technique {
 public:
     MixtureTechnique(Techniques parts, WeightList weights) : parts_(std::move(parts)), weights_(std::move(weights)) {}
     int numbers() const override { return most_numbers(parts_); }
+    EvaluationDevice device() const override { return device_of(parts_); }
     void draw(const PointRows& rows, std::span<const double> u, std::span<PointDraw> out) const override {
         const auto count = static_cast<std::size_t>(numbers());
         const std::vector<double> weights = weights_at(rows, weights_);
@@ -193,6 +195,12 @@ std::shared_ptr<const Technique> built_in_technique(std::string_view sampler) {
     });
     ensure(out != nullptr, "the parser lets only samplers with one direction through");
     return out;
+}
+
+EvaluationDevice device_of(const Techniques& parts) {
+    for (const std::shared_ptr<const Technique>& part : parts)
+        if (const EvaluationDevice device = part->device(); device.declared()) return device;
+    return {};
 }
 
 int most_numbers(const Techniques& parts) {

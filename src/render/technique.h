@@ -49,11 +49,15 @@ public:
     virtual void density(const PointRows& rows, std::span<const Vec3<float>> wi, std::span<double> out) const = 0;
     /// The index of the sampler in samplers/all.h; -1: another one.
     virtual int built_in() const { return -1; }
+    /// Returns the device that evaluates it; of a mixture, that of the first part that has one.
+    virtual EvaluationDevice device() const { return {}; }
 };
 
 using Techniques = std::vector<std::shared_ptr<const Technique>>;
 /// Random numbers that suffice for a row of any of these; at least 2.
 int most_numbers(const Techniques& parts);
+/// Returns the device of the first part that has one.
+EvaluationDevice device_of(const Techniques& parts);
 
 /// A sampler of samplers/all.h with one direction a sample, in scalar code.
 std::shared_ptr<const Technique> built_in_technique(std::string_view sampler);

@@ -19,7 +19,7 @@ struct Provenance {
     std::vector<std::uint32_t> seeds;
     std::vector<int> places;  // of these seeds in the experiment's series, from 1
     int series = 0;           // how many seeds the series has
-    std::vector<std::pair<std::string, std::string>> backend_details{};  // what a driver reports; none: the CPU
+    std::vector<std::pair<std::string, std::string>> backend_details{};  // what drivers report; none: the CPU
     std::string experiment_text{};  // canonical_text() of the experiment with all of its seeds
 
     /// Returns the places of the series that are not among `places`.

@@ -126,6 +126,13 @@ void add_view(Prepared& prepared, Measured& out) {
     out.paired = std::move(prepared.paired);
 }
 
+/// Adds the device of each arm that names one.
+void add_devices(const ExternalSamplers& outside, Provenance& to) {
+    for (const auto& [arm, sampler] : outside)
+        if (const EvaluationDevice device = sampler->declaration().device; device.declared())
+            to.backend_details.emplace_back("device of " + arm, device.text());
+}
+
 }  // namespace
 
 const Film* Measured::film(const RunKey& key) const {
@@ -204,6 +211,7 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
         add_spreads(out);
     });
     out.provenance = provenance_of(plan, *with.backend, options.command);
+    add_devices(out.outside, out.provenance);
     for (AssertionResult& a : with.backend->assertions()) out.metrics.assertions.push_back(std::move(a));
     return out;
 }

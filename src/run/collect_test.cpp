@@ -13,6 +13,7 @@ namespace crescent {
 namespace collect_test {
 
 using ::testing::ElementsAre;
+using ::testing::Pair;
 
 TEST(Collect, RunsAreInTheOrderOfThePlan) {
     ProgressMonitor monitor;
@@ -81,6 +82,26 @@ TEST(Collect, ProvenanceNamesTheSeedsOfThePart) {
     EXPECT_EQ(hash(parse(p.experiment_text, "again")), hash(e));
     EXPECT_EQ(p.command, "crescent run test.toml");
     EXPECT_EQ(provenance_of(part, *cpu_backend(""), "typed").command, "typed");
+}
+
+/// A sampler that names the device on which it is evaluated.
+class OnADevice : public SamplerAdapter {
+public:
+    SamplerDeclaration declaration() const override {
+        return {.name = "shader", .device = {.name = "a device", .driver = "a driver", .precision = "single"}};
+    }
+    void evaluate(const SamplerQuery&, const SamplerAnswers&) const override {}
+};
+
+TEST(Collect, ProvenanceNamesTheDevicesOfArms) {
+    ProgressMonitor monitor;
+    const RunPlan all = plan(test::small_experiment({"arms.mine.exec='./it'", "arms.mine.n=[4]", "arms.both.kind='mis'",
+        "arms.both.of=['cosine', 'mine']", "arms.both.n=[4]", "seeds=1"}));
+    const Engine engine{.samplers = {{"mine", std::make_shared<OnADevice>()}}};
+    const Measured out = collect(all, prepare(all, engine, monitor), {}, engine, monitor, {.studies = false});
+    EXPECT_THAT(out.provenance.backend_details,
+        ElementsAre(Pair("device of both", "a device, a driver, single precision"),
+            Pair("device of mine", "a device, a driver, single precision")));
 }
 
 TEST(Collect, TailsAreOfTheSamplesOfARegion) {
