@@ -1,7 +1,11 @@
-"""Right samplers in shaders: those of `tests/known_samplers/shaders` with random parameters in each language.
+"""Samplers of `tests/known_samplers/shaders` in each language: right ones with random parameters, and planted faults.
 
     python shaders.py right --crescent build/crescent --seed 71 --cases 0:300 --out right.jsonl
     python shaders.py table right.jsonl
+    python shaders.py faults --crescent build/crescent [--each]
+
+`faults` plants faults of `tests/known_samplers/faulty` and expects the cause that they have in C++; exit code 1 if one is
+missed. With --each in every language, else in one of them each.
 
 Alpha is log-uniform from 0.002 to 1, w_o uniform over the directions that the sampler accepts; with --whole they are those
 of a quick check. Needs NumPy, SciPy, wgpu and a driver; GLSL and HLSL need glslangValidator, Slang needs slangc.
@@ -121,6 +125,67 @@ FAMILIES: dict[str, Callable[[Rng], Case]] = {  # three of five have an alpha; t
 }
 
 
+@dataclass(frozen=True)
+class Fault:
+    """A planted fault of C++ by its name there, with the words of its cause; snippets that mean the same in each language."""
+
+    name: str
+    cause: str
+    sample: str
+    pdf: str
+    f: str = ""
+    parameters: tuple[str, ...] = ()
+
+    def words(self) -> list[str]:
+        out = ["--sample", f"wi = {self.sample}", "--pdf", self.pdf]
+        if "glass" in self.sample:
+            out += ["--f-cos", self.f, "--domain", "sphere", "--sides", "both", "--eta", "1.5", "--set", "n=1.5"]
+        elif self.f:
+            out += ["--f", self.f]
+        if "u3" in self.sample:
+            out += ["--numbers", "3"]
+        return out + [word for parameter in self.parameters for word in ("--set", parameter)]
+
+
+COSINE, PHONG = "cosine_sample(u)", "phong_sample(wo, u, s)"
+GGX, GGX_PDF = "ggx_sample(wo, u, alpha)", "ggx_pdf(wo, wi, alpha)"
+GLASS, GLASS_PDF = "glass_sample(wo, u3, u, alpha, n)", "glass_pdf(wo, wi, alpha, n)"
+S, ALPHA = ("s=20",), ("alpha=0.4",)
+FAULTS = (
+    Fault("cosine folded in twice", "cos theta_i", COSINE, "cosine_pdf(wi) * wi.z"),
+    Fault("cosine left out of the pdf", "cos theta_i", COSINE, "1.0 / PI"),
+    Fault("swapped w_o and w_i in pdf(w)", "cos theta_i", COSINE, "cosine_pdf(wo)"),
+    Fault("sqrt forgotten", "square root", "at_angle(sqrt(1.0 - u.x * u.x), 2.0 * PI * u.y)", "cosine_pdf(wi)"),
+    Fault("one u used twice", "", "cosine_sample(u.xx)", "cosine_pdf(wi)"),
+    Fault("s+2 for s+1 in the pdf", "a constant", PHONG, "phong_pdf(wo, wi, s) * (s + 2.0) / (s + 1.0)", "", S),
+    Fault("exponent s+1 for s in the pdf", "w_i.R", PHONG, "phong_pdf(wo, wi, s + 1.0)", "", S),
+    Fault("1/(s+2) for 1/(s+1) in the warp", "w_i.R", "phong_sample(wo, u, s + 1.0)", "phong_pdf(wo, wi, s)", "", S),
+    Fault("missing 4(w.h)", "w_o.m", GGX, f"{GGX_PDF} * 4.0 * dot(wo, normalize(wo + wi))", "", ALPHA),
+    Fault("n.h for w.h in the Jacobian", "(n.m) / (w_o.m)", GGX,
+          f"{GGX_PDF} * dot(wo, normalize(wo + wi)) / normalize(wo + wi).z", "", ALPHA),
+    Fault("missing G1 in the density of visible normals", "a constant", GGX, f"{GGX_PDF} / ggx_G1(wo, alpha)", "", ALPHA),
+    Fault("lobe chosen by one weight, weighed by another", "chooser's probability",
+          "mixture_sample(wo, u3, u, alpha)", f"0.5 * cosine_pdf(wi) + 0.5 * {GGX_PDF}", "", ALPHA),
+    Fault("eta^2 left out of f", "eta^2", GLASS, GLASS_PDF, f"{GLASS_PDF} * ggx_G1(wi, alpha)", ALPHA),
+)  # fmt: skip
+
+
+def missed(number: int, language: str, crescent: str) -> str:
+    """Why a fault is not found with its cause; "" if it is."""
+    fault = FAULTS[number]
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "report.json"
+        command = [crescent, "check", str(LOBES / f"lobes.{language}"), *fault.words(), "--quiet"]
+        done = subprocess.run([*command, "--json", str(report)], capture_output=True, text=True, check=False)
+        if not report.exists():
+            return done.stdout + done.stderr
+        verdicts = json.loads(report.read_text())["verdicts"]
+    wrong = [v for v in verdicts if v["state"] == "wrong"]
+    if wrong and (not fault.cause or any(fault.cause in json.dumps(v, ensure_ascii=False) for v in wrong)):
+        return ""
+    return f"expected the cause '{fault.cause}'\n{done.stdout}"
+
+
 def direction(rng: Rng, both_sides: bool) -> str:
     z, phi = rng.random(), rng.uniform(0, 2 * np.pi)
     r = np.sqrt(1 - z * z)
@@ -166,16 +231,25 @@ def check(number: int, seed: int, crescent: str, whole: bool) -> dict[str, Any]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("task", choices=["right", "table"])
+    parser.add_argument("task", choices=["right", "table", "faults"])
     parser.add_argument("files", nargs="*", type=Path, help="of table")
     parser.add_argument("--crescent", default="crescent")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--cases", default="0:21", metavar="FROM:TO")
     parser.add_argument("--whole", action="store_true", help="all w_o of a quick check, not one")
+    parser.add_argument("--each", action="store_true", help="of faults: in every language")
     parser.add_argument("--out", type=Path, help="file to which a line for each check is appended")
     given = parser.parse_args()
     os.environ.setdefault("CRESCENT_PYTHON", sys.executable)
     os.environ.setdefault("PYTHONPATH", str(ROOT / "python"))
+    if given.task == "faults":
+        failed = 0
+        for number, fault in enumerate(FAULTS):
+            for language in LANGUAGES if given.each else (LANGUAGES[number % len(LANGUAGES)],):
+                why = missed(number, language, given.crescent)
+                failed += bool(why)
+                print(f"{fault.name}, {language}: {why or 'found'}", flush=True)
+        sys.exit(failed > 0)
     records = [json.loads(line) for file in given.files for line in file.read_text().splitlines()]
     if given.task == "right":
         for number in range(*(int(v) for v in given.cases.split(":"))):
