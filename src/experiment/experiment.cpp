@@ -63,8 +63,8 @@ double brightest_rho_d(const Experiment& experiment, std::size_t surface) {
     const auto& image = experiment.meshes[surface - experiment.shapes.size()].rho_d_texture.image;
     if (!image) return std::ranges::max(rho_d);
     double brightest = 0;
-    for (std::size_t k = 0; k < image->rgb.size(); ++k)
-        brightest = std::max(brightest, rho_d[k % 3] * static_cast<double>(image->rgb[k]));
+    for (std::size_t k = 0; k < image->size(); ++k)
+        brightest = std::max(brightest, rho_d[k % 3] * static_cast<double>((*image)[k]));
     return brightest;
 }
 

@@ -18,7 +18,7 @@ namespace crescent {
 void load_sky(SkyLight& sky) {
     std::shared_ptr<const RgbImage> image = sky_in_file(sky.file);
     sky.raised = 0;
-    if (std::ranges::any_of(image->rgb, [](float x) { return x < 0; })) {
+    if (smallest_number(*image) < 0) {
         const auto raised = std::make_shared<RgbImage>(*image);
         sky.raised = raise_to_zero(*raised);
         image = raised;
@@ -191,7 +191,7 @@ void check_thickness(const Experiment& e, const MeshObject& mesh) {
 void check_roughness(const Experiment& e, const MeshObject& mesh, std::vector<Diagnostic>& found) {
     const auto& image = mesh.alpha_texture.image;
     if (!image || !mesh.material.alpha) return;
-    const double least = *mesh.material.alpha * static_cast<double>(std::ranges::min(image->rgb));
+    const double least = *mesh.material.alpha * static_cast<double>(smallest_number(*image));
     const std::string path = "meshes." + mesh.name + ".alpha_texture";
     if (least < least_alpha)
         found.push_back({e.place_of(path),

@@ -72,10 +72,10 @@ TEST_F(MeshFiles, HaveAContentThatStandsForThem) {
 TEST_F(MeshFiles, AndSkiesAreBelowTheExperiment) {
     namespace fs = std::filesystem;
     fs::create_directories(folder_ / "inner");
-    const std::vector<float> texels(3 * 8 * 4, 1);
+    RgbImage image = {.width = 8, .height = 4, .rgb = std::vector<float>(3 * 8 * 4, 1), .halves = {}};
+    image.hash = hash_of_texels(image);
     for (const char* name : {"sky.image", "inner/sky.image"})
-        std::ofstream(folder_ / name, std::ios::binary)
-            << image_file({.width = 8, .height = 4, .rgb = texels, .hash = hash_of_texels(8, 4, texels)});
+        std::ofstream(folder_ / name, std::ios::binary) << image_file(image);
     fs::create_symlink("../sky.image", folder_ / "inner" / "link.image");
     fs::create_symlink("sky.image", folder_ / "inner" / "here.image");
     std::ofstream(folder_ / "inner" / "e.toml")

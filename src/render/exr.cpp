@@ -123,11 +123,11 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
 }
 
 void write_texture(const std::string& path, const RgbImage& image) {
-    std::vector<half> texels(image.rgb.size());
+    std::vector<half> texels(image.size());
     bool is_grey = true;
     for (std::size_t k = 0; k < texels.size(); ++k) {
-        texels[k] = half(image.rgb[k]);
-        is_grey = is_grey && image.rgb[k] == image.rgb[k - k % 3];
+        texels[k] = half(image[k]);
+        is_grey = is_grey && image[k] == image[k - k % 3];
     }
     const ExrThreads threads;
     Imf::Header header(image.width, image.height);
@@ -195,6 +195,28 @@ void check_header(const std::string& path) {
     if (result != EXR_ERR_SUCCESS || !header_message.empty()) throw std::runtime_error(header_message);
 }
 
+/// Reads all rows as numbers of this type.
+template <class Number> void read_rows(Imf::InputPart& part, const Imath::Box2i& window,
+    const std::array<std::string, 3>& names, Imf::PixelType type, std::vector<Number>& rgb) {
+    constexpr int rows = 256;  // the largest block of an OpenEXR file: DWAB
+    constexpr std::size_t pixel = 3 * sizeof(Number);
+    const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+    const std::size_t row = pixel * width;
+    const bool grey = names[0] == names[1];
+    for (int first = window.min.y; first <= window.max.y; first += rows) {
+        const int last = std::min(first + rows - 1, window.max.y);
+        rgb.resize(3 * width * static_cast<std::size_t>(last - window.min.y + 1));
+        char* const origin = reinterpret_cast<char*>(rgb.data()) - static_cast<std::ptrdiff_t>(pixel) * window.min.x -
+            static_cast<std::ptrdiff_t>(row) * window.min.y;
+        Imf::FrameBuffer buffer;
+        for (std::size_t c = 0; c < (grey ? 1 : 3); ++c)
+            buffer.insert(names[c], Imf::Slice(type, origin + c * sizeof(Number), pixel, row));
+        part.setFrameBuffer(buffer);
+        part.readPixels(first, last);
+    }
+    for (std::size_t k = 0; grey && k < rgb.size(); k += 3) rgb[k + 1] = rgb[k + 2] = rgb[k];
+}
+
 std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_not) {
     check_header(path);
     Imf::MultiPartInputFile file(path.c_str(), 0);
@@ -205,28 +227,15 @@ std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_n
     const auto [width, height] = size_of(window, path, why_not);
     const std::array<std::string, 3> names = channels_of(header, path);
     Imf::InputPart part(file, 0);
-    constexpr std::size_t pixel = 3 * sizeof(float);
-    constexpr int rows = 256;  // the largest block of an OpenEXR file: DWAB
-    const std::size_t row = pixel * static_cast<std::size_t>(width);
-    const bool grey = names[0] == names[1];
-    std::vector<float> rgb;
-    for (int first = window.min.y; first <= window.max.y; first += rows) {
-        const int last = std::min(first + rows - 1, window.max.y);
-        rgb.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(last - window.min.y + 1));
-        char* const origin = reinterpret_cast<char*>(rgb.data()) - static_cast<std::ptrdiff_t>(pixel) * window.min.x -
-            static_cast<std::ptrdiff_t>(row) * window.min.y;
-        Imf::FrameBuffer buffer;
-        for (std::size_t c = 0; c < (grey ? 1 : 3); ++c)
-            buffer.insert(names[c], Imf::Slice(Imf::FLOAT, origin + c * sizeof(float), pixel, row));
-        part.setFrameBuffer(buffer);
-        part.readPixels(first, last);
-    }
-    for (std::size_t k = 0; grey && k < rgb.size(); k += 3) rgb[k + 1] = rgb[k + 2] = rgb[k];
     auto out = std::make_shared<RgbImage>();
-    out->hash = hash_of_texels(width, height, rgb);
     out->width = width;
     out->height = height;
-    out->rgb = std::move(rgb);
+    const auto is_half = [&](const std::string& name) {
+        return header.channels().findChannel(name)->type == Imf::HALF;
+    };
+    if (std::ranges::all_of(names, is_half)) read_rows(part, window, names, Imf::HALF, out->halves);
+    else read_rows(part, window, names, Imf::FLOAT, out->rgb);
+    out->hash = hash_of_texels(*out);
     return out;
 }
 
@@ -253,7 +262,7 @@ std::shared_ptr<const RgbImage> read_hdr(const std::string& path, WhyNot why_not
         const std::size_t channel = head.channels < 3 ? 0 : k % 3;
         out->rgb[k] = static_cast<float>(stored.sample(k / 3 * head.channels + channel) * header.unit[k % 3]);
     }
-    out->hash = hash_of_texels(out->width, out->height, out->rgb);
+    out->hash = hash_of_texels(*out);
     return out;
 }
 

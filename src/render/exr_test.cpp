@@ -100,6 +100,31 @@ TEST_F(Exr, HasTheDocumentedChannelsAndAttributes) {
     EXPECT_EQ(file.header(0).dataWindow().max.y, height - 1);
 }
 
+TEST(Halves, HaveTheValuesOfTheHalfOfOpenExr) {
+    for (std::uint32_t bits = 0; bits < 0x10000; ++bits) {
+        half expected;
+        expected.setBits(static_cast<std::uint16_t>(bits));
+        const float value = value_of_half(static_cast<std::uint16_t>(bits));
+        if (std::isnan(float(expected))) EXPECT_TRUE(std::isnan(value)) << bits;
+        else EXPECT_EQ(std::bit_cast<std::uint32_t>(value), std::bit_cast<std::uint32_t>(float(expected))) << bits;
+    }
+}
+
+TEST_F(Exr, ASkyInHalfPrecisionStaysInIt) {
+    RgbImage written = {.width = 8, .height = 4, .rgb = {}, .halves = {}};
+    for (std::size_t k = 0; k < 3 * written.texels(); ++k) written.rgb.push_back(0.125f * static_cast<float>(k));
+    written.hash = hash_of_texels(written);
+    write_texture(path, written);
+    const std::shared_ptr<const RgbImage> read = read_sky(path);
+    EXPECT_TRUE(read->rgb.empty());
+    ASSERT_EQ(read->size(), written.size());
+    for (std::size_t k = 0; k < read->size(); ++k) EXPECT_EQ((*read)[k], written[k]);
+    EXPECT_EQ(read->hash, written.hash);
+    EXPECT_EQ(image_file(*read), image_file(written));
+    EXPECT_EQ(smallest_number(*read), 0);
+    EXPECT_EQ(texel_at(*read, 0.3, 0.6), texel_at(written, 0.3, 0.6));
+}
+
 TEST_F(Exr, AReferenceReadBackIsTheReference) {
     ReferenceFilm film(width, height, 32);
     float next = 3;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <span>
 
+#include "base/parallel.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 #include "scene/texture.h"
@@ -21,14 +22,14 @@ namespace {
 /// Columns for each entry of the guide of a row.
 constexpr std::size_t columns_a_guide = 4;
 
-/// Appends `entries` guides: how many of `rising` are at most k / entries, for each k; below(x): x in their unit.
+/// Writes the guides: how many of `rising` are at most k / guides.size(), for each k; below(x): x in their unit.
 template <class Numbers, class Below>
-void add_guides(std::vector<std::uint16_t>& out, std::size_t entries, const Numbers& rising, const Below& below) {
+void write_guides(std::span<std::uint16_t> guides, const Numbers& rising, const Below& below) {
     std::size_t index = 0;
-    for (std::size_t k = 0; k < entries; ++k) {
-        const double x = below(static_cast<double>(k) / static_cast<double>(entries));
+    for (std::size_t k = 0; k < guides.size(); ++k) {
+        const double x = below(static_cast<double>(k) / static_cast<double>(guides.size()));
         while (index < rising.size() && static_cast<double>(rising[index]) <= x) ++index;
-        out.push_back(static_cast<std::uint16_t>(index));
+        guides[k] = static_cast<std::uint16_t>(index);
     }
 }
 
@@ -69,14 +70,14 @@ Negative negative_numbers(const RgbImage& image) {
     Negative out;
     double below = 0, above = 0;
     const std::size_t row_size = 3 * static_cast<std::size_t>(image.width);
-    for (std::size_t row = 0; row * row_size < image.rgb.size(); ++row) {
+    for (std::size_t row = 0; row * row_size < image.size(); ++row) {
         double row_below = 0, row_above = 0;
         for (std::size_t k = row * row_size; k < (row + 1) * row_size; ++k) {
-            const float x = image.rgb[k];
+            const float x = image[k];
             if (x > 0) row_above += static_cast<double>(x);
             if (!(x < 0)) continue;
             row_below -= static_cast<double>(x);
-            if (out.count++ == 0 || x < image.rgb[out.lowest]) out.lowest = k;
+            if (out.count++ == 0 || x < image[out.lowest]) out.lowest = k;
         }
         const double weight = math::sin(pi * (static_cast<double>(row) + 0.5) / image.height);
         below += weight * row_below;
@@ -91,8 +92,8 @@ Negative negative_numbers(const RgbImage& image) {
 std::size_t raise_to_zero(RgbImage& image) {
     const Negative negative = negative_numbers(image);
     if (!(negative.share <= negative_share)) return 0;
-    for (float& x : image.rgb)
-        if (x < 0) x = 0;
+    for (std::size_t k = 0; k < image.size(); ++k)
+        if (image[k] < 0) image.set_zero(k);
     return negative.count;
 }
 
@@ -101,12 +102,12 @@ std::string why_no_sky(const RgbImage& image, double scale) {
     const auto at_texel = [&](std::size_t k) {
         const std::size_t texel = k / 3, width = static_cast<std::size_t>(image.width);
         return fmt::format("texel ({}, {}), counted from the top-left: expected a radiance from 0 to {:g}, found {}",
-            texel % width, texel / width, brightest_sky, scale * double(image.rgb[k]));
+            texel % width, texel / width, brightest_sky, scale * double(image[k]));
     };
     double largest = 0;
     std::optional<std::size_t> below;
-    for (std::size_t k = 0; k < image.rgb.size(); ++k) {
-        const float x = image.rgb[k];
+    for (std::size_t k = 0; k < image.size(); ++k) {
+        const float x = image[k];
         const double scaled = scale * double(x);
         largest = std::max(largest, scaled);
         if (x < 0 && std::isfinite(x)) below = k;
@@ -131,33 +132,35 @@ SkyTable::SkyTable(const SkyLight& light) : image_(light.image), scale_(light.sc
     for (int row = 0; 2 * row <= high; ++row) edge_.push_back(2 * sqr(math::sin(pi * row / (2.0 * high))));
     if (high % 2 == 0) edge_.back() = 1;
     const std::size_t columns = static_cast<std::size_t>(width());
-    columns_.resize(image_->texels());
-    for (int row = 0; row < high; ++row) {
-        const std::size_t first = static_cast<std::size_t>(row) * columns;
-        double sum = 0;
-        for (std::size_t k = 0; k < columns; ++k) sum += luminance(radiance(static_cast<std::uint32_t>(first + k)));
-        double part = 0;
-        for (std::size_t k = 0; k < columns; ++k) {
-            part += luminance(radiance(static_cast<std::uint32_t>(first + k)));
-            columns_[first + k] = sum > 0 ? static_cast<float>(part / sum) : 0.0f;
-        }
-        total_ += sum * solid_angle(row);
-        rows_.push_back(total_);
-    }
     guides_of_row_ = std::bit_ceil(std::max<std::size_t>(1, columns / columns_a_guide));
-    for (std::size_t row = 0; row < rows_.size(); ++row)
-        add_guides(column_guide_, guides_of_row_, std::span(columns_).subspan(row * columns, columns),
+    columns_.resize(image_->texels());
+    column_guide_.resize(guides_of_row_ * static_cast<std::size_t>(high));
+    std::vector<double> sums(static_cast<std::size_t>(high));  // of the luminances of a row
+    parallel_for(std::size_t{0}, sums.size(), [&](std::size_t row) {
+        const std::size_t first = row * columns;
+        std::vector<double> up_to(columns);
+        for (std::size_t k = 0; k < columns; ++k)
+            up_to[k] = sums[row] += luminance(radiance(static_cast<std::uint32_t>(first + k)));
+        const std::span<float> shares = std::span(columns_).subspan(first, columns);
+        for (std::size_t k = 0; k < columns; ++k)
+            shares[k] = sums[row] > 0 ? static_cast<float>(up_to[k] / sums[row]) : 0.0f;
+        write_guides(std::span(column_guide_).subspan(row * guides_of_row_, guides_of_row_), shares,
             [](double x) { return x; });
-    const std::size_t of_rows = std::bit_ceil(rows_.size());
-    add_guides(row_guide_, of_rows, rows_, [&](double x) { return x * total_; });
-    add_guides(edge_guide_, of_rows, edge_, [](double x) { return x * x * (1 - 1e-12); });  // before any rounding
+    });
+    for (int row = 0; row < high; ++row)
+        rows_.push_back(total_ += sums[static_cast<std::size_t>(row)] * solid_angle(row));
+    row_guide_.resize(std::bit_ceil(rows_.size()));
+    edge_guide_.resize(row_guide_.size());
+    write_guides(row_guide_, rows_, [&](double x) { return x * total_; });
+    write_guides(edge_guide_, edge_, [](double x) { return x * x * (1 - 1e-12); });  // before any rounding
 }
 
 double SkyTable::pdf(std::uint32_t texel) const { return luminance(radiance(texel)) / total_; }
 
 Rgb SkyTable::radiance(std::uint32_t texel) const {
-    const float* rgb = &image_->rgb[3 * std::size_t{texel}];
-    return {scale_ * double(rgb[0]), scale_ * double(rgb[1]), scale_ * double(rgb[2])};
+    const RgbImage& image = *image_;
+    const std::size_t first = 3 * std::size_t{texel};
+    return {scale_ * double(image[first]), scale_ * double(image[first + 1]), scale_ * double(image[first + 2])};
 }
 
 SkyTable::RowEdges SkyTable::edges_of(int row) const {

@@ -3,10 +3,13 @@
 #include "scene/texture.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
+#include <limits>
+#include <span>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -54,9 +57,38 @@ std::string why_no_texture_of(std::int64_t width, std::int64_t height) {
     return fmt::format("expected an image of at most {0} x {0} texels, found {1} x {2}", widest_texture, width, height);
 }
 
-std::uint64_t hash_of_texels(int width, int height, const std::vector<float>& rgb) {
-    const std::uint32_t size[2] = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
-    return XXH3_64bits_withSeed(rgb.data(), rgb.size() * sizeof(float), XXH3_64bits(size, sizeof size));
+namespace {
+
+/// Passes the numbers of an image in blocks, in single precision.
+template <class Take> void for_each_block(const RgbImage& image, const Take& take) {
+    constexpr std::size_t longest = 4096;
+    if (image.halves.empty()) return take(std::span(image.rgb));
+    std::array<float, longest> block;
+    for (std::size_t first = 0; first < image.halves.size(); first += longest) {
+        const std::size_t count = std::min(longest, image.halves.size() - first);
+        for (std::size_t k = 0; k < count; ++k) block[k] = value_of_half(image.halves[first + k]);
+        take(std::span<const float>(block).first(count));
+    }
+}
+
+}  // namespace
+
+std::uint64_t hash_of_texels(const RgbImage& image) {
+    const std::uint32_t size[2] = {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height)};
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset_withSeed(&state, XXH3_64bits(size, sizeof size));
+    for_each_block(image,
+        [&](std::span<const float> numbers) { XXH3_64bits_update(&state, numbers.data(), numbers.size_bytes()); });
+    return XXH3_64bits_digest(&state);
+}
+
+float smallest_number(const RgbImage& image) {
+    float smallest = std::numeric_limits<float>::infinity();
+    for_each_block(image, [&](std::span<const float> numbers) {
+        for (const float x : numbers) smallest = x < smallest ? x : smallest;
+    });
+    return smallest;
 }
 
 std::string image_file(const RgbImage& image) {
@@ -69,7 +101,10 @@ std::string image_file(const RgbImage& image) {
     std::memcpy(header.magic, "crescent", 8);
     std::string out(sizeof header, '\0');
     std::memcpy(out.data(), &header, sizeof header);
-    return out.append(reinterpret_cast<const char*>(image.rgb.data()), image.rgb.size() * sizeof(float));
+    for_each_block(image, [&](std::span<const float> numbers) {
+        out.append(reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes());
+    });
+    return out;
 }
 
 bool is_image_file(std::string_view head) {
@@ -106,7 +141,7 @@ std::shared_ptr<const RgbImage> read_image_file(std::string_view bytes, const st
     out->height = static_cast<int>(size.height);
     out->rgb.resize(3 * out->texels());
     std::memcpy(out->rgb.data(), bytes.data() + sizeof(ImageHeader), out->rgb.size() * sizeof(float));
-    out->hash = hash_of_texels(out->width, out->height, out->rgb);
+    out->hash = hash_of_texels(*out);
     if (const std::uint64_t stated = image_header_of(bytes).hash; stated != out->hash)
         throw InputError({name, 0, 0},
             fmt::format("byte 24: expected the hash of the content, {:016x}, found {:016x}: the file is damaged",
@@ -118,7 +153,7 @@ std::shared_ptr<const RgbImage> read_image_file(std::string_view bytes, const st
 
 std::string why_no_texture(const RgbImage& image, TextureOf property) {
     for (std::size_t k = 0; k < image.texels(); ++k) {
-        const float* const t = &image.rgb[3 * k];
+        const float t[] = {image[3 * k], image[3 * k + 1], image[3 * k + 2]};
         const bool roughness = property == TextureOf::alpha;
         const auto good = [&](float x) { return x <= 1 && (roughness ? x > 0 : x >= 0); };
         if (good(t[0]) && good(t[1]) && good(t[2]) && (!roughness || (t[0] == t[1] && t[1] == t[2]))) continue;
@@ -135,8 +170,8 @@ Rgb texel_at(const RgbImage& image, double u, double v) {
     };
     const auto column = static_cast<std::size_t>(step(u, image.width));
     const auto row = static_cast<std::size_t>(image.height - 1 - step(v, image.height));
-    const float* const t = &image.rgb[3 * (row * static_cast<std::size_t>(image.width) + column)];
-    return {double(t[0]), double(t[1]), double(t[2])};
+    const std::size_t first = 3 * (row * static_cast<std::size_t>(image.width) + column);
+    return {double(image[first]), double(image[first + 1]), double(image[first + 2])};
 }
 
 }  // namespace crescent

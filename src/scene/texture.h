@@ -5,6 +5,7 @@
 //   kept from the top, so column = floor(u width), row = height - 1 - floor(v height), u and v less their floors.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -19,14 +20,31 @@ namespace crescent {
 
 inline constexpr int widest_texture = 8192;  // texels along each side
 
-/// The texels of an image, row by row from the top, r g b each.
+/// Returns the value of an IEEE 754 binary16 number, exactly.
+inline float value_of_half(std::uint16_t bits) {
+    const std::uint32_t magnitude = bits & 0x7fffu, sign = static_cast<std::uint32_t>(bits & 0x8000u) << 16;
+    // The exponent's bias of 127 less that of 15, which also brings numbers without a leading 1 to their place.
+    const float value = std::bit_cast<float>(magnitude << 13) * 0x1p112f;
+    const std::uint32_t not_finite = magnitude >= 0x7c00u ? 0x7f800000u : 0u;
+    return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) | not_finite | sign);
+}
+
+/// The texels of an image, row by row from the top, r g b each: in single precision, or in the half precision of their
+/// file, which takes half of the memory.
 struct RgbImage {
     int width = 0, height = 0;
-    std::vector<float> rgb;
-    std::uint64_t hash = 0;  // of the content: XXH3 of width, height and the texels
+    std::vector<float> rgb;             // empty if there are halves
+    std::vector<std::uint16_t> halves;  // IEEE 754 binary16
+    std::uint64_t hash = 0;             // of the content: XXH3 of width, height and the texels in single precision
 
-    /// Returns their number.
+    /// Returns the number of texels.
     std::size_t texels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+    /// Returns how many numbers they have.
+    std::size_t size() const { return rgb.size() + halves.size(); }
+    /// Returns one of them.
+    float operator[](std::size_t k) const { return halves.empty() ? rgb[k] : value_of_half(halves[k]); }
+    /// Sets one of them to 0.
+    void set_zero(std::size_t k) { (halves.empty() ? rgb[k] = 0 : halves[k] = 0); }
 };
 
 /// A texture of a mesh's material.
@@ -58,8 +76,8 @@ Rgb texel_at(const RgbImage& image, double u, double v);
 
 inline constexpr std::size_t image_header_size = 32;
 
-/// Returns RgbImage::hash of these texels.
-std::uint64_t hash_of_texels(int width, int height, const std::vector<float>& rgb);
+/// Returns what RgbImage::hash is for its texels.
+std::uint64_t hash_of_texels(const RgbImage& image);
 /// Returns the file's bytes.
 std::string image_file(const RgbImage& image);
 /// Returns whether a file that begins with these bytes is a pack.
@@ -81,6 +99,8 @@ std::shared_ptr<const RgbImage> read_image_file(std::string_view bytes, const st
 /// Why an image of this size cannot be a sky, or a texture; "" if it can.
 std::string why_no_sky_of(std::int64_t width, std::int64_t height);
 std::string why_no_texture_of(std::int64_t width, std::int64_t height);
+/// Returns the smallest number of the texels; NaN does not count.
+float smallest_number(const RgbImage& image);
 /// Returns the hash of the content, as 16 hexadecimal digits.
 std::string content_hash(const RgbImage& image);
 

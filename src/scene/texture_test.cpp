@@ -59,10 +59,10 @@ TEST(Textures, AreRefusedWithTheTexel) {
 namespace texture_test {
 
 RgbImage image() {
-    RgbImage out{2, 3, {}, 0};
+    RgbImage out{.width = 2, .height = 3, .rgb = {}, .halves = {}};
     for (int k = 0; k < 18; ++k) out.rgb.push_back(0.25f * static_cast<float>(k));
     out.rgb[4] = std::numeric_limits<float>::infinity();  // whether a texel is usable is not decided here
-    out.hash = hash_of_texels(out.width, out.height, out.rgb);
+    out.hash = hash_of_texels(out);
     return out;
 }
 
