@@ -31,7 +31,7 @@ const std::vector<std::string> all_of_context = {"s", "alpha", "rho_d", "rho_s",
 
 /// In a run it is asked at the points of a scene, in a check on one surface under one light, where a direction below
 /// the horizon counts as nothing drawn.
-class PageSampler : public SamplerAdapter {
+class PageSampler : public BatchSampler {
 public:
     explicit PageSampler(const CaseSetup& setup = {}) : surface_(setup.surface) {
         for (const CaseDiskLight& disk : setup.light.disks) {
@@ -45,29 +45,6 @@ public:
         out.traits.bits = bits_of_answers;
         if (takes_context) out.uses = all_of_context;
         return out;  // not limited: the limit is an exception, which the module does not have
-    }
-    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
-        using Kind = SamplerQuery::Kind;
-        if (query.rows() == 0) return;
-        switch (query.kind) {
-            case Kind::sample: return sample(query, out.draws);
-            case Kind::pdf:
-            case Kind::exact_pdf: return pdf(query, out.values);
-            case Kind::mis_weight: return std::fill(out.values.begin(), out.values.end(), 1.0);
-            case Kind::f:
-            case Kind::target:
-            case Kind::reference_f:
-                for (std::size_t i = 0; i < query.rows(); ++i)
-                    out.values[i] = brdf_value(surface_, query.pairs[i].wo, query.pairs[i].wi);
-                return;
-            case Kind::f_channels:
-                for (std::size_t i = 0; i < query.rows(); ++i) {
-                    const double f = brdf_value(surface_, query.pairs[i].wo, query.pairs[i].wi);
-                    out.channels[i] = {f, f, f};
-                }
-                return;
-            case Kind::weigh: ensure(false, "the page's sampler does not weigh");
-        }
     }
 
 private:
@@ -87,7 +64,7 @@ private:
         work(SceneRows{.runs = {&run, 1}, .lights = lights_, .lights_at = lights_at_});
     }
 
-    void sample(const SamplerQuery& query, std::span<Draw> out) const {
+    void draw_rows(const SamplerQuery& query, std::span<Draw> out) const override {
         const std::size_t rows = out.size();
         std::vector<double> runs, room, wi(3 * rows), pdf(rows);
         const std::span<const double> u = query.u.packed(numbers_of_sample, room);
@@ -106,7 +83,7 @@ private:
         }
     }
     /// The page's function has one context for all rows, and is called once a run.
-    void pdf(const SamplerQuery& query, std::span<double> out) const {
+    void pdf_rows(const SamplerQuery& query, std::span<double> out) const override {
         std::size_t first = 0;
         at_points(query, [&](const SceneRows& scene) {
             for (std::size_t k = 0; k < scene.runs.size(); ++k) {
@@ -125,6 +102,10 @@ private:
                 first += of_run.size();
             }
         });
+    }
+    void f_rows(const SamplerQuery& query, std::span<double> out) const override {
+        for (std::size_t i = 0; i < out.size(); ++i)
+            out[i] = brdf_value(surface_, query.pairs[i].wo, query.pairs[i].wi);
     }
 };
 

@@ -83,6 +83,7 @@
 #include "run/version.h"
 #include "run/write.h"
 #include "samplers/all.h"
+#include "samplers/batch_sampler.h"
 #include "scene/scene.h"
 #include "scene/shadow.h"
 #include "scene/texture.h"

@@ -30,6 +30,7 @@
 #include "render/reference/reference.h"
 #include "run/version.h"
 #include "samplers/all.h"
+#include "samplers/batch_sampler.h"
 #include "samplers/sampler_adapter.h"
 #include "scene/mesh/mesh.h"
 #include "scene/scene.h"

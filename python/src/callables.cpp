@@ -53,22 +53,6 @@ CallableSampler::CallableSampler(Callables callables) : c_(std::move(callables))
         .device = c_.device};
 }
 
-void CallableSampler::evaluate(const SamplerQuery& query, const SamplerAnswers& out) const {
-    using Kind = SamplerQuery::Kind;
-    if (query.rows() == 0) return;
-    switch (query.kind) {
-        case Kind::sample: return sample(query, out.draws);
-        case Kind::pdf:
-        case Kind::exact_pdf: return pdf(query, out.values);
-        case Kind::mis_weight: return std::fill(out.values.begin(), out.values.end(), 1.0);
-        case Kind::f:
-        case Kind::target:
-        case Kind::reference_f: return f(query, out.values);
-        case Kind::f_channels: return f_channels(query, out.channels);
-        case Kind::weigh: return weigh(query, out.values);
-    }
-}
-
 /// Calls callable(wo, u or wi[, context]), and take(answer) with the lock held. An exception stops the work and is
 /// raised again at its end.
 template <class Take>
@@ -100,7 +84,7 @@ void CallableSampler::call(const nb::object& callable, const SamplerQuery& query
     answers_.fetch_add(query.rows(), std::memory_order_relaxed);
 }
 
-void CallableSampler::sample(const SamplerQuery& query, std::span<Draw> out) const {
+void CallableSampler::draw_rows(const SamplerQuery& query, std::span<Draw> out) const {
     const bool without_density = !query.scene && !c_.traits.has_pdf;  // a run divides by the pdf of the draw
     call(c_.sample, query, [&](const nb::object& given) {
         const nb::tuple answer = nb::cast<nb::tuple>(given);
@@ -122,7 +106,7 @@ void CallableSampler::sample(const SamplerQuery& query, std::span<Draw> out) con
     draws_ += out.size();
 }
 
-void CallableSampler::pdf(const SamplerQuery& query, std::span<double> out) const {
+void CallableSampler::pdf_rows(const SamplerQuery& query, std::span<double> out) const {
     if (c_.pdf.is_none()) return std::fill(out.begin(), out.end(), 1.0);
     call(c_.pdf, query, [&](const nb::object& answer) {
         const Column p = nb::cast<Column>(answer);
@@ -132,7 +116,7 @@ void CallableSampler::pdf(const SamplerQuery& query, std::span<double> out) cons
     });
 }
 
-void CallableSampler::f_channels(const SamplerQuery& query, std::span<Vec3d> out) const {
+void CallableSampler::f_rows_by_channel(const SamplerQuery& query, std::span<Vec3d> out) const {
     if (!declaration_.has_f) return;
     call(c_.f, query, [&](const nb::object& answer) {
         const Rows f = nb::cast<Rows>(answer);
@@ -146,14 +130,14 @@ void CallableSampler::f_channels(const SamplerQuery& query, std::span<Vec3d> out
     });
 }
 
-void CallableSampler::f(const SamplerQuery& query, std::span<double> out) const {
+void CallableSampler::f_rows(const SamplerQuery& query, std::span<double> out) const {
     std::vector<Vec3d> by_channel(out.size());
-    f_channels(query, by_channel);
+    f_rows_by_channel(query, by_channel);
     for (std::size_t i = 0; i < out.size(); ++i)
         out[i] = c_.traits.channels == 3 ? luminance(by_channel[i]) : by_channel[i].x;
 }
 
-void CallableSampler::weigh(const SamplerQuery& query, std::span<double> out) const {
+void CallableSampler::weight_rows(const SamplerQuery& query, std::span<double> out) const {
     const std::size_t rows = query.rows(), samplers = query.densities.size() / rows;
     call(c_.weights, query, [&](const nb::object& answer) {
         const Rows w = nb::cast<Rows>(answer);

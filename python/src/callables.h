@@ -36,11 +36,10 @@ struct Callables {
 };
 
 /// What a callable raises stops the work and is raised again at its end.
-class CallableSampler : public SamplerAdapter {
+class CallableSampler : public BatchSampler {
 public:
     explicit CallableSampler(Callables callables);
     SamplerDeclaration declaration() const override { return declaration_; }
-    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override;
     QueryUsage spending() const override { return {answers_.load(std::memory_order_relaxed), 0, 0}; }
 
     /// Receives exceptions of the callables; only during a check or a run.
@@ -55,11 +54,11 @@ private:
     mutable std::atomic<std::uint64_t> answers_{0}, draws_{0};
 
     template <class Take> void call(const nb::object& callable, const SamplerQuery& query, Take&& take) const;
-    void sample(const SamplerQuery& query, std::span<Draw> out) const;
-    void pdf(const SamplerQuery& query, std::span<double> out) const;
-    void f(const SamplerQuery& query, std::span<double> out) const;
-    void f_channels(const SamplerQuery& query, std::span<Vec3d> out) const;
-    void weigh(const SamplerQuery& query, std::span<double> out) const;
+    void draw_rows(const SamplerQuery& query, std::span<Draw> out) const override;
+    void pdf_rows(const SamplerQuery& query, std::span<double> out) const override;
+    void f_rows(const SamplerQuery& query, std::span<double> out) const override;
+    void f_rows_by_channel(const SamplerQuery& query, std::span<Vec3d> out) const override;
+    void weight_rows(const SamplerQuery& query, std::span<double> out) const override;
 };
 
 /// (arm, draw, pdf, weights, numbers, uses, serial) of each arm whose sampler, or whose weights, are a callable.

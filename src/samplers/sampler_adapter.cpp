@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/errors.h"
+#include "samplers/batch_sampler.h"
 
 namespace crescent {
 
@@ -34,7 +35,7 @@ void SamplerSource::f(std::span<const Pair> /*pairs*/, std::span<double> out) co
 void SamplerSource::f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const {
     std::vector<double> values(out.size());
     f(pairs, values);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {values[i], values[i], values[i]};
+    copy_to_channels(values, out);
 }
 
 SamplerDeclaration SamplerSource::declaration() const {

@@ -21,6 +21,7 @@
 #include "check/sources/neighbours.h"
 #include "check/sources/pipe_io.h"
 #include "check/sources/random_numbers.h"
+#include "samplers/batch_sampler.h"
 #include "samplers/surface_context.h"
 
 namespace crescent {
@@ -51,7 +52,7 @@ InputError error_of_program(std::string_view text, const std::string& label) {
     return InputError({label, 0, 0}, printable(text));
 }
 
-class PipeSampler : public SamplerAdapter {
+class PipeSampler : public BatchSampler {
 public:
     PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label,
         const std::optional<Domain>& domain, int neighbours)
@@ -88,19 +89,8 @@ public:
     QueryUsage spending() const override { return connection_.spending(); }
 
     void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
-        using Kind = SamplerQuery::Kind;
         const std::lock_guard<std::mutex> one_at_a_time(lock_);
-        switch (query.kind) {
-            case Kind::sample: return sample(query, out.draws);
-            case Kind::pdf:
-            case Kind::exact_pdf: return values("pdf_", "pdf", "one number", query, 1, out.values);
-            case Kind::mis_weight: return std::fill(out.values.begin(), out.values.end(), 1.0);
-            case Kind::f:
-            case Kind::target:
-            case Kind::reference_f: return f(query, out.values);
-            case Kind::f_channels: return f_channels(query, out.channels);
-            case Kind::weigh: ensure(false, "a program does not weigh samplers");
-        }
+        BatchSampler::evaluate(query, out);
     }
 
 private:
@@ -130,7 +120,7 @@ private:
         return query.scene ? query.scene->lights.size() : example_lights;
     }
 
-    void sample(const SamplerQuery& query, std::span<Draw> out) const {
+    void draw_rows(const SamplerQuery& query, std::span<Draw> out) const override {
         const std::size_t lights = lights_of(query), numbers = own_numbers();
         std::vector<double> room, around;
         std::span<const double> u = query.u.packed(numbers, room);
@@ -152,19 +142,17 @@ private:
                 [&](std::size_t i, std::span<const double> a, bool delta) { out[i] = drawn(a, delta); });
         }
     }
-    void f(const SamplerQuery& query, std::span<double> out) const {
+    void pdf_rows(const SamplerQuery& query, std::span<double> out) const override {
+        values("pdf_", "pdf", "one number", query, 1, out);
+    }
+    void f_rows(const SamplerQuery& query, std::span<double> out) const override {
         if (hello_.traits.channels == 1) return values(f_operation(), f_verb(), "one number", query, 1, out);
         std::vector<Vec3d> by_channel(out.size());
-        f_channels(query, by_channel);
+        f_rows_by_channel(query, by_channel);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = luminance(by_channel[i]);
     }
-    void f_channels(const SamplerQuery& query, std::span<Vec3d> out) const {
-        if (hello_.traits.channels == 1) {
-            std::vector<double> of_all(out.size());
-            f(query, of_all);
-            for (std::size_t i = 0; i < out.size(); ++i) out[i] = {of_all[i], of_all[i], of_all[i]};
-            return;
-        }
+    void f_rows_by_channel(const SamplerQuery& query, std::span<Vec3d> out) const override {
+        if (hello_.traits.channels == 1) return BatchSampler::f_rows_by_channel(query, out);
         std::vector<double> answers(3 * out.size());
         values("f___", "f", "three numbers, one a channel", query, 3, answers);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = {answers[3 * i], answers[3 * i + 1], answers[3 * i + 2]};

@@ -24,7 +24,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "check/sources/plugin_host.h"
-#include "samplers/sampler_adapter.h"
+#include "samplers/batch_sampler.h"
 
 namespace crescent {
 
@@ -225,7 +225,7 @@ private:
     }
 };
 
-class Plugin : public SamplerAdapter {
+class Plugin : public BatchSampler {
 public:
     Plugin(const std::string& path, const PipeLimits& limits, const SurfaceParameters& surface)
         : path_(path), limits_(limits), surface_(surface) {
@@ -243,27 +243,6 @@ public:
             .uses = info_.uses};
     }
     QueryUsage spending() const override { return {answers_.load(std::memory_order_relaxed), 0, 0}; }
-
-    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
-        using Kind = SamplerQuery::Kind;
-        switch (query.kind) {
-            case Kind::sample: sample(query, out.draws); break;
-            case Kind::pdf:
-            case Kind::exact_pdf: values('p', "crescent_sampler_pdf", query, out.values); break;
-            case Kind::f:
-            case Kind::target:
-            case Kind::reference_f: values('f', "crescent_sampler_f", query, out.values); break;
-            case Kind::f_channels: {
-                std::vector<double> of_all(out.channels.size());
-                values('f', "crescent_sampler_f", query, of_all);
-                for (std::size_t i = 0; i < of_all.size(); ++i) out.channels[i] = {of_all[i], of_all[i], of_all[i]};
-                break;
-            }
-            case Kind::mis_weight: return std::fill(out.values.begin(), out.values.end(), 1.0);
-            case Kind::weigh: ensure(false, "a plugin does not weigh samplers");
-        }
-        answers_.fetch_add(query.rows(), std::memory_order_relaxed);
-    }
 
 private:
     /// Calls work(scene, first row, rows) for parts of the rows that fit a request: at the points of a scene, or on the
@@ -298,7 +277,7 @@ private:
         return {.wo = wo, .surface = surface_, .rows = rows, .rho_d = {grey, grey, grey}};
     }
 
-    void sample(const SamplerQuery& query, std::span<Draw> out) const {
+    void draw_rows(const SamplerQuery& query, std::span<Draw> out) const override {
         const auto numbers = static_cast<std::size_t>(info_.numbers);
         std::vector<double> room;
         const std::span<const double> u = query.u.packed(numbers, room);
@@ -312,6 +291,13 @@ private:
                 }
             });
         });
+        answers_.fetch_add(out.size(), std::memory_order_relaxed);
+    }
+    void pdf_rows(const SamplerQuery& query, std::span<double> out) const override {
+        values('p', "crescent_sampler_pdf", query, out);
+    }
+    void f_rows(const SamplerQuery& query, std::span<double> out) const override {
+        values('f', "crescent_sampler_f", query, out);
     }
     void values(char operation, const char* function, const SamplerQuery& query, std::span<double> out) const {
         std::vector<double> wi;
@@ -324,6 +310,7 @@ private:
                 std::copy_n(block.values, rows, out.subspan(first, rows).begin());
             });
         });
+        answers_.fetch_add(out.size(), std::memory_order_relaxed);
     }
 
     /// Calls with a host that no other thread uses. After a failure neither the host nor the plugin is used again.
