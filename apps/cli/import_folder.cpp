@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include "import.h"
 #include "import_material.h"
@@ -19,15 +20,10 @@ namespace crescent::cli {
 
 namespace {
 
-/// Of the files of an import, a line each.
+/// Of the files of an import, a line each: XXH3 of the content, and the name.
 constexpr const char* hashes_name = ".crescent_import_hashes";
 
-/// FNV-1a (Fowler, Noll and Vo), 64 bits.
-std::string hash_of(std::string_view bytes) {
-    std::uint64_t out = 0xcbf29ce484222325;
-    for (const char c : bytes) out = (out ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-    return fmt::format("{:016x}", out);
-}
+std::string hash_of(std::string_view bytes) { return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size())); }
 
 /// The scene of a description, whose files are written to a stage.
 class Folder {
@@ -89,10 +85,10 @@ private:
             .substr(place["begin"].get<std::size_t>(), place["size"].get<std::size_t>());
     }
     static std::string unique_name(
-        const std::string& wanted, const std::string& otherwise, std::set<std::string>& known) {
+        const std::string& wanted, const std::string& otherwise, std::set<std::string>& names) {
         const std::string first = table_name_of(wanted.empty() ? otherwise : wanted).substr(0, 56);
         std::string name = first;
-        for (std::size_t k = 2; !known.insert(name).second; ++k) name = fmt::format("{}-{}", first, k);
+        for (std::size_t k = 2; !names.insert(name).second; ++k) name = fmt::format("{}-{}", first, k);
         return name;
     }
 
@@ -145,15 +141,13 @@ private:
             const auto same = now.find(name);
             if (found == hash || (same != now.end() && found == same->second)) continue;
             if (hash.empty() && same == now.end()) continue;
-            int k = 1;
-            const auto copy = [&] { return fmt::format("{}.~{}~", file.string(), k); };
-            while (fs::exists(fs::symlink_status(copy(), none))) ++k;
-            if (!fs::copy_file(file, copy(), none))
+            const fs::path backup = free_backup_name(file);
+            if (!fs::copy_file(file, backup, none))
                 throw OutputError(
                     fmt::format("{} has changed since crescent import wrote it, and cannot be copied to {}",
-                        file.string(), copy()));
+                        file.string(), backup.string()));
             kept_.push_back(fmt::format("{} has changed since crescent import wrote it: it is now {}", file.string(),
-                fs::path(copy()).filename().string()));
+                backup.filename().string()));
         }
         std::string text = "# What crescent import wrote; a file that has changed since is kept as NAME.~1~.\n";
         for (const auto& [name, hash] : now) text += fmt::format("{} {}\n", hash, name);
@@ -199,11 +193,9 @@ private:
                 mean_metal = texture->mean[2];
                 ++roughness_;
             }
-        const auto known = materials_taken_.find(from["index"].get<std::size_t>());
-        Counts of_repeated;  // a material that several meshes have is counted once
-        const ImportedMaterial material =
-            material_of(from, mean, mean_metal, known == materials_taken_.end() ? cut_ : of_repeated);
-        materials_taken_.insert(from["index"].get<std::size_t>());
+        const bool is_first_use = materials_taken_.insert(from["index"].get<std::size_t>()).second;
+        Counts counted_before;  // a material that several meshes have is counted once
+        const ImportedMaterial material = material_of(from, mean, mean_metal, is_first_use ? cut_ : counted_before);
         to.rho_d = material.rho_d;
         to.rho_s = material.rho_s;
         to.emission = material.emission;
@@ -221,11 +213,12 @@ private:
     /// Writes an image: colours, or, with the alpha that it multiplies, the squares of its green channel. Nothing if it
     /// cannot be read.
     std::optional<WrittenTexture> texture_of(const Json& picture, std::size_t index, std::optional<double> alpha) {
-        const auto [known, is_new] = textures_.try_emplace({index, alpha.value_or(0)});
-        if (!is_new) return known->second;
+        const auto [entry, is_new] = textures_.try_emplace({index, alpha.value_or(0)});
+        std::optional<WrittenTexture>& written = entry->second;
+        if (!is_new) return written;
         std::optional<RgbImage> image = decoded(picture, alpha.has_value());
         if (!image) return std::nullopt;
-        known->second = {"", mean_of(*image)};
+        written = WrittenTexture{"", mean_of(*image)};
         if (alpha)
             for (std::size_t k = 0; k < image->rgb.size(); k += 3) {
                 const double roughness = static_cast<double>(image->rgb[k + 1]);
@@ -234,10 +227,10 @@ private:
             }
         const std::string stem = std::filesystem::path(picture["name"].get<std::string>()).stem().string();
         const std::string name = unique_name(stem, "image", texture_files_);
-        known->second->file = fmt::format("textures/{}.exr", name);
-        write_texture(stage_.path(known->second->file), *image);
-        written_.push_back(known->second->file);
-        return known->second;
+        written->file = fmt::format("textures/{}.exr", name);
+        write_texture(stage_.path(written->file), *image);
+        written_.push_back(written->file);
+        return written;
     }
 
     std::optional<RgbImage> decoded(const Json& picture, bool linear) {

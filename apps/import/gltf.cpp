@@ -33,7 +33,7 @@ std::string element_place(std::string_view list, std::size_t index) { return fmt
     throw ModelError(fmt::format("{}: {}", place, message));
 }
 
-std::optional<std::size_t> whole(const Json& json, const char* key, const std::string& place) {
+std::optional<std::size_t> whole_number(const Json& json, const char* key, const std::string& place) {
     const auto found = json.find(key);
     if (found == json.end()) return std::nullopt;
     if (!found->is_number_unsigned()) fail(member_place(place, key), "expected a whole number");
@@ -41,7 +41,7 @@ std::optional<std::size_t> whole(const Json& json, const char* key, const std::s
 }
 
 std::size_t needed(const Json& json, const char* key, const std::string& place) {
-    const std::optional<std::size_t> value = whole(json, key, place);
+    const std::optional<std::size_t> value = whole_number(json, key, place);
     if (!value) fail(place, fmt::format("expected '{}'", key));
     return *value;
 }
@@ -325,8 +325,8 @@ private:
         return found != json.end() && found->is_object() ? &*found : nullptr;
     }
     static const Json* extension(const Json& json, const char* name) {
-        const Json* all = object(json, "extensions");
-        return all ? object(*all, name) : nullptr;
+        const Json* extensions = object(json, "extensions");
+        return extensions ? object(*extensions, name) : nullptr;
     }
     static double number(const Json& json, const char* key, double otherwise) {
         const auto found = json.find(key);
@@ -334,11 +334,11 @@ private:
     }
 
     UvUse uv_use(const Json& texture, const std::string& place) {
-        UvUse out{.set = whole(texture, "texCoord", place).value_or(0)};
+        UvUse out{.set = whole_number(texture, "texCoord", place).value_or(0)};
         const Json* transform = extension(texture, "KHR_texture_transform");
         if (!transform) return out;
         const std::string inner = member_place(place, "extensions.KHR_texture_transform");
-        out.set = whole(*transform, "texCoord", inner).value_or(out.set);
+        out.set = whole_number(*transform, "texCoord", inner).value_or(out.set);
         out.offset = numbers<2>(*transform, "offset", inner).value_or(out.offset);
         out.scale = numbers<2>(*transform, "scale", inner).value_or(out.scale);
         out.rotation = number(*transform, "rotation", 0);
@@ -349,7 +349,8 @@ private:
     const Json* image_of(const Json& from, const std::string& place, std::size_t& index) const {
         const std::size_t texture_index = needed(from, "index", place);
         const Json& texture = element("textures", texture_index, member_place(place, "index"));
-        const std::optional<std::size_t> source = whole(texture, "source", element_place("textures", texture_index));
+        const std::optional<std::size_t> source =
+            whole_number(texture, "source", element_place("textures", texture_index));
         if (!source) return nullptr;
         index = *source;
         return &element("images", *source, member_place(element_place("textures", texture_index), "source"));
@@ -366,11 +367,11 @@ private:
         const Json* image = image_of(from, place, index);
         if (!image) ++dropped_["images in a format of an extension"];
         if (!image || !scope_.images) return std::nullopt;
-        const auto [known, is_new] = picture_of_image_.try_emplace(index, model.pictures.size());
-        if (!is_new) return known->second;
+        const auto [picture, is_new] = picture_of_image_.try_emplace(index, model.pictures.size());
+        if (!is_new) return picture->second;
         const std::string image_place = element_place("images", index), uri = text(*image, "uri");
         Picture out{text(*image, "name"), {}};
-        if (const std::optional<std::size_t> view = whole(*image, "bufferView", image_place))
+        if (const std::optional<std::size_t> view = whole_number(*image, "bufferView", image_place))
             out.bytes = this->view(*view, 0, member_place(image_place, "bufferView")).first;
         else if (uri.starts_with("data:")) {
             const std::size_t comma = uri.find(";base64,");
@@ -384,7 +385,7 @@ private:
             } catch (const ModelError&) {}  // counted by who writes the images
         }
         model.pictures.push_back(std::move(out));
-        return known->second;
+        return picture->second;
     }
 
     // ---- Buffers.
@@ -393,9 +394,9 @@ private:
         const Json& one = element("buffers", index, from);
         const std::string place = element_place("buffers", index);
         const std::size_t size = needed(one, "byteLength", place);
-        const auto [known, is_new] = buffers_.try_emplace(index);
-        if (is_new) known->second = bytes_of_buffer(one, index, place);
-        const std::string_view bytes = one.contains("uri") ? known->second : *container_.buffer;
+        const auto [decoded, is_new] = buffers_.try_emplace(index);
+        if (is_new) decoded->second = bytes_of_buffer(one, index, place);
+        const std::string_view bytes = one.contains("uri") ? decoded->second : *container_.buffer;
         if (bytes.size() < size) fail(place, fmt::format("expected {} bytes, found {}", size, bytes.size()));
         return bytes.substr(0, size);
     }
@@ -428,13 +429,14 @@ private:
             packed ? unpacked_view(*packed, index, needed(one, "byteLength", place)) : bytes_of_view(one, place);
         const std::size_t size = bytes.size();
         if (offset > size) fail(from, fmt::format("byteOffset {} is beyond the {} bytes of its view", offset, size));
-        return {bytes.substr(offset), whole(one, "byteStride", place).value_or(0)};
+        return {bytes.substr(offset), whole_number(one, "byteStride", place).value_or(0)};
     }
 
     /// The bytes of a view, or of the extension of one.
     std::string_view bytes_of_view(const Json& one, const std::string& place) {
         const std::string_view bytes = buffer(needed(one, "buffer", place), member_place(place, "buffer"));
-        const std::size_t begin = whole(one, "byteOffset", place).value_or(0), size = needed(one, "byteLength", place);
+        const std::size_t begin = whole_number(one, "byteOffset", place).value_or(0),
+                          size = needed(one, "byteLength", place);
         if (begin > bytes.size() || size > bytes.size() - begin)
             fail(place, fmt::format("{} bytes from {} on are beyond the {} of its buffer", size, begin, bytes.size()));
         return bytes.substr(begin, size);
@@ -442,8 +444,8 @@ private:
 
     /// The bytes of a compressed view, decoded once. `size`: those that the view states.
     std::string_view unpacked_view(const Json& packed, std::size_t index, std::size_t size) {
-        const auto [known, is_new] = unpacked_views_.try_emplace(index);
-        if (!is_new) return known->second;
+        const auto [unpacked, is_new] = unpacked_views_.try_emplace(index);
+        if (!is_new) return unpacked->second;
         const std::string place =
             member_place(element_place("bufferViews", index), fmt::format("extensions.{}", meshopt_name));
         MeshoptView as{.mode = text(packed, "mode"),
@@ -455,9 +457,9 @@ private:
             fail(place,
                 fmt::format("{} elements of {} bytes are not the {} bytes of the view", as.count, as.stride, size));
         try {
-            known->second = read_meshopt(bytes, as);
+            unpacked->second = read_meshopt(bytes, as);
         } catch (const ModelError& error) { fail(place, error.what()); }
-        return known->second;
+        return unpacked->second;
     }
 
     Array array(std::size_t index, const std::string& from, std::string_view expected) {
@@ -473,9 +475,9 @@ private:
         out.count = needed(one, "count", out.place);
         out.normalized = one.value("normalized", Json(false)) == Json(true);
         out.stride = out.components * size;
-        if (const auto place = whole(one, "bufferView", out.place)) {
-            const auto [bytes, stride] =
-                view(*place, whole(one, "byteOffset", out.place).value_or(0), member_place(out.place, "bufferView"));
+        if (const auto place = whole_number(one, "bufferView", out.place)) {
+            const auto [bytes, stride] = view(
+                *place, whole_number(one, "byteOffset", out.place).value_or(0), member_place(out.place, "bufferView"));
             if (stride > 0) out.stride = stride;
             out.bytes = bytes;
             need_bytes(out.place, bytes.size(), out.count, out.stride, out.components * size);
@@ -513,8 +515,8 @@ private:
         const std::size_t count = needed(sparse, "count", place);
         const auto part = [&](const char* key, std::size_t bytes) {
             const std::string inner = member_place(place, key);
-            const std::string_view out = view(
-                needed(sparse[key], "bufferView", inner), whole(sparse[key], "byteOffset", inner).value_or(0), inner)
+            const std::string_view out = view(needed(sparse[key], "bufferView", inner),
+                whole_number(sparse[key], "byteOffset", inner).value_or(0), inner)
                                              .first;
             need_bytes(inner, out.size(), count, bytes, bytes);
             return out;
@@ -573,7 +575,7 @@ private:
         };
         std::vector<Open> open, placed;  // placed: meshes with their transforms, in place of a node's
         if (size_of("scenes") > 0) {
-            const std::size_t index = whole(root_, "scene", "").value_or(0);
+            const std::size_t index = whole_number(root_, "scene", "").value_or(0);
             const std::string place = element_place("scenes", index);
             for (const std::size_t node : children(element("scenes", index, "scene"), "nodes", place))
                 open.push_back({node, {}, member_place(place, "nodes"), {}});
@@ -598,9 +600,9 @@ private:
             const Transform transform = next.parent.then(transform_of(node, place));
             std::vector<std::string> names = next.names;
             if (const std::string name = text(node, "name"); !name.empty() && scope_.whole_scene) names.push_back(name);
-            if (const auto mesh = whole(node, "mesh", place))
+            if (const auto mesh = whole_number(node, "mesh", place))
                 placed.push_back({*mesh, transform, member_place(place, "mesh"), names});
-            if (const auto camera = whole(node, "camera", place)) add_camera(*camera, transform, place);
+            if (const auto camera = whole_number(node, "camera", place)) add_camera(*camera, transform, place);
             if (extension(node, "KHR_lights_punctual")) ++dropped_["lights"];
             std::vector<std::size_t> inner = children(node, "children", place);
             std::ranges::reverse(inner);
@@ -612,11 +614,11 @@ private:
         std::map<std::size_t, std::pair<std::size_t, std::size_t>> shared;  // the parts of a mesh
         for (const Open& one : placed) {
             const bool is_copied = scope_.whole_scene && uses[one.node] > 1;
-            const auto [known, is_new] = shared.try_emplace(one.node, model.parts.size(), model.parts.size());
+            const auto [parts, is_new] = shared.try_emplace(one.node, model.parts.size(), model.parts.size());
             if (!is_copied || is_new) add_mesh(one.node, is_copied ? Transform{} : one.parent, one.from, one.names);
-            if (is_new) known->second.second = model.parts.size();
+            if (is_new) parts->second.second = model.parts.size();
             if (is_copied)
-                for (std::size_t k = known->second.first; k < known->second.second; ++k) {
+                for (std::size_t k = parts->second.first; k < parts->second.second; ++k) {
                     Part& part = model.parts[k];
                     part.placements.push_back(one.parent);
                     part.names.insert(part.names.end(), one.names.begin(), one.names.end());
@@ -647,8 +649,8 @@ private:
             add_primitive(mesh["primitives"][k], transform, element_place(member_place(place, "primitives"), k));
         for (std::size_t k = first; k < model.parts.size(); ++k) {
             model.parts[k].names = names;
-            std::vector<std::string>& all = model.parts[k].names;
-            if (const std::string name = text(mesh, "name"); !name.empty()) all.insert(all.begin(), name);
+            std::vector<std::string>& part_names = model.parts[k].names;
+            if (const std::string name = text(mesh, "name"); !name.empty()) part_names.insert(part_names.begin(), name);
         }
     }
 
@@ -656,7 +658,7 @@ private:
         constexpr std::size_t list = 4, strip = 5, fan = 6;
         if (!from.is_object() || !from.contains("attributes") || !from["attributes"].is_object())
             fail(place, "expected 'attributes'");
-        std::size_t mode = whole(from, "mode", place).value_or(list);
+        std::size_t mode = whole_number(from, "mode", place).value_or(list);
         if (mode > fan) fail(member_place(place, "mode"), fmt::format("expected a number from 0 to 6, not {}", mode));
         const Json& attributes = from["attributes"];
         if (mode < list || !attributes.contains("POSITION")) {
@@ -687,7 +689,7 @@ private:
     }
 
     std::size_t material(const Json& primitive, const std::string& place) {
-        const std::optional<std::size_t> index = whole(primitive, "material", place);
+        const std::optional<std::size_t> index = whole_number(primitive, "material", place);
         if (index) return (void)element("materials", *index, member_place(place, "material")), *index;
         if (model.materials.size() == size_of("materials")) model.materials.push_back({});
         return size_of("materials");
@@ -717,7 +719,7 @@ private:
     std::size_t add_vertices(const Json& attributes, const Transform& transform, const std::string& place,
         const std::optional<DracoMesh>& packed, Part& to) {
         const auto read = [&](const char* name, std::string_view type) -> std::optional<std::vector<double>> {
-            const std::optional<std::size_t> index = whole(attributes, name, place);
+            const std::optional<std::size_t> index = whole_number(attributes, name, place);
             if (!index) return std::nullopt;
             if (packed && packed->values.contains(name)) {
                 const std::size_t components = type == "VEC3" ? 3 : 2;
@@ -757,7 +759,7 @@ private:
 
     std::vector<std::uint32_t> corners_of(const Json& primitive, const std::string& place, std::size_t vertices) {
         std::vector<std::uint32_t> out;
-        const std::optional<std::size_t> index = whole(primitive, "indices", place);
+        const std::optional<std::size_t> index = whole_number(primitive, "indices", place);
         if (!index) {
             for (std::size_t k = 0; k < vertices; ++k) out.push_back(static_cast<std::uint32_t>(k));
             return out;

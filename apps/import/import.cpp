@@ -120,17 +120,18 @@ private:
         const Vec2<float> uv = has_uv_ && !part.uv.empty() ? part.uv[triangle[k]] : Vec2<float>{};
         // 0 is added, so that -0 becomes 0.
         const Corner corner{p.x + 0, p.y + 0, p.z + 0, n.x + 0, n.y + 0, n.z + 0, uv.x + 0, uv.y + 0};
-        const auto [known, is_new] = known_.try_emplace(corner, static_cast<std::uint32_t>(result.positions.size()));
-        if (!is_new) return known->second;
+        const auto [index, is_new] =
+            index_of_corner_.try_emplace(corner, static_cast<std::uint32_t>(result.positions.size()));
+        if (!is_new) return index->second;
         result.positions.push_back({corner[0], corner[1], corner[2]});
         if (has_normals_) result.normals.push_back({corner[3], corner[4], corner[5]});
         if (has_uv_) result.uv.push_back({corner[6], corner[7]});
-        return known->second;
+        return index->second;
     }
 
     ModelPlacement placement_;
     bool has_normals_ = false, has_uv_ = false;
-    std::unordered_map<Corner, std::uint32_t, CornerHash> known_;
+    std::unordered_map<Corner, std::uint32_t, CornerHash> index_of_corner_;
 };
 
 /// JSON has no numbers that are not finite: from 0 to 1e6, and 0 for NaN.
@@ -141,7 +142,7 @@ OrderedJson numbers_of(Vec3d v) { return {v.x, v.y, v.z}; }
 OrderedJson materials_of(const Model& model) {
     std::vector<std::size_t> triangles(model.materials.size());
     for (const Part& part : model.parts) triangles[part.material] += part.triangles.size();
-    OrderedJson all = OrderedJson::array();
+    OrderedJson materials = OrderedJson::array();
     for (std::size_t m = 0; m < model.materials.size(); ++m) {
         if (triangles[m] == 0) continue;
         const importer::Material& from = model.materials[m];
@@ -152,9 +153,9 @@ OrderedJson materials_of(const Model& model) {
         if (!from.texture.empty()) one["texture"] = from.texture;
         if (from.colours) one["colours"] = *from.colours;
         if (from.surface) one["surface"] = *from.surface;
-        all.push_back(std::move(one));
+        materials.push_back(std::move(one));
     }
-    return all;
+    return materials;
 }
 
 void write_all(int to, std::string_view bytes) {

@@ -95,10 +95,10 @@ Table densities_of(const SamplerQuery& query) {
 }
 
 std::vector<Table> context_of(const SceneRows& scene, std::size_t rows, const std::set<std::string>& uses) {
-    std::vector<Table> all;
+    std::vector<Table> tables;
     const auto surface = [&](const char* name, double SurfaceParameters::* which) {
         if (!uses.contains(name)) return;
-        all.push_back(
+        tables.push_back(
             per_run(name, scene, rows, {}, [&](std::size_t r, std::size_t) { return scene.runs[r].surface.*which; }));
     };
     surface("s", &SurfaceParameters::s);
@@ -106,12 +106,12 @@ std::vector<Table> context_of(const SceneRows& scene, std::size_t rows, const st
     surface("rho_s", &SurfaceParameters::lobe);
     for (const char* name : {"side", "eta"})  // scenes are opaque, and seen from the side of the normal
         if (uses.contains(name))
-            all.push_back(per_run(name, scene, rows, {}, [](std::size_t, std::size_t) { return 1.0; }));
+            tables.push_back(per_run(name, scene, rows, {}, [](std::size_t, std::size_t) { return 1.0; }));
     if (uses.contains("rho_d"))
-        all.push_back(
+        tables.push_back(
             per_run("rho_d", scene, rows, {3}, [&](std::size_t r, std::size_t c) { return scene.runs[r].rho_d[c]; }));
-    if (uses.contains("lights")) add_lights(scene, rows, all);
-    return all;
+    if (uses.contains("lights")) add_lights(scene, rows, tables);
+    return tables;
 }
 
 void put_lights(std::span<const SceneLight> lights, nb::dict& to) {

@@ -482,13 +482,18 @@ void Staging::clear(const Path& old, const Path& below, const Names& ours, const
 }
 
 bool Staging::keep_aside(const Path& from, const Path& name) {
-    int k = 1;
-    const auto as = [&] { return fmt::format("{}.~{}~", name.string(), k); };
-    while (is_there(out_ / as())) ++k;
-    if (!move_to(from, out_ / as())) return false;
+    const Path backup = free_backup_name(out_ / name);
+    if (!move_to(from, backup)) return false;
     messages_.push_back(fmt::format(
-        "{}/{} was not written by crescent: it is now {}", shown_, name.string(), fs::path(as()).filename().string()));
+        "{}/{} was not written by crescent: it is now {}", shown_, name.string(), backup.filename().string()));
     return true;
+}
+
+std::filesystem::path free_backup_name(const std::filesystem::path& file) {
+    fs::path backup;
+    for (int number = 1; number == 1 || is_there(backup); ++number)
+        backup = fmt::format("{}.~{}~", file.string(), number);
+    return backup;
 }
 
 }  // namespace crescent

@@ -84,6 +84,9 @@ struct PublishingFaults {
 /// Returns those of this process: none unless a test set some.
 PublishingFaults& publishing_faults();
 
+/// Where a user's file is kept when an output takes its name: FILE.~1~, or the first larger number that no file has.
+std::filesystem::path free_backup_name(const std::filesystem::path& file);
+
 // ---- Reads a whole file at once.
 
 /// Returns the bytes of a file; "" if it cannot be read.

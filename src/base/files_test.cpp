@@ -310,6 +310,17 @@ TEST_F(Publishing, NamesTheFileThatCannotBeWritten) {
     EXPECT_EQ(text_of(top_ / ".out.crescent/new/theirs"), "theirs");
 }
 
+TEST(BackupNames, AreTheFirstThatNoFileHas) {
+    const fs::path folder = fs::path(testing::TempDir()) / ("backups-" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    const fs::path file = folder / "notes.txt";
+    EXPECT_EQ(free_backup_name(file), folder / "notes.txt.~1~");
+    std::ofstream(folder / "notes.txt.~1~") << "mine";
+    fs::create_symlink("nowhere", folder / "notes.txt.~2~");
+    EXPECT_EQ(free_backup_name(file), folder / "notes.txt.~3~");
+    fs::remove_all(folder);
+}
+
 TEST(WholeFiles, BelowDevShmAreFiles) {
     if (!fs::is_directory("/dev/shm")) GTEST_SKIP() << "no /dev/shm";
     const std::string path = "/dev/shm/crescent-whole-" + std::to_string(getpid());

@@ -72,7 +72,7 @@ Mesh box_of(Vec3d size, double yaw, double pitch) {
 /// Pixels of a square image of 64 that see a mesh, and whether all of its corners are in it.
 struct View {
     int pixels = 0;
-    bool whole = true;
+    bool has_corners = true;
 };
 View view_of(const Mesh& mesh) {
     std::string text = experiment_for({{"m.mesh", tetrahedron()}}, std::nullopt);
@@ -86,7 +86,7 @@ View view_of(const Mesh& mesh) {
     for (const Vec3f& p : mesh.positions) {
         const Vec3d to = widen(p) - c.eye;
         const double depth = dot(to, forward);
-        out.whole = out.whole && depth > 0 && std::fabs(dot(to, across)) < tangent * depth &&
+        out.has_corners = out.has_corners && depth > 0 && std::fabs(dot(to, across)) < tangent * depth &&
             std::fabs(dot(to, up)) < tangent * depth;
     }
     constexpr int side = 64;
@@ -97,7 +97,7 @@ View view_of(const Mesh& mesh) {
             for (const Triangle& t : mesh.triangles) {  // Moeller and Trumbore 1997
                 const Vec3d a = widen(mesh.positions[t[0]]), u = widen(mesh.positions[t[1]]) - a,
                             v = widen(mesh.positions[t[2]]) - a, s = c.eye - a, p = cross(d, v), q = cross(s, u);
-                const double of = dot(u, p), x = dot(s, p) / of, y = dot(d, q) / of;
+                const double determinant = dot(u, p), x = dot(s, p) / determinant, y = dot(d, q) / determinant;
                 if (!(x >= 0 && y >= 0 && x + y <= 1)) continue;
                 ++out.pixels;
                 break;
@@ -113,8 +113,8 @@ TEST(ModelExperiment, SeesAllOfAModelOfAnyAspect) {
         for (const double yaw : {0.0, 0.4, 0.785, 2.0})
             for (const double pitch : {0.0, 0.35, 1.0, 1.5}) {
                 const View view = view_of(box_of(size, yaw, pitch));
-                EXPECT_TRUE(view.whole) << size.x << " x " << size.y << " x " << size.z << ", turned by " << yaw << ", "
-                                        << pitch;
+                EXPECT_TRUE(view.has_corners)
+                    << size.x << " x " << size.y << " x " << size.z << ", turned by " << yaw << ", " << pitch;
                 EXPECT_GT(view.pixels, 40)
                     << size.x << " x " << size.y << " x " << size.z << ", turned by " << yaw << ", " << pitch;
             }

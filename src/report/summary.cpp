@@ -128,8 +128,8 @@ std::string films(const std::map<std::string, std::string>& hashes, const Paint&
     std::size_t longest = 0;
     for (const auto& [name, hash] : hashes) longest = std::max(longest, width(name) + width(hash));
     const std::size_t across = longest + 2 <= 38 ? 2 : 1;
-    const std::size_t whole = paint.columns == no_limit ? longest + 4 : paint.columns - 2;
-    const std::size_t cell = across == 2 ? 38 : whole;
+    const std::size_t line = paint.columns == no_limit ? longest + 4 : paint.columns - 2;
+    const std::size_t cell = across == 2 ? 38 : line;
     std::size_t index = 0;
     for (const auto& [name, hash] : hashes) {
         const std::string digits = paint.columns == no_limit ? hash : clip(hash, cell / 2);

@@ -55,10 +55,10 @@ TEST(Summary, StaysWithinEightyColumnsWhateverTheNames) {
     EXPECT_LE(widest(text), 80u) << text;
     EXPECT_TRUE(first_line(text).starts_with("2 of 2 assertions FAIL: ")) << text;
     EXPECT_NE(text.find("Äöüß"), std::string::npos);
-    const std::string whole = terminal_summary(s.inputs(), s.timing, "/" + name + name, {}, false, 0);
-    EXPECT_EQ(whole.find("…"), std::string::npos) << whole;
-    EXPECT_NE(whole.find("/" + name + name + "/metrics.json"), std::string::npos);
-    EXPECT_NE(whole.find(s.metrics.bands[0].key.arm + " "), std::string::npos);
+    const std::string terminal = terminal_summary(s.inputs(), s.timing, "/" + name + name, {}, false, 0);
+    EXPECT_EQ(terminal.find("…"), std::string::npos) << terminal;
+    EXPECT_NE(terminal.find("/" + name + name + "/metrics.json"), std::string::npos);
+    EXPECT_NE(terminal.find(s.metrics.bands[0].key.arm + " "), std::string::npos);
 }
 
 TEST(Summary, PrintsHashesSpeedAndWhereToLook) {

@@ -18,24 +18,24 @@ def places(value, path=()):
         yield from places(one, (*path, key))
 
 
-def changed(whole, path, value):
-    out = copy.deepcopy(whole)
-    at = out
+def changed(document, path, value):
+    out = copy.deepcopy(document)
+    parent = out
     for key in path[:-1]:
-        at = at[key]
-    at[path[-1]] = value
+        parent = parent[key]
+    parent[path[-1]] = value
     return out
 
 
 chance = random.Random(1)
 for name in files:
     with open(name, encoding="utf-8") as file:
-        whole = json.load(file)
+        document = json.load(file)
     refused = 0
-    for path in chance.sample(sorted(places(whole), key=str), tries):
+    for path in chance.sample(sorted(places(document), key=str), tries):
         for value in ("x", [1], {}, -1.5, None):
             with open("damaged.json", "w", encoding="utf-8") as file:
-                json.dump(changed(whole, path, value), file)
+                json.dump(changed(document, path, value), file)
             done = subprocess.run([crescent, "report", "damaged.json", "--out", "damaged.html"], capture_output=True, text=True, timeout=60)
             said = done.stderr
             assert done.returncode in (0, 2), (name, path, value, said)

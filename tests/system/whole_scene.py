@@ -102,10 +102,10 @@ assert all(run["bad"] == 0 and run["y_mean"] > 0 for run in runs if "bad" in run
 for material in ("tiles", "gold", "lamp"):
     one = command("import", "scene.glb", "--out", "one.mesh", "--material", material).partition("[meshes.")[2]
     command("import", "scene.glb", "--out", "of-one", "--select", material)
-    whole = pathlib.Path("of-one/experiment.toml").read_text().partition("[meshes.")[2].partition("\n\n")[0]
+    folder = pathlib.Path("of-one/experiment.toml").read_text().partition("[meshes.")[2].partition("\n\n")[0]
     for key in ("rho_d", "rho_s", "alpha", "emission"):
-        values = [[line for line in text.splitlines() if line.startswith(key + " = ")] for text in (one, whole)]
-        dark = values[1] in ([], ["rho_s = [0, 0, 0]"]) or (key == "alpha" and "rho_s = [0, 0, 0]" in whole)
+        values = [[line for line in text.splitlines() if line.startswith(key + " = ")] for text in (one, folder)]
+        dark = values[1] in ([], ["rho_s = [0, 0, 0]"]) or (key == "alpha" and "rho_s = [0, 0, 0]" in folder)
         assert values[0] == values[1] or (dark and not values[0]), (material, values)
 
 # A second import keeps what was edited since the first one, says so, and says nothing of what was not.

@@ -43,7 +43,7 @@ struct Finding {
     std::string arm, name;
     State state = State::wrong;
     bool expected = false;  // expected, with the reason in `worst`
-    std::size_t count = 0, of = 0;
+    std::size_t count = 0, total = 0;
     const char* cases = "w_o";       // unit of the counts
     const Verdict* worst = nullptr;  // largest deviation in the evidence, else the first
     std::vector<std::pair<std::string, std::vector<std::string>>>

@@ -61,7 +61,8 @@ void add_steps(const Finding& f, FrontEnd front_end, std::vector<ScreenLine>& ou
     if (f.state == State::error || f.expected) return;
     if (!f.cause.empty()) out.push_back({{}, "  Cause: ", in_a_row(f.cause)});
     std::string next = in_a_row(next_step_text(*f.worst, front_end));
-    if (next.empty() && f.worst->wo && f.of > 1 && f.state == State::wrong) next = one_wo_text(*f.worst->wo, front_end);
+    if (next.empty() && f.worst->wo && f.total > 1 && f.state == State::wrong)
+        next = one_wo_text(*f.worst->wo, front_end);
     if (!next.empty()) out.push_back({{}, "  Next step: ", next});
 }
 

@@ -109,7 +109,7 @@ void note_range(Finding& f, const std::vector<const Verdict*>& verdicts) {
         if (!least || *v->integral < *least->integral) least = v;
         if (!greatest || *v->integral > *greatest->integral) greatest = v;
     }
-    if (every_wo && f.count < f.of && high > low) f.range = fmt::format(" ({:g} to {:g} deg)", low, high);
+    if (every_wo && f.count < f.total && high > low) f.range = fmt::format(" ({:g} to {:g} deg)", low, high);
     constexpr double one_value = 1.02, no_value = 0.01;
     if (least && *greatest->integral > one_value * *least->integral + no_value && f.named_cause.empty())
         f.named_cause = fmt::format("Over these {} p integrates to {:.4g} ({}) up to {:.4g} ({}).", f.cases,
@@ -184,7 +184,7 @@ std::vector<Finding> findings_of(const CheckResult& j) {
             for (const Verdict* v : members[i])
                 if (v->first_failure) out[i].worst = v;
         if (out[i].state == State::error) {
-            out[i].of = j.verdicts.size();
+            out[i].total = j.verdicts.size();
             out[i].cases = "verdicts";
         }
     }
@@ -198,16 +198,16 @@ std::vector<Finding> findings_of(const CheckResult& j) {
 
 std::string where_found(const Finding& f) {
     if (f.count == 1 && !f.worst->place.empty()) return "at " + f.worst->place;
-    if (f.of == 1 && f.worst->check_case == without_wo) return "";
+    if (f.total == 1 && f.worst->check_case == without_wo) return "";
     const char* as = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
-    return fmt::format("at {} of {} {}{}, {} {}", f.count, f.of, f.cases, f.range, as, f.worst->check_case);
+    return fmt::format("at {} of {} {}{}, {} {}", f.count, f.total, f.cases, f.range, as, f.worst->check_case);
 }
 
 std::string describe(const Finding& f, FrontEnd front_end) {
     const std::string message = described(*f.worst, f.named_cause, front_end);
     if (f.state == State::error && f.worst->check_case == before_any_case) return "error. " + message;
     if (f.state == State::error)
-        return fmt::format("error: {} of {} verdicts could not be evaluated, the first at {}. {}", f.count, f.of,
+        return fmt::format("error: {} of {} verdicts could not be evaluated, the first at {}. {}", f.count, f.total,
             f.worst->check_case, message);
     const std::string where = where_found(f);
     std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state), where.empty() ? "" : " " + where, message);
@@ -378,16 +378,16 @@ std::string with_error(double v, double se) {
 
 /// The mean over the rings between two angles.
 std::string ring_text(const std::vector<ImpliedDensity::Ring>& fine, double from, double to) {
-    double sum = 0, square = 0, whole = 0;
+    double sum = 0, square = 0, covered = 0;
     for (const ImpliedDensity::Ring& r : fine) {
         if (r.from < from || r.to > to) continue;
         const double angle = math::cos(r.from * pi / 180) - math::cos(r.to * pi / 180);
         sum += r.pdf * angle;
         square += sqr(r.error * angle);
-        whole += angle;
+        covered += angle;
     }
-    if (to > 90) whole = 1;  // the list ends at the last ring with draws
-    return whole > 0 ? with_error(sum / whole, std::sqrt(square) / whole) : "-";
+    if (to > 90) covered = 1;  // the list ends at the last ring with draws
+    return covered > 0 ? with_error(sum / covered, std::sqrt(square) / covered) : "-";
 }
 
 std::string line_of(const ImpliedDensity& d, const std::string& name) {

@@ -51,10 +51,10 @@ TEST(WhatIsWrong, HasAtMostEightLinesForManyFaults) {
         EXPECT_LE(message.size(), most);
         EXPECT_GE(message.size() + 3, most);
         EXPECT_EQ(message[0].find("valid is wrong"), 0u);
-        std::string all;
-        for (const std::string& line : message) all += line;
+        std::string text;
+        for (const std::string& line : message) text += line;
         for (const Verdict& v : j.verdicts)
-            if (v.state != State::error) EXPECT_NE(all.find(v.name), std::string::npos) << v.name << "\n" << all;
+            if (v.state != State::error) EXPECT_NE(text.find(v.name), std::string::npos) << v.name << "\n" << text;
     }
     EXPECT_EQ(what_is_wrong(of_verdicts({{"valid", State::right, 0, ""}})), "");
 }

@@ -184,13 +184,13 @@ void DensityGrid::replace(std::vector<double> values) {
         std::vector<std::pair<std::size_t, double>> found;
         for (std::size_t i : unknown) {
             double sum = 0, least = INFINITY, largest = -INFINITY, error = 0;
-            std::size_t known = 0;
+            std::size_t neighbours = 0;
             for_each_near(i, 1, [&](std::size_t near) {
                 if (std::isnan(values_[near])) return;
                 sum += values_[near];
-                ++known;
+                ++neighbours;
             });
-            if (known == 0) {
+            if (neighbours == 0) {
                 later.push_back(i);
                 continue;
             }
@@ -201,7 +201,7 @@ void DensityGrid::replace(std::vector<double> values) {
                 error = std::max(error, spreads_[near]);
             });
             spreads_[i] = largest - least + error;
-            found.emplace_back(i, sum / static_cast<double>(known));
+            found.emplace_back(i, sum / static_cast<double>(neighbours));
         }
         if (found.empty()) break;
         for (const auto& [i, value] : found) values_[i] = value;
