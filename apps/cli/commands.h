@@ -38,6 +38,7 @@ struct RunFlags {
     double keep_after = 10;        // s
     double timeout = 0;            // s that an answer of a program or plugin may take; 0: the defaults
     bool quiet = false, preview = false, no_code = false;
+    bool no_references = false, no_studies = false;
 };
 int run(const RunFlags& flags);
 /// The file that was given, or the installed experiment of that name: `crescent run gallery`.

@@ -83,6 +83,9 @@ void add_run(CLI::App& app, Work& work) {
         ->type_name("PART,..")
         ->check(not_empty)
         ->excludes(preview);
+    c->add_flag("--no-studies", f->no_studies, "leave out tails, furnaces and article checks")->excludes(preview);
+    c->add_flag("--no-references", f->no_references, "films of the first seed alone, without metrics")
+        ->excludes(preview);
     c->add_option("--threads", f->threads, "default: as many as this process may use")
         ->type_name("N")
         ->check(whole_number(1, 4096));

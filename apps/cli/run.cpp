@@ -21,6 +21,8 @@ std::string command_of(const RunFlags& flags) {
     for (const std::string& text : flags.overrides) command += " --set " + shell_word(text);
     if (flags.seeds > 0) command += " --seeds " + std::to_string(flags.seeds);
     if (!flags.seed_range.empty()) command += " --seed-range " + flags.seed_range;
+    if (flags.no_references) command += " --no-references";
+    if (flags.no_studies) command += " --no-studies";
     if (flags.backend != "cpu") command += " --instrument " + flags.backend;
     if (!flags.gl_context.empty()) command += " --gl-context " + flags.gl_context;
     if (flags.gl_device >= 0) command += " --gl-device " + std::to_string(flags.gl_device);
@@ -52,7 +54,10 @@ int run(const RunFlags& flags) {
     std::vector<std::string> overrides = flags.overrides;
     if (flags.seeds > 0) overrides.push_back("seeds=" + std::to_string(flags.seeds));
     RunOptions options;
+    if (flags.no_references) options.parts = {.metrics = true, .films = true, .plates = false, .report = false};
     if (!flags.only.empty()) options.parts = output_parts(flags.only);
+    options.references = !flags.no_references;
+    options.studies = !flags.no_studies;
     if (!flags.seed_range.empty())
         std::sscanf(flags.seed_range.c_str(), "%d:%d", &options.seeds.first, &options.seeds.last);
     const Experiment experiment = load(experiment_file(flags.file), overrides);

@@ -102,44 +102,12 @@ struct RunSoFar {
     Engine engine;
     std::optional<Prepared> prepared;
     std::vector<JobResult> results;
-    std::vector<std::pair<RunKey, Film>> films;  // without references, that no metric is measured of
 };
 
 /// What is computed beside the films.
 struct Beside {
     bool references = true, studies = false;
 };
-
-/// Estimates the films of a job of the only seed; without references there are no metrics.
-void estimate_alone(RunSoFar& run, const Job& job, int repeats, ProgressMonitor& monitor) {
-    const Job opened = with_sampler(job, *run.prepared);
-    std::vector<double> seconds;
-    std::vector<Film> films;
-    for (int k = 0; k < repeats; ++k) {
-        monitor.check();
-        const Stopwatch start;
-        on_threads(threads_to_be_had(run.engine.threads),
-            [&] { films = run.engine.backend->films(view_at(*run.prepared, job.s), opened, monitor); });
-        seconds.push_back(start.seconds());
-    }
-    JobResult timed;
-    timed.job = job;
-    timed.samples = static_cast<double>(run.prepared->geometry_pixels * job.n.back());
-    timed.seconds = quantile(std::move(seconds), 0.5);
-    run.results.push_back(std::move(timed));
-    for (Film& film : films) {
-        const RunKey key{job.arm, film.n, job.s, job.seed};
-        run.films.emplace_back(key, std::move(film));
-    }
-}
-
-/// Adds the films that no metric was measured of: assertions are skipped.
-void add_films_alone(RunSoFar& run, Measured& all) {
-    if (run.films.empty()) return;
-    std::ranges::move(run.films, std::back_inserter(all.films));
-    run.films.clear();
-    for (AssertionResult& a : all.metrics.assertions) a.skipped = "no reference was computed";
-}
 
 /// The wall-clock seconds of a job: the median over so many executions, of which the first is given.
 double median_seconds(const RunSoFar& run, const Job& job, double first, int repeats, ProgressMonitor& monitor) {
@@ -164,13 +132,13 @@ std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& 
         ++seeds;
     }
     if (seeds == 0 || !run.prepared || run.prepared->stopped) return {};
-    const RunPlan part = plan(experiment, {run.plan.range.first, run.plan.range.first + seeds - 1});
+    RunPlan part = plan(experiment, {run.plan.range.first, run.plan.range.first + seeds - 1});
+    part.references = run.plan.references;
     std::erase_if(run.results, [&](const JobResult& r) { return !std::ranges::count(part.seeds, r.job.seed); });
     PolledMonitor monitor;
     const Work here(&monitor);
     Measured done =
         collect(part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", false});
-    add_films_alone(run, done);
     return result_of(std::move(done));
 }
 
@@ -186,20 +154,17 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
     bool complete = false;
     const auto work = [&] {
         run.plan = plan(experiment, {first, beside.references ? last : first});
+        run.plan.references = beside.references;
         run.engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         run.prepared = look(run.plan, run.engine);
         const Stopwatch start;
-        if (beside.references) add_references(run.plan, *run.prepared, run.engine, monitor);
+        add_references(run.plan, *run.prepared, run.engine, monitor);
         monitor.check();
         const double references = start.seconds();
         for (std::size_t k = 0; k < run.plan.jobs.size(); ++k) {
             const Job& job = run.plan.jobs[k];
             monitor.check();
             begin_seed(run.plan, k, run.prepared->geometry_pixels * static_cast<std::uint64_t>(repeats), monitor);
-            if (!beside.references) {
-                estimate_alone(run, job, repeats, monitor);
-                continue;
-            }
             JobResult result =
                 execute(run.plan, *run.prepared, job, run.engine, monitor, job.seed == run.plan.seeds.front());
             result.seconds = median_seconds(run, job, result.seconds, repeats, monitor);
@@ -210,7 +175,6 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
         Measured all = collect(run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor,
             {"crescent.run", beside.studies});
         all.timing.stages.insert(all.timing.stages.begin(), {{"references", references}, {"films", films}});
-        add_films_alone(run, all);
         run.results.clear();
         run.prepared.reset();
         out = result_of(std::move(all));

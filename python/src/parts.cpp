@@ -100,6 +100,7 @@ RunResult run_part(const Experiment& experiment, int first, int last, const Name
             collect(what, std::move(prepared), std::move(results), engine, monitor, {"crescent sweep", false});
         monitor.check();
         on_threads(engine.threads, [&] { add_tails(what, scene, engine.isa, monitor, jobs, all.shapes, all.metrics); });
+        all.metrics.has_studies = true;  // furnaces and article checks are a result of their own: studies()
         leave_out_files(what, all.provenance);
         out = result_of(std::move(all));
     });

@@ -164,8 +164,11 @@ double side(ParsedQuantity q, bool over_seeds, const Measurements& measurements,
         out.reference_good = false;
         out.reference_fault = fault;
     }
-    if (!measurements.drawn && !q.number && make_adapter(q.word) == QuantityOf::plate)
-        out.skipped = "no plates were drawn";
+    if (q.number) return value;
+    const QuantityOf source = make_adapter(q.word);
+    if (!measurements.drawn && source == QuantityOf::plate) out.skipped = "no plates were drawn";
+    if (!measurements.metrics.has_studies && (source == QuantityOf::furnace || q.word == "tail"))
+        out.skipped = "tails and furnaces were left out";
     return value;
 }
 

@@ -131,6 +131,19 @@ TEST(Assertions, AreSkippedWithoutTheSeedsTheyNeed) {
     EXPECT_EQ(skipped(m), (std::vector<std::string>{"needs seeds 1 to 4", "needs seed 1", "", "", ""}));
 }
 
+TEST(Assertions, OfTailsAndFurnacesAreSkippedWithoutStudies) {
+    Metrics m = measured();
+    m.has_studies = false;
+    m.furnaces.clear();
+    const auto results = evaluate_assertions(
+        two_arms({{"furnace(white) == 0.27", false}, {"tail.H(a, n=4) < 1", false}, {"fireflies(a) == 5", false}}), m,
+        {});
+    EXPECT_EQ(results[0].skipped, "tails and furnaces were left out");
+    EXPECT_EQ(results[1].skipped, "tails and furnaces were left out");
+    EXPECT_EQ(results[2].skipped, "");
+    EXPECT_TRUE(results[2].pass);
+}
+
 TEST(Assertions, FailOnWhatIsNotANumberOrWasNotMeasured) {
     Metrics m = measured();
     m.runs[0].regions[0].rmse = std::numeric_limits<double>::quiet_NaN();

@@ -147,6 +147,7 @@ struct Metrics {
     std::map<std::string, std::string> film_hashes;  // "phong n=64 s=32" -> hash
     std::uint64_t geometry_pixels = 0;
     std::optional<std::uint32_t> published_seed;  // of the published values, if known
+    bool has_studies = true;                      // false: tails, furnaces and article checks were left out
 
     /// Returns null if there is no such run.
     const RunMetrics* find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const;
@@ -227,7 +228,8 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
 /// Returns one result for each assertion, in the experiment's order. over = "median" compares the median of each side
 /// over all seeds of the series (for an even count, the mean of the middle two). A NaN on either side, at any of these
 /// seeds, fails. An assertion is skipped if it needs what this run does not have: a seed (all of the series for a
-/// median, else the experiment's own; none if neither side is read from a film), or, with `drawn` = false, a plate.
+/// median, else the experiment's own; none if neither side is read from a film), a tail or furnace without studies, or,
+/// with `drawn` = false, a plate.
 std::vector<AssertionResult> evaluate_assertions(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn = true);
 

@@ -197,7 +197,7 @@ std::string metrics_json(const ReportInputs& in) {
     const auto of_rmse = [&](const SeedSpread& b) { return band_json(b, paired && b.metric.starts_with("rmse")); };
     Json provenance = provenance_json(in.provenance);
     provenance["experiment"] = experiment_json(in);
-    const Json out = {{"format", "crescent metrics 2"}, {"title", in.experiment.title},
+    Json out = {{"format", "crescent metrics 2"}, {"title", in.experiment.title},
         {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels},
         {"runs", list(m.runs, [&](const RunMetrics& run) { return run_json(run, paired); })},
         {"bands", list(m.bands, of_rmse)},
@@ -205,6 +205,7 @@ std::string metrics_json(const ReportInputs& in) {
         {"furnace", list(m.furnaces, furnace_json)}, {"references", list(m.references, reference_json)},
         {"assertions", list(m.assertions, assertion_json)}, {"films", m.film_hashes},
         {"evidence", evidence_json(in.evidence)}, {"provenance", std::move(provenance)}};
+    if (!m.has_studies) out["studies"] = false;
     return text(out);
 }
 

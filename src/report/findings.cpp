@@ -103,6 +103,13 @@ std::string Findings::region_where_worst(const std::string& a, const std::string
     return worst;
 }
 
+std::vector<std::string> Findings::warnings() const {
+    std::vector<std::string> out = warnings_of(in_.experiment);
+    if (!in_.metrics.has_studies && in_.experiment.seeds > 1)
+        out.emplace_back("tails were left out: intervals of heavy tails are not marked");
+    return out;
+}
+
 bool Findings::anything_published() const {
     const auto has = [](const auto& x) { return x.published.has_value(); };
     const Metrics& m = in_.metrics;

@@ -57,6 +57,8 @@ public:
     /// Returns the region in which rmse(a)/rmse(b) at n is largest, "" if there is none.
     std::string region_where_worst(const std::string& a, const std::string& b, std::uint64_t n) const;
 
+    /// Returns the warnings of the experiment, and of what was left out of the run.
+    std::vector<std::string> warnings() const;
     bool anything_published() const;
     double s() const { return in_.experiment.s(); }
     std::uint64_t bad_samples() const;

@@ -180,6 +180,7 @@ MetricsFile file_of(const StoredJson& json, const std::string& name) {
     m.shape_pixels = json.at("shape_pixels").get<std::map<std::string, std::uint64_t>>();
     m.film_hashes = json.at("films").get<std::map<std::string, std::string>>();
     m.geometry_pixels = json.at("geometry_pixels").get<std::uint64_t>();
+    m.has_studies = !json.contains("studies") || json.at("studies").get<bool>();
     out.evidence = evidence_of(json.at("evidence"));
     return out;
 }

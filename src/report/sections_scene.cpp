@@ -94,8 +94,8 @@ Json scene_section(Page& page) {
             {"rotation", shortest(e.sky->rotation)}, {"scale", shortest(e.sky->scale)}};
     return {{"eye", vec(e.camera.eye)}, {"target", vec(e.camera.target)}, {"vfov", shortest(e.camera.vfov_deg)},
         {"width", e.image.width}, {"height", e.image.height}, {"geometry_pixels", page.in.metrics.geometry_pixels},
-        {"warnings", warnings_of(e)}, {"plates", page.figures.plates(PlateKind::gallery)}, {"shapes", shapes_of(page)},
-        {"lights", lights}, {"sky", sky}, {"fill", rgb(e.fill)}};
+        {"warnings", page.find.warnings()}, {"plates", page.figures.plates(PlateKind::gallery)},
+        {"shapes", shapes_of(page)}, {"lights", lights}, {"sky", sky}, {"fill", rgb(e.fill)}};
 }
 
 // ---- The densities of the arms with the maps that draw from them, as stated in the samplers' own files.

@@ -198,8 +198,7 @@ std::string terminal_summary(const ReportInputs& in, const Timing& timing, const
             paint(red,
                 fmt::format(
                     "  {}: NaN, infinite or negative,\n  or a pdf that cannot be used", plural(bad, "bad sample"))));
-    for (const std::string& warning : warnings_of(in.experiment))
-        out += "\n" + paint.cut("  warning: " + warning) + "\n";
+    for (const std::string& warning : Findings(in).warnings()) out += "\n" + paint.cut("  warning: " + warning) + "\n";
     return out + "\n" + speed(timing, paint) + shares(timing, paint) + where(in, out_dir, parts, paint);
 }
 

@@ -42,8 +42,10 @@ void take_results(std::vector<JobResult>&& results, Measured& out) {
         const Job& job = result.job;
         out.timing.arms.push_back(
             {job.arm, job.n.back(), job.s, static_cast<std::uint64_t>(result.samples), result.seconds});
-        for (std::size_t r = 0; r < result.films.size(); ++r)
-            out.films.emplace_back(result.metrics[r].key, std::move(result.films[r]));
+        for (Film& film : result.films) {
+            const RunKey key{job.arm, film.n, job.s, job.seed};
+            out.films.emplace_back(key, std::move(film));
+        }
         auto& runs = out.metrics.runs;
         runs.insert(runs.end(), result.metrics.begin(), result.metrics.end());
     }
@@ -205,11 +207,14 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
     }
     add_view(prepared, out);
     out.metrics.series = seeds_of(plan.whole);
+    out.metrics.has_studies = options.studies;
     stage("metrics", [&] {
         add_hashes(out);
         add_references_compared(out);
         add_spreads(out);
     });
+    if (!plan.references)
+        for (AssertionResult& assertion : out.metrics.assertions) assertion.skipped = "no reference was computed";
     out.provenance = provenance_of(plan, *with.backend, options.command);
     add_devices(out.outside, out.provenance);
     for (AssertionResult& a : with.backend->assertions()) out.metrics.assertions.push_back(std::move(a));

@@ -100,7 +100,7 @@ void compute(const RunPlan& plan, const Prepared& prepared, const Engine& engine
     std::vector<Film> films = engine.backend->films(view_at(prepared, out.job.s), out.job, monitor);
     out.samples = samples;
     out.seconds = start.seconds();
-    out.metrics = metrics_of(plan, prepared, out.job, films, engine.isa);
+    if (plan.references) out.metrics = metrics_of(plan, prepared, out.job, films, engine.isa);
     if (keep_films) out.films = std::move(films);
     else if (checkpoint) checkpoint->add(out.metrics);
 }
@@ -191,6 +191,7 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
 }
 
 void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor) {
+    if (!plan.references) return;
     const Engine with = settled(engine);
     prepared.stopped = !unless_stopped(with.threads, monitor, [&] {
         compute_references(plan, prepared, with, monitor);

@@ -58,7 +58,7 @@ std::vector<std::uint64_t> count_in_view(const Experiment& experiment, const Sha
 /// Prepares what the camera sees, and the samplers that are not built in. Throws InputError if it sees nothing,
 /// OutputError if memory is insufficient or a sampler does not start.
 Prepared look(const RunPlan& plan, const Engine& engine = {});
-/// Adds the references that the experiment requests.
+/// Adds the references that the experiment requests, unless the plan has none.
 void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor);
 /// Does both steps.
 Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& monitor);
@@ -66,7 +66,7 @@ Prepared prepare(const RunPlan& plan, const Engine& engine, ProgressMonitor& mon
 /// The films and metrics of a job.
 struct JobResult {
     Job job;
-    std::vector<RunMetrics> metrics;  // one per sample count; collect() adds tails
+    std::vector<RunMetrics> metrics;  // one per sample count; collect() adds tails; none without references
     std::vector<Film> films;          // one per sample count; none if they were not requested
     double samples = 0;               // number drawn in this call
     double seconds = 0;               // of its films, without their metrics

@@ -226,6 +226,8 @@ Measured join_parts(const std::vector<Part>& parts, const Rows& rows, const std:
     out.metrics.film_hashes = of_first.film_hashes;
     out.metrics.references = of_first.references;
     out.metrics.furnaces = of_first.furnaces;
+    out.metrics.has_studies =
+        std::ranges::any_of(parts, [](const Part& part) { return part.file.metrics.has_studies; });
     out.metrics.shape_pixels = of_first.shape_pixels;
     out.metrics.geometry_pixels = of_first.geometry_pixels;
     out.evidence = begins->file.evidence;

@@ -42,6 +42,7 @@ struct RunPlan {
     std::vector<std::uint32_t> seeds;  // all different; films of the first are kept, only metrics of the others
     std::vector<double> exponents;     // every s of a job: each needs a reference
     std::vector<Job> jobs;             // seed by seed
+    bool references = true;            // false: films alone, without metrics
 };
 
 /// Throws InputError if the series has no such seeds, or the published values cannot be read.

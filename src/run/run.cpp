@@ -1,6 +1,6 @@
 // What can fail early comes first: the font, the view, the samplers, the folder, the outputs' names. Then references,
-// jobs, collect, write, commit; the checkpoint is removed last, and there is none if an arm is a program. Films alone
-// need only the first seed.
+// jobs, collect, write, commit; the checkpoint is removed last, and there is none if an arm is a program, or without
+// references. Films alone need only the first seed.
 #include "run/run.h"
 
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "base/errors.h"
 #include "base/files.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -22,12 +23,22 @@ namespace crescent {
 namespace {
 
 /// Films alone need neither other seeds nor the additional measurements.
-bool films_alone(const OutputParts& parts) { return parts.films && !parts.metrics && !parts.draws(); }
+bool films_alone(const RunOptions& options) {
+    const OutputParts& parts = options.parts;
+    return !options.references || (parts.films && !parts.metrics && !parts.draws());
+}
 
 RunPlan plan_of(const Experiment& experiment, const RunOptions& options) {
-    RunPlan whole = plan(experiment, options.seeds);
-    if (!films_alone(options.parts)) return whole;
-    return plan(experiment, {whole.range.first, whole.range.first});
+    RunPlan out = plan(experiment, options.seeds);
+    if (films_alone(options)) out = plan(experiment, {out.range.first, out.range.first});
+    out.references = options.references;
+    return out;
+}
+
+void check_options(const RunOptions& options) {
+    if (!options.references && options.parts.draws())
+        throw InputError({"--no-references", 0, 0},
+            "expected together with --only metrics, films or both: plates and the report need a reference");
 }
 
 double samples_of(const RunPlan& plan, std::uint32_t seed, std::uint64_t pixels) {
@@ -58,8 +69,8 @@ Measured measured(const RunPlan& plan, Prepared prepared, const Engine& engine, 
     const double references = start.seconds();
     std::vector<JobResult> results = execute_all(plan, prepared, engine, monitor, checkpoint);
     const double estimating = start.seconds();
-    Measured out = collect(
-        plan, std::move(prepared), std::move(results), engine, monitor, {options.command, !films_alone(options.parts)});
+    Measured out = collect(plan, std::move(prepared), std::move(results), engine, monitor,
+        {options.command, options.studies && !films_alone(options)});
     monitor.check();
     out.timing.estimating_s = estimating;
     out.timing.stages.insert(
@@ -87,6 +98,7 @@ void begin_seed(const RunPlan& plan, std::size_t job, std::uint64_t pixels, Prog
 }
 
 RunResult run(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor) {
+    check_options(options);
     const Stopwatch start;
     const std::string out = std::filesystem::absolute(options.out).string();  // a sampler may change the current folder
     const Engine engine = engine_of(options);
@@ -97,7 +109,7 @@ RunResult run(const Experiment& experiment, const RunOptions& options, ProgressM
     Staging staging(out);
     staging.expect(outputs_of(plan, options.parts));
     std::optional<Checkpoint> checkpoint;  // a program may draw differently in the next run
-    if (!may_change(plan.experiment))
+    if (plan.references && !may_change(plan.experiment))
         checkpoint.emplace(plan.experiment, checkpoint_key(plan, engine), out, options.keep_after_s, monitor);
     Measured results =
         measured(plan, std::move(prepared), engine, options, monitor, checkpoint ? &*checkpoint : nullptr);

@@ -27,6 +27,8 @@ struct RunOptions {
     double timeout_s = 0;              // for one response of a program or plugin; 0: 10 and 60 s
     OutputParts parts;
     SeedRange seeds;
+    bool references = true;    // false: films of the first seed alone, without metrics, plates and report
+    bool studies = true;       // tails, furnaces and article checks, which need references
     std::size_t columns = 80;  // of the summary, where longer lines are cut; 0: none is cut
 };
 

@@ -72,6 +72,32 @@ TEST(RunSteps, EndTheirStagesAtTheirTotals) {
     EXPECT_EQ(measured.timing.stages[0].first, "references");
 }
 
+TEST(RunSteps, WithoutStudiesHaveTheSameOtherMetrics) {
+    ProgressMonitor monitor;
+    const Measured studied = measure_in_memory(tiny(), {}, monitor);
+    const Measured unstudied = measure_in_memory(tiny(), {.studies = false}, monitor);
+    EXPECT_TRUE(studied.metrics.has_studies);
+    EXPECT_FALSE(unstudied.metrics.has_studies);
+    Measured without_tails = studied;
+    for (RunMetrics& run : without_tails.metrics.runs)
+        for (RegionMetrics& region : run.regions) region.tail.reset();
+    EXPECT_NE(metrics_csv(report_inputs(studied)), metrics_csv(report_inputs(unstudied)));
+    EXPECT_EQ(metrics_csv(report_inputs(without_tails)), metrics_csv(report_inputs(unstudied)));
+}
+
+TEST(RunSteps, WithoutReferencesHaveTheFilmsOfTheFirstSeedAlone) {
+    ProgressMonitor monitor;
+    const Measured whole = measure_in_memory(tiny(), {}, monitor);
+    const Measured films = measure_in_memory(tiny(), {.references = false}, monitor);
+    ASSERT_EQ(films.films.size(), whole.films.size());
+    for (const auto& [key, film] : films.films) EXPECT_EQ(hash(film), hash(*whole.film(key))) << to_string(key);
+    EXPECT_TRUE(films.metrics.runs.empty());
+    EXPECT_EQ(films.reference(32), nullptr);
+    EXPECT_FALSE(films.metrics.assertions.empty());
+    for (const AssertionResult& assertion : films.metrics.assertions)
+        EXPECT_EQ(assertion.skipped, "no reference was computed");
+}
+
 TEST(RunSteps, ComputeTheArticleReferenceOnRequest) {
     ProgressMonitor monitor;
     const RunPlan plan = crescent::plan(tiny({"reference.monte_carlo=true", "seeds=1"}));

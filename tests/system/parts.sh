@@ -14,6 +14,35 @@ expect 0 "$CRESCENT" run "$tiny" --quiet --out films --only films
 case "$(names films)" in *json*metrics* | *plates* | *report*) die "--only films: $(names films)" ;; esac
 expect 0 "$CRESCENT" run "$tiny" --quiet --seeds 5 --out metrics --only plates,report
 [ -e metrics/report.html ] && [ ! -e metrics/metrics.json ] || die "--only plates,report: $(names metrics)"
+
+# Without tails, furnaces and article checks every other number is the same, and the assertions on them are skipped.
+grep -q ',tail_' whole/metrics.csv || die "the run has no tails that could be left out"
+furnace=(--set 'furnaces.white={arm = "uniform", shape = "ball", part = "combined", n = 64}')
+skipped=(--set 'assertions.white.check="furnace(white) > 9"' --set 'assertions.tail.check="tail.ball(uniform) > 9"')
+expect 1 "$CRESCENT" run "$tiny" --quiet --seeds 2 --only metrics "${furnace[@]}" "${skipped[@]}" --out studied
+expect 0 "$CRESCENT" run "$tiny" --quiet --seeds 2 --only metrics "${furnace[@]}" "${skipped[@]}" --no-studies --out unstudied
+grep -q '^2 assertions skipped: tails and furnaces were left out$' printed || die "not skipped: $(cat printed)"
+grep -q 'warning: tails were left out' printed || die "no warning: $(cat printed)"
+grep -v ',tail_' studied/metrics.csv | cmp - unstudied/metrics.csv || die "--no-studies changes other numbers"
+grep -q '"studies": false' unstudied/metrics.json || die "metrics.json does not say that studies were left out"
+grep -q -- '--no-studies' unstudied/metrics.json || die "the command does not have --no-studies"
+expect 0 "$CRESCENT" report unstudied/metrics.json
+expect 0 "$CRESCENT" run "$tiny" --quiet --no-studies --out page
+[ -e page/report.html ] || die "no report without studies: $(names page)"
+
+# Without references there are the films of the first seed, and no metrics.
+expect 0 "$CRESCENT" run "$tiny" --quiet --seeds 5 --no-references --out bare
+(cd whole && ls films | grep -v reference) | diff - <(ls bare/films) || die "--no-references: $(names bare)"
+hashes() { grep -o '"[^"]* n=[0-9]* s=[^"]*": "[0-9a-f]*"' "$1/metrics.json"; }
+[ "$(hashes bare | wc -l)" -eq 6 ] && diff <(hashes whole) <(hashes bare) || die "--no-references changes films"
+[ "$(wc -l <bare/metrics.csv)" -eq 1 ] || die "metrics without a reference: $(head -n 3 bare/metrics.csv)"
+grep -q '^1 assertion skipped: no reference was computed$' printed || die "not skipped: $(cat printed)"
+expect 0 "$CRESCENT" run "$tiny" --quiet --no-references --only metrics --out bare
+[ "$(names bare)" = "./junit.xml ./metrics.csv ./metrics.json ./timing.json " ] || die "--only metrics: $(names bare)"
+for only in plates report films,report; do
+    expect 2 "$CRESCENT" run "$tiny" --no-references --only "$only" --out nowhere
+    grep -q '^--no-references: expected together with --only metrics, films or both' said || die "why: $(cat said)"
+done
 expect 2 "$CRESCENT" run "$tiny" --only metrix --out nowhere
 grep -q "did you mean 'metrics'" said || die "no hint: $(cat said)"
 expect 2 "$CRESCENT" run "$tiny" --only '' --out nowhere
