@@ -269,7 +269,7 @@ class Experiment:
         """What identifies an experiment: every value but the number of seeds, and its samplers: their files, code,
         attributes, closures and the globals that they name."""
         core = str(self._with_arms()._core.hash)
-        ids = _sampler_ids(self.samplers)
+        ids = _sampler_ids(self)
         return hashlib.sha256(repr([core, sorted(ids.items())]).encode()).hexdigest()[:16] if ids else core
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -290,12 +290,12 @@ class Experiment:
         return of_experiment(self)
 
 
-def _sampler_ids(samplers: Mapping[str, Any]) -> dict[str, str]:
-    """The identities of the samplers in Python, and what of them cannot be hashed."""
-    from ._sweep.identity import sampler_id, unhashable_of
+def _sampler_ids(e: Experiment) -> dict[str, str]:
+    """The identities of the samplers in Python and of the files that arms name, and what of them cannot be hashed."""
+    from ._sweep.identity import file_ids, sampler_id, unhashable_of
 
-    out = {}
-    for name, sampler in samplers.items():
+    out = file_ids(e._tree()["arms"])
+    for name, sampler in e.samplers.items():
         kinds = unhashable_of(sampler)
         out[name] = sampler_id(sampler) + (f" with {', '.join(kinds)}, which cannot be hashed" if kinds else "")
     return out
@@ -433,7 +433,7 @@ class Measured:
 
     def __init__(self, core: _crescent.RunResult, samplers: Mapping[str, str] | None = None) -> None:
         self._core = core
-        self.samplers: dict[str, str] = dict(samplers or {})  #: the identities of the samplers in Python, by arm
+        self.samplers: dict[str, str] = dict(samplers or {})  #: the identities of the samplers in Python and in files, by arm
         self._rows: list[dict[str, Any]] | None = None
         self.films: Films = Films([Film(*film) for film in core.films], core.s)
         self.references: dict[float, Mapping[str, NDArray[np.float32]]] = {s: planes for s, planes in core.references}  #: by s: r, g, b, y, error
@@ -662,11 +662,11 @@ def run(
                 kept=kept,
             )
         except KeyboardInterrupt:
-            part = Measured(kept[0], _sampler_ids(e.samplers)) if kept else None
+            part = Measured(kept[0], _sampler_ids(e)) if kept else None
             if part is not None and folder is not None:
                 part.write(folder)
             raise RunInterrupted(part) from None
-    measured = Measured(core, _sampler_ids(e.samplers))
+    measured = Measured(core, _sampler_ids(e))
     if folder is not None:
         measured.write(folder)
     return measured

@@ -30,7 +30,7 @@ from .identity import NUMERICS, _of_python, arms_of, digest, scene_id
 from .plan import points_of
 from .progress import Progress
 from .store import Store, locked, read_json, write_whole
-from .sweep import Say, _folder, usable_points
+from .sweep import Say, _folder, say_unhashable, usable_points
 
 KINDS = ("right", "heavy-tailed", "inconclusive", "wrong", "error")
 _COLOURS = {
@@ -223,6 +223,7 @@ def _of_arms(
     if unused := {"n", "seed", "seeds"} & set(values[0]):
         raise UsageError(f"--over {unused.pop()}: a check of an arm does not depend on it")
     points, failed = usable_points(*points_of(base, values, int(base["seeds"]), versions))
+    say_unhashable(points, options.say)
     scene, arms = scene_id(base._with_arms()), arms_of(base, versions)
     out = []
     for point in points:

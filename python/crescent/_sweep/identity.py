@@ -14,6 +14,8 @@ import importlib.metadata
 import importlib.util
 import inspect
 import json
+import shlex
+import shutil
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -54,36 +56,75 @@ def reference_id(e: Experiment) -> str:
     return digest(NUMERICS, {k: v for k, v in e._tree().items() if k not in left_out})
 
 
-def _imported(source: str) -> set[str]:
-    """The top-level names that a source imports."""
+def _root_of(file: Path) -> Path:
+    """The folder of the package of a file, or its own: that of its imports, as crescent._files has it."""
+    folder = file.resolve().parent
+    while (folder / "__init__.py").is_file():
+        folder = folder.parent
+    return folder
+
+
+def _imported(source: str, package: str) -> set[str]:
+    """The whole names that a source in a package imports: of modules, and of what may be modules."""
     out: set[str] = set()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
-            out |= {name.name.partition(".")[0] for name in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            out.add(node.module.partition(".")[0])
-    return out
+            out |= {name.name for name in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            parents = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+            module = ".".join([*filter(None, parents), *([node.module] if node.module else [])])
+            out |= {module, *(f"{module}.{name.name}".strip(".") for name in node.names)}
+    return out - {""}
+
+
+def _files_of(module: str, root: Path) -> dict[str, Path]:
+    """The files of a module of the user and of the packages around it, by their names below its folder, which is `root`
+    or one of sys.path; none of a library."""
+    steps = module.split(".")
+    if steps[0] in sys.stdlib_module_names or steps[0] == "crescent":
+        return {}
+    for folder in (root, *map(Path, sys.path)):
+        if "site-packages" in folder.parts or "dist-packages" in folder.parts:
+            continue
+        out: dict[str, Path] = {}
+        for k in range(1, len(steps) + 1):
+            at = "/".join(steps[:k])
+            found = next((name for name in (f"{at}/__init__.py", f"{at}.py") if (folder / name).is_file()), None)
+            if found:
+                out[found] = folder / found
+            elif not (folder / at).is_dir():
+                break
+        if out:
+            return out
+    return {}
 
 
 def python_sources(file: Path) -> tuple[dict[str, bytes], dict[str, str]]:
-    """A Python file and the files next to it that it imports, by name; and the versions of the packages they import."""
+    """A Python file and the files that it imports, in its folder, its package or elsewhere on sys.path, by their names
+    below these folders; and the versions of the libraries that they import."""
+    root = _root_of(file)
     files: dict[str, bytes] = {}
     packages: dict[str, str] = {}
-    waiting = [file]
+    waiting = {file.resolve().relative_to(root).as_posix(): file}
+    for name in _parents(next(iter(waiting))):
+        waiting[name] = root / name
     distributions = importlib.metadata.packages_distributions()
     while waiting:
-        at = waiting.pop()
-        if at.name in files:
-            continue
-        files[at.name] = at.read_bytes()
-        for name in sorted(_imported(files[at.name].decode(errors="replace"))):
-            neighbour = file.parent / f"{name}.py"
-            if neighbour.is_file():
-                waiting.append(neighbour)
-            elif name not in sys.stdlib_module_names and name in distributions:
-                for package in distributions[name]:
-                    packages[package] = importlib.metadata.version(package)
+        name, at = waiting.popitem()
+        files[name] = at.read_bytes()
+        package = ".".join(Path(name).parent.parts)
+        for module in sorted(_imported(files[name].decode(errors="replace"), package)):
+            top = module.partition(".")[0]
+            found = _files_of(module, root)
+            waiting |= {name: path for name, path in found.items() if name not in files}
+            if not found and top not in sys.stdlib_module_names:
+                packages |= {it: importlib.metadata.version(it) for it in distributions.get(top, ())}
     return files, dict(sorted(packages.items()))
+
+
+def _parents(name: str) -> list[str]:
+    """The __init__.py of the packages around a file."""
+    return [(folder / "__init__.py").as_posix() for folder in Path(name).parents if folder.parts]
 
 
 def _code_of(files: Mapping[str, bytes], at: str) -> Code:
@@ -102,7 +143,8 @@ def _of_python(where: str) -> tuple[Any, Code | None]:
     path = Path(name)
     files, packages = python_sources(path)
     hashes = {file: hashlib.sha256(data).hexdigest() for file, data in files.items()}
-    return [path.name, inside, hashes, packages], _code_of(files, f"{path.name}{colon}{inside}")
+    at = path.resolve().relative_to(_root_of(path)).as_posix()
+    return [at, inside, hashes, packages], _code_of(files, f"{at}{colon}{inside}")
 
 
 def _hashes_of_module(name: str) -> dict[str, str]:
@@ -120,6 +162,21 @@ def _hashes_of_module(name: str) -> dict[str, str]:
 def _of_plugin(where: str) -> tuple[Any, Code]:
     data = Path(where).read_bytes()
     return [hashlib.sha256(data).hexdigest()], _code_of({Path(where).name: data}, Path(where).name)
+
+
+def _of_program(command: str) -> Any:
+    """Identity of a command: its text, the program, and the files that it names, of Python those that they import."""
+    try:
+        words = shlex.split(command)
+    except ValueError:  # quotes that the shell will report
+        words = []
+    files = [Path(found) for word in words if (found := word if Path(word).is_file() else shutil.which(word))]
+    hashes = {
+        name: hashlib.sha256(data).hexdigest()
+        for file in files
+        for name, data in (python_sources(file)[0] if file.suffix == ".py" else {file.name: file.read_bytes()}).items()
+    }
+    return [command, hashes]
 
 
 def _function_of(call: Any) -> Any:
@@ -146,12 +203,10 @@ def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
 
     modules: set[Any] = set()
     texts: list[Any] = []
-    own = _calls(sampler)
+    own = [value for value in vars(sampler).values() if callable(value)]
     for call in own:
-        if not callable(call):
-            continue
         _modules_of(getattr(_function_of(call), "__module__", "") or "", modules)
-        where = source_of(own[0] if callable(own[0]) else call)
+        where = source_of(own[0])
         if names_a_file(where) and Path(where.rpartition(":")[0]).is_file():
             texts.append(_of_python(where)[0])
             continue
@@ -163,36 +218,48 @@ def _of_callable(sampler: Sampler | Combination) -> tuple[Any, Code]:
         cloudpickle.register_pickle_by_value(module)
     try:
         data = cloudpickle.dumps(sampler)
+    except Exception as error:  # anything that an object raises
+        raise ValueError(f"cannot be sent to the workers of a sweep: {error}") from None
     finally:
         for module in modules:
             cloudpickle.unregister_pickle_by_value(module)
-    fields: list[Any] = [list(sampler.uses)]
-    if isinstance(sampler, Sampler):
-        fields = [sampler.u, sampler.domain, sampler.wo, list(sampler.uses)]
-    return [texts, fields, [state_of(call) for call in own]], {"files": {}, "at": "", "pickle": base64.b64encode(data).decode()}
-
-
-def _calls(sampler: Sampler | Combination) -> tuple[Any, ...]:
-    if isinstance(sampler, Sampler):
-        return (sampler.sample, sampler.pdf, sampler.f)
-    return (sampler.weights,)
+    code = {"files": {}, "at": "", "pickle": base64.b64encode(data).decode()}
+    return [texts, state_of(vars(sampler))], code
 
 
 def unhashable_of(sampler: Sampler | Combination) -> list[str]:
-    """The types of what the callables of a sampler use and what cannot be hashed."""
-    return list(dict.fromkeys(kind for call in _calls(sampler) for kind in unhashable_in(call)))
+    """The types of what a sampler uses and what cannot be hashed."""
+    return unhashable_in(vars(sampler))
 
 
 def sampler_id(sampler: Sampler | Combination) -> str:
     """The identity of a sampler in Python: its code, attributes, closures, and the globals that its code names."""
-    fields = {key: value for key, value in vars(sampler).items() if not callable(value)}
-    return digest(fields, [state_of(call) for call in _calls(sampler)])
+    return digest(state_of(vars(sampler)))
+
+
+def _source_of_arm(table: Mapping[str, Any]) -> tuple[Any, Code | None]:
+    """Identity and code of the file that the table of an arm names; None of a built-in sampler."""
+    for key in ("python", "weights_python"):
+        if key in table:
+            return _of_python(table[key])
+    if "exec" in table:
+        return _of_program(table["exec"]), None
+    return _of_plugin(table["plugin"]) if "plugin" in table else (None, None)
+
+
+def file_ids(arms: Mapping[str, Mapping[str, Any]]) -> dict[str, str]:
+    """By arm, the identities of the files that the tables of arms name: their contents, and those that they import."""
+    return {name: digest(found) for name, table in arms.items() if (found := _source_of_arm(table)[0]) is not None}
 
 
 class Arm:
     """One arm of an experiment: its identity, and the data with which a worker runs it."""
 
-    def __init__(self, name: str, table: Mapping[str, Any], given: Sampler | Combination | None, version: str | None) -> None:
+    def __init__(
+        self, name: str, table: Mapping[str, Any], given: Sampler | Combination | None, version: str | None,
+        call: str = "",
+    ) -> None:  # fmt: skip
+        """`call` identifies the call of a sweep: a sampler that cannot be hashed is another one in each."""
         self.name = name
         self.most: int = max(table["n"])  #: the largest sample count
         named = ("sampler", "python", "plugin", "exec", "weights_python")
@@ -203,15 +270,18 @@ class Arm:
         kind = next((key for key in code if key in table), "")
         source: Any = None
         if given is not None:
-            source, self.code = _of_callable(given)
-        elif kind in ("python", "weights_python"):
-            source, self.code = _of_python(table[kind])
-        elif kind == "plugin":
-            source, self.code = _of_plugin(table["plugin"])
+            try:
+                source, self.code = _of_callable(given)
+            except ValueError as error:
+                raise ValueError(f"samplers.{name}: {error}") from None
+        else:
+            source, self.code = _source_of_arm(table)
         kept = {k: v for k, v in table.items() if k not in ("python", "plugin", "weights_python")}
+        self.unhashable = [] if given is None or version is not None else unhashable_of(given)
+        if self.unhashable:
+            source = [source, call]
         self.id = digest(NUMERICS, name, kept, source if version is None else ["declared", version])
         self.kind = "callable" if given is not None else kind
-        self.unhashable = [] if given is None or version is not None else unhashable_of(given)
         self.of: list[str] = []  #: the arms of a combination
 
     def set_parts(self, of: Sequence[Arm]) -> None:
@@ -221,8 +291,8 @@ class Arm:
         self.id = digest(self.id, [arm.id for arm in of])
 
 
-def arms_of(e: Experiment, versions: Mapping[str, str]) -> dict[str, Arm]:
-    """The arms of an experiment, those of `e.samplers` included."""
+def arms_of(e: Experiment, versions: Mapping[str, str], call: str = "") -> dict[str, Arm]:
+    """The arms of an experiment, those of `e.samplers` included; `call` as of an :class:`Arm`."""
     tables = e._with_arms()._tree()["arms"]
     for name in versions:
         if name not in tables:
@@ -234,7 +304,7 @@ def arms_of(e: Experiment, versions: Mapping[str, str]) -> dict[str, Arm]:
         if name not in arms:
             given = e.samplers.get(name)
             code = isinstance(given, Sampler) or (given is not None and callable(given.weights))
-            arm = Arm(name, tables[name], given if code else None, versions.get(name))
+            arm = Arm(name, tables[name], given if code else None, versions.get(name), call)
             if "kind" in tables[name]:
                 parts = [*tables[name]["of"], *([tables[name]["target"]] if "target" in tables[name] else [])]
                 arm.set_parts([add(part) for part in parts if part in tables])

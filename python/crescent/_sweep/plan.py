@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import json
+import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -93,6 +94,7 @@ def points_of(
     base: Experiment, values: Sequence[Mapping[str, Any]], seeds: int, versions: Mapping[str, str]
 ) -> tuple[list[Point], dict[str, str]]:
     """The points of these values, and the errors of those that are not valid."""
+    call = uuid.uuid4().hex
     good: list[Point] = []
     bad: dict[str, str] = {}
     for at in values:
@@ -103,7 +105,7 @@ def points_of(
             with_arms = e._with_arms()
             changes = overrides(keys)
             point = Point(
-                dict(at), with_arms, changes, scene_id(with_arms), reference_id(with_arms), arms_of(e, versions)
+                dict(at), with_arms, changes, scene_id(with_arms), reference_id(with_arms), arms_of(e, versions, call)
             )
         except (ValueError, TypeError, OSError) as error:
             bad[label(at)] = error_text(error) if not isinstance(error, OSError) else str(error)

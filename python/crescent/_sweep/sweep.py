@@ -135,6 +135,12 @@ def usable_points(points: list[Point], failed: dict[str, str]) -> tuple[list[Poi
     return points, failed
 
 
+def say_unhashable(points: Sequence[Point], say: Say) -> None:
+    """Says which samplers cannot be hashed."""
+    for name, kinds in {n: arm.unhashable for p in points for n, arm in p.arms.items() if arm.unhashable}.items():
+        say(f"{name}: {', '.join(kinds)} cannot be hashed: its results are never reused (--sampler-version {name}=V)")
+
+
 class Run:
     """One call."""
 
@@ -467,8 +473,7 @@ def _run_sweep(base: Experiment, options: Options, dry_run: bool) -> Sweep:
         for place, error in run.failed.items():
             say(f"failed: {place}: {error}")
         return Sweep(options.out, [], 0, run.failed, plan.cost())
-    for name, kinds in {n: arm.unhashable for p in run.points for n, arm in p.arms.items() if arm.unhashable}.items():
-        say(f"{name}: {', '.join(kinds)} cannot be hashed: its results are never reused (--sampler-version {name}=V)")
+    say_unhashable(run.points, say)
     run.store.root.mkdir(parents=True, exist_ok=True)
     plan = run.plan()
     cost = plan.cost()

@@ -47,7 +47,8 @@ def _code_folder(files: Mapping[str, str]) -> Path:
     for file, text in files.items():
         data = base64.b64decode(text)
         if not (folder / file).is_file() or (folder / file).read_bytes() != data:
-            partial = folder / f".{file}.{os.getpid()}"
+            (folder / file).parent.mkdir(parents=True, exist_ok=True)
+            partial = (folder / file).with_name(f".{Path(file).name}.{os.getpid()}")
             partial.write_bytes(data)
             partial.replace(folder / file)
     return folder
