@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 Against = Literal["n", "time", "rays"]
 
 #: metric ~ cost^power for independent samples of finite variance
-_POWER = {"rmse": -0.5, "rmse_frame": -0.5, "var": -1.0, "mse": -1.0, "relmse": -1.0}
+_POWER = {
+    "rmse": -0.5, "rmse_frame": -0.5, "var": -1.0, "mse": -1.0, "relmse": -1.0, "efficiency_n": 0.0, "efficiency_time": 0.0,
+}  # fmt: skip
 
 
 def checked(against: str) -> Against:
@@ -123,7 +125,7 @@ def at_cost(
     of: Mapping[int, Sequence[float]], arm: str, costs: Costs, budget: float, metric: str, keep: bool = False
 ) -> At | None:
     """The metric at a cost: measured there; interpolated between two sample counts, linearly in logarithms; or for
-    metrics of the variance, from the nearest count by their law, N^-1 and N^-1/2 for its root. None where none of these
+    metrics of the variance, from the nearest count by their law, N^-1, N^-1/2 for its root and N^0 for efficiencies. None where none of these
     is possible, and of less than one sample. `keep`: measured values only."""
     counts = sorted(of)
     wanted = budget / costs.of(arm, 1)
@@ -140,7 +142,7 @@ def at_cost(
         seeds = min(len(of[low]), len(of[high]))
         a, b = np.asarray(of[low][:seeds], float), np.asarray(of[high][:seeds], float)
         share = math.log(wanted / low) / math.log(high / low)
-        positive = (a > 0) & (b > 0)
+        positive = (a > 0) & (b > 0) & np.isfinite(a) & np.isfinite(b)
         logs = np.exp((1 - share) * np.log(np.where(positive, a, 1)) + share * np.log(np.where(positive, b, 1)))
         return At(np.where(positive, logs, (1 - share) * a + share * b), wanted)
     if metric not in _POWER:

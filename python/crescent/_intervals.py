@@ -38,6 +38,8 @@ def half_width(values: Values, level: float = 0.95) -> float:
 def rounded(mean: float, half: float | None, digits: int = 3) -> tuple[str, str | None]:
     """A mean and the half width of its interval as texts: the half width with two digits, the mean with the same places;
     a mean without an interval with so many digits. Both have an exponent, or none has."""
+    if math.isinf(mean):
+        return "∞", None
     if half is None or not math.isfinite(half) or not math.isfinite(mean):
         return f"{mean:.{digits}g}", None
     if half == 0:
@@ -79,7 +81,7 @@ class Slope:
 def fitted_slope(n: NDArray[np.int64], over: Sequence[Values]) -> Slope | None:
     """The slope by least squares, one fit a seed. None with fewer than two counts, or where a value is not positive."""
     seeds = min((len(v) for v in over), default=0)
-    if len(n) < 2 or seeds == 0 or any(not (v > 0).all() for v in over):
+    if len(n) < 2 or seeds == 0 or any(not ((v > 0) & np.isfinite(v)).all() for v in over):
         return None
     x = np.log(np.asarray(n, dtype=float))
     y = np.log(np.array([v[:seeds] for v in over]))

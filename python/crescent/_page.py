@@ -226,8 +226,8 @@ def _charts(
     """The ladder and the bars side by side; the names at the bars are the legend of both."""
     against = compared.costs.against
     rows = len(compared.values) + len(compared.missing)
-    height = max(38.0, rows * 6.2 + 12.0)
-    room, below = 14.5, 10.0  # of the labels of the axes
+    room, below = 14.5, 13.5 if against == "time" else 10.0  # of the labels of the axes
+    height = max(38.0, rows * 6.2 + below + 2.0)
     share = width / len(charts)
     for k, name in enumerate(charts):
         x = left + k * share

@@ -9,7 +9,7 @@ import numpy as np
 
 from ._cost import seconds_a_sample
 from ._intervals import Values, half_width, rounded
-from ._metric_names import listed
+from ._metric_names import LARGEST_IS_BEST, listed
 from ._values import arms_of
 
 if TYPE_CHECKING:
@@ -33,7 +33,8 @@ class Summary:
 
     @property
     def half(self) -> float | None:
-        return half_width(np.asarray(self.values)) if len(self.values) > 1 else None
+        finite = len(self.values) > 1 and np.isfinite(self.values).all()
+        return half_width(np.asarray(self.values)) if finite else None
 
     def __str__(self) -> str:
         if self.heavy:
@@ -78,10 +79,10 @@ def summary(result: Measured, metric: str, arm: str, n: int, region: str, s: flo
     heavy = bool(tail) and float(tail[0]["value"]) >= 0.5 and metric not in ("tail_k", "flip")
     if metric == "flip" and not _rows(result, "flip", arm, n, region, s):
         values = _flip(result, arm, n, region, s)
-    elif metric == "efficiency_n":
-        values = 1 / (_values(result, "var", arm, n, region, s) * n)
-    elif metric == "efficiency_time":
-        values = 1 / (_values(result, "var", arm, n, region, s) * n * seconds_a_sample(result, arm, s))
+    elif metric in LARGEST_IS_BEST:
+        cost = 1.0 if metric == "efficiency_n" else seconds_a_sample(result, arm, s)
+        variance = _values(result, "var", arm, n, region, s)
+        values = np.divide(1, variance * n * cost, out=np.full(variance.shape, np.inf), where=variance > 0)
     else:
         values = _values(result, metric, arm, n, region, s)
     return Summary(metric, arm, n, region, tuple(float(v) for v in values), heavy)

@@ -15,19 +15,23 @@ from ._values import arms_of, best_in, heavy_arms, only_region, values_of
 if TYPE_CHECKING:
     from .experiments import Measured
 
-_SPECIAL = str.maketrans({c: "\\" + c for c in "&%$#_{}"})
+_SPECIAL = str.maketrans(
+    {c: "\\" + c for c in "&%$#_{}"}
+    | {"\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", "\n": " "}
+)
 _BUDGETS = 3  # columns at equal time
 
 
 def _cell(values: Values, digits: int, bold: bool, heavy: bool) -> str:
-    mean, half = rounded(float(np.mean(values)), half_width(values) if values.size > 1 else None, digits)
-    mean, _, power = mean.partition("e")
+    finite = values.size > 1 and np.isfinite(values).all()
+    mean, half = rounded(float(np.mean(values)), half_width(values) if finite else None, digits)
+    mean, _, power = mean.replace("∞", r"\infty").partition("e")
     text = rf"\mathbf{{{mean}}}" if bold else mean
     if half is not None:
         text += rf" \pm {half.partition('e')[0]}"
     if power:
         text = rf"({text}) \times 10^{{{int(power)}}}"
-    return f"${text}" + (r"^{\dagger}$" if heavy else "$")
+    return f"${text}" + (r"{}^{\dagger}$" if heavy else "$")
 
 
 def _budgets(by_arm: Mapping[str, Mapping[int, Sequence[float]]], costs: Costs) -> list[float]:

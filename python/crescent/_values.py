@@ -37,11 +37,10 @@ def values_of(r: Measured, metric: str, region: str, s: float | None) -> dict[st
     if metric in LARGEST_IS_BEST:
         of_arms = values_of(r, "var", region, s)
         cost = {arm: 1.0 if metric == "efficiency_n" else seconds_a_sample(r, arm, at) for arm in of_arms}
-        found = {
-            arm: {n: [1 / (v * n * cost[arm]) for v in over] for n, over in of.items() if min(over) > 0}
+        return {
+            arm: {n: [1 / (v * n * cost[arm]) if v > 0 else np.inf for v in over] for n, over in of.items()}
             for arm, of in of_arms.items()
         }
-        return {arm: of for arm, of in found.items() if of}
     rows = r.records()
     out: dict[str, dict[int, list[float]]] = {}
     for row in rows:
@@ -93,7 +92,8 @@ class Compared:
         """The cost in words."""
         if self.costs.against == "n":
             return f"at N = {self.cost:g}"
-        return f"in {self.costs.text(self.cost)}"
+        threads = f", {self.costs.threads} thread{'s' * (self.costs.threads != 1)}"
+        return f"in {self.costs.text(self.cost)}" + (threads if self.costs.against == "time" and self.costs.threads else "")
 
 
 def compared_at(
@@ -126,7 +126,8 @@ def compared_at(
 
 def with_interval(over: NDArray[Any]) -> str:
     """The mean over seeds, with the half width of its 95 % interval."""
-    mean, half = rounded(float(np.mean(over)), half_width(over) if over.size > 1 else None)
+    finite = over.size > 1 and np.isfinite(over).all()
+    mean, half = rounded(float(np.mean(over)), half_width(over) if finite else None)
     return mean if half is None else f"{mean} ± {half}"
 
 

@@ -160,7 +160,8 @@ def ladder(
     its band over seeds; on two logarithmic axes, or with `log=False` on linear ones.
 
     The legend states the fitted slope with its 95 % interval over seeds (two seeds at least); independent samples of
-    finite variance have -0.5. An arm whose metric is 0 is at the lower edge. A heavy tail is named. `labels` and
+    finite variance have -0.5. An arm whose metric is 0 is at the lower edge, one of an infinite efficiency at the upper
+    one. A heavy tail is named. `labels` and
     `colours` are by arm.
     """
     region = only_region(r, metric, region)
@@ -168,6 +169,7 @@ def ladder(
     costs = Costs(r, against, r.s if s is None else s)
     heavy = heavy_arms(r, region, s)
     with style():
+        new = ax is None
         ax = _axes(ax, 62.0 + 2.0 * len(values) * legend)
         ticks: set[float] = set()
         at_the_edge = []
@@ -182,13 +184,17 @@ def ladder(
             look = _look(r, arm, labels, colours)
             slope = fitted_slope(n, over)
             name = look.label if slope is None else f"{look.label}: slope {slope.text().replace('-', '−')}"
-            name += (": 0" if not middle.any() else "") + (", heavy tail" if arm in heavy else "")
-            shown = np.where(middle > 0, middle, np.nan) if log else middle
-            ends = [np.where(shown > 0, [np.percentile(v, q) for v in over], np.nan) for q in (low, high)]
+            name += (": 0" if not middle.any() else ": ∞" if np.isinf(middle).all() else "")
+            name += ", heavy tail" if arm in heavy else ""
+            shown = np.where(np.isfinite(middle) & ((middle > 0) | (not log)), middle, np.nan)
+            ends = [[_finite_percentile(v, q) for v in over] for q in (low, high)]
+            ends = [np.where(shown > 0, end, np.nan) for end in ends]
             ax.plot(x, shown, look.marker, ls=look.dashes, ms=3, color=look.colour, label=name, gid=arm)
             ax.fill_between(x, ends[0], ends[1], color=look.colour, alpha=0.2, lw=0)
             if log and (middle <= 0).any():
-                at_the_edge.append((x[middle <= 0], look))
+                at_the_edge.append((x[middle <= 0], look, 0.02, "0"))
+            if np.isinf(middle).any():
+                at_the_edge.append((x[np.isinf(middle)], look, 0.98, "∞"))
             ticks |= set(x)
         if log:
             ax.set_xscale("log", base=2 if against == "n" else 10)
@@ -196,10 +202,10 @@ def ladder(
             _log_ticks(ax.yaxis, 6)
             if against != "n":
                 _log_ticks(ax.xaxis, 4, costs.unit(max(ticks))[0])
-        for x, look in at_the_edge:  # 0 has no logarithm
+        for x, look, edge, gid in at_the_edge:  # 0 has no logarithm
             ax.plot(
-                x, np.full(len(x), 0.02), look.marker, ls=look.dashes, ms=4, color=look.colour, fillstyle="none",
-                transform=ax.get_xaxis_transform(), clip_on=False, gid="0",
+                x, np.full(len(x), edge), look.marker, ls=look.dashes, ms=4, color=look.colour, fillstyle="none",
+                transform=ax.get_xaxis_transform(), clip_on=False, gid=gid,
             )  # fmt: skip
         if against == "n":
             ax.set_xticks(sorted(ticks), [f"{k:g}" for k in sorted(ticks)])
@@ -209,12 +215,20 @@ def ladder(
         ax.grid(True)
         if legend:
             # Below the axes, where no line is; the distance is in font sizes, for the labels of the axis.
+            for line in ax.get_lines() if new else ():
+                line.set_label(_in_lines(str(line.get_label()), COLUMN_MM - 12, 7.0))
             longest = max((len(str(line.get_label())) for line in ax.get_lines()), default=0)
             ax.legend(
                 frameon=False, loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4.5,
                 ncols=2 if longest <= 30 else 1, columnspacing=1.2, handlelength=2.6,
             )  # fmt: skip
     return ax
+
+
+def _finite_percentile(values: NDArray[Any], q: float) -> float:
+    """A percentile of the finite values; NaN without one."""
+    finite = values[np.isfinite(values)]
+    return float(np.percentile(finite, q)) if finite.size else float("nan")
 
 
 def _log_ticks(axis: Any, most: int, unit: float = 1.0) -> None:
@@ -273,7 +287,7 @@ def bars(
     with style():
         ax = _axes(ax, 12.0 + 7.0 * len(found))
         height = 0.7 if names == "beside" else 0.36
-        low = min((float(v.mean()) for _, v in found if v.mean() > 0), default=1.0)
+        low = min((float(v.mean()) for _, v in found if 0 < v.mean() < np.inf), default=1.0)
         absent = [(arm, np.array([])) for arm in compared.missing]
         found = [*absent, *found]
         for y, (arm, v) in enumerate(found):
@@ -292,8 +306,10 @@ def bars(
                     size=7,
                 )
                 continue
-            mean, half = float(v.mean()), half_width(v) if v.size > 1 else 0.0
+            mean, half = float(v.mean()), half_width(v) if v.size > 1 and np.isfinite(v).all() else 0.0
             left = low / 4 if log else 0.0
+            if not np.isfinite(mean):  # no variance: there is no end of the bar
+                mean = left
             ax.barh(
                 y, max(mean - left, 0), left=left, color=look.colour, height=height, hatch=look.hatch, ec="white", lw=0
             )
@@ -311,7 +327,7 @@ def bars(
         ax.set_axisbelow(True)
         shown = [_look(r, arm, labels, colours).label for arm, _ in found] if names == "beside" else []
         ax.set_yticks(range(len(found)) if shown else [], shown)
-        ax.set_xlabel(f"{_label(metric, region)} {compared.where()}")
+        ax.set_xlabel(f"{_label(metric, region)}{chr(10) if against == 'time' else ' '}{compared.where()}")
         if not log:
             ax.set_xlim(left=0)
         ax.grid(True, axis="x")
@@ -322,11 +338,14 @@ def bars(
 
 
 def _name_above(ax: Axes, y: float, look: _Look) -> None:
-    """The marker and the label of an arm over its bar."""
-    ax.annotate(
+    """The marker and the label of an arm over its bar; a label that is longer than the axis has smaller letters."""
+    name = ax.annotate(
         look.label, (0, y), (8, 1.5), xycoords=("axes fraction", "data"), textcoords="offset points", va="bottom",
-        size=6.5,
+        size=6.5, gid="name",
     )  # fmt: skip
+    figure: Any = ax.figure
+    room = ax.get_window_extent().width - 8 * figure.dpi / 72
+    name.set_size(6.5 * min(1.0, room / max(_width(ax, name), 1.0)))
     where = ax.get_yaxis_transform() + _offset(ax, 3, 4.5)
     ax.plot([0], [y], look.marker, color=look.colour, ms=4, clip_on=False, transform=where)
 
@@ -339,12 +358,21 @@ def _offset(ax: Axes, x: float, y: float) -> Any:
     return ScaledTranslation(x / 72, y / 72, figure.dpi_scale_trans)
 
 
+def _renderer(ax: Axes) -> Any:
+    figure: Any = ax.figure
+    return figure.canvas.get_renderer() if hasattr(figure.canvas, "get_renderer") else None
+
+
+def _width(ax: Axes, text: Any) -> float:
+    """The width of a text in dots."""
+    return float(text.get_window_extent(_renderer(ax)).width)
+
+
 def _room_for_texts(ax: Axes) -> None:
     """Widens the axis until the numbers behind the bars are inside."""
-    figure: Any = ax.figure
-    renderer = figure.canvas.get_renderer() if hasattr(figure.canvas, "get_renderer") else None
+    numbers = [t for t in ax.texts if t.get_gid() != "name"]
     for _ in range(4):
-        right = max((t.get_window_extent(renderer).x1 for t in ax.texts), default=0.0)
+        right = max((t.get_window_extent(_renderer(ax)).x1 for t in numbers), default=0.0)
         box = ax.get_window_extent()
         if right <= box.x1:
             return
@@ -397,13 +425,18 @@ def _rows_of_pictures(count: int, aspect: float, more: float) -> list[Axes]:
     return axes[:count]
 
 
-def _broken(text: str, ax: Axes) -> str:
-    """A title in lines that are not wider than its picture's part of the figure."""
+def _in_lines(text: str, width: float, size: float) -> str:
+    """A text in lines of so many mm at a size in points."""
     from ._page import lines_of
 
+    return "\n".join(lines_of(text, width, size))
+
+
+def _broken(text: str, ax: Axes) -> str:
+    """A title in lines that are not wider than its picture's part of the figure."""
     figure: Any = ax.figure
     columns = ax.get_subplotspec().get_gridspec().ncols  # type: ignore[union-attr]
-    return "\n".join(lines_of(text, figure.get_size_inches()[0] * 25.4 / columns - 3, float(ax.title.get_fontsize())))
+    return _in_lines(text, figure.get_size_inches()[0] * 25.4 / columns - 3, float(ax.title.get_fontsize()))
 
 
 def _scale(ax: Axes, drawn: Any, label: str, extend: str) -> None:
@@ -494,9 +527,12 @@ def _noise_map(
     first, second = (_look(r, arm, labels).label for arm in (a, b))
     with style():
         ax = _axes(ax)
-        drawn = _picture(ax, values, f"{second} against {first}, N = {n}", cmap="RdBu_r", vmin=-limit, vmax=limit)
+        width = 0.7 * COLUMN_MM
+        title = _in_lines(f"{second} against {first}, N = {n}", width, 8.0)
+        drawn = _picture(ax, values, title, cmap="RdBu_r", vmin=-limit, vmax=limit)
         ax.set_facecolor("#bfbfbf")
-        _scale(ax, drawn, what.format(second, first), "both")
+        high = max(0.8 * width * values.shape[0] / values.shape[1], 25.0)
+        _scale(ax, drawn, _in_lines(what.format(second, first), high, 8.0), "both")
     return ax
 
 
@@ -529,7 +565,7 @@ def where_noise_moved(
     limit = (limit or 1.0) if top is None else top
     if significant:
         ratio = np.where(differ(of_b - of_a) | ~np.isfinite(ratio), ratio, 0.0)
-    return _noise_map(r, a, b, n, ratio, limit, "log$_2$ variance of {} / {}", ax, labels)
+    return _noise_map(r, a, b, n, ratio, limit, "log₂ variance of {} / {}", ax, labels)
 
 
 def significance(
@@ -583,6 +619,7 @@ def crops(
     if not films:
         raise KeyError(f"no arm has a film {compared.where()} and s = {at:g}")
     reference = r.references.get(at)
+    heavy = heavy_arms(r, region, s)
     name = NAMES.get(metric, metric) + (f", region {region}" if region else "")
     count = len(films) + (reference is not None)
     with style():
@@ -592,12 +629,12 @@ def crops(
             _picture(axes[0], tone(_cut(rgb, box), exposure), "reference")
             unit = UNITS.get(metric, "")
             cost = "" if against == "n" else f"\n{compared.where()}"
-            axes[0].set_xlabel(_broken(name, axes[0]) + (f"\n[{unit}]" if unit else "") + cost)
+            axes[0].set_xlabel(_broken(name, axes[0]) + (f"\n[{unit}]" if unit else "") + cost.replace(", ", "\n"))
         for ax, (arm, film) in zip(axes[count - len(films) :], films.items()):
             label = _look(r, arm, labels).label
             cost = "" if against == "n" else f"\n{compared.costs.text(compared.costs.of(arm, film.n))}"
             _picture(ax, tone(_cut(film.rgb, box), exposure), _broken(f"{label}, N = {film.n}", ax) + cost)
-            text = with_interval(compared.values[arm])
+            text = with_interval(compared.values[arm]) + ("\nheavy tail" if arm in heavy else "")
             ax.set_xlabel(text if reference is not None else f"{name}\n{text}")
     return axes
 

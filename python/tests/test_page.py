@@ -42,9 +42,14 @@ def texts(figure):
 
 @pytest.mark.parametrize("columns", [1, 2])
 @pytest.mark.parametrize("against", ["n", "time"])
-def test_names_of_nine_arms_never_overlap(nine, columns, against, tmp_path):
-    assert all(len(name) == 24 for name in NINE)
-    figure = plot.page(nine, ["ball", (0, 0, 20, 16)], arms=NINE, columns=columns, against=against)
+@pytest.mark.parametrize("letters", ["of the arms", "wide"])
+def test_names_of_nine_arms_never_overlap(nine, columns, against, letters, tmp_path):
+    names = NINE if letters == "of the arms" else [chr(ord("A") + k) + 23 * "W" for k in range(9)]
+    assert all(len(name) == 24 for name in names)
+    labels = dict(zip(NINE, names, strict=True))
+    figure = plot.page(nine, ["ball", (0, 0, 20, 16)], arms=NINE, columns=columns, against=against, labels=labels)
+    bars = next(ax for ax in figure.axes if ax.patches and not ax.images)
+    assert bars.get_xlim()[1] < 4 * max(bar.get_x() + bar.get_width() for bar in bars.patches), "no room for names"
     found = texts(figure)
     width, height = figure.get_size_inches() * figure.dpi
     for text, box in found:
@@ -58,7 +63,7 @@ def test_names_of_nine_arms_never_overlap(nine, columns, against, tmp_path):
         )
         assert apart, (a, first, b, second)
     words = "".join(text for text, _ in found)
-    for name in NINE:
+    for name in names:
         assert words.count(name) >= 1, "in one line at the bars"
     plot.save(figure, tmp_path / "page.pdf")
     data = (tmp_path / "page.pdf").read_bytes()
@@ -246,3 +251,63 @@ def test_rows_of_pictures_with_long_names_do_not_overlap(nine):
         assert len(boxes) >= len(axes) > 9
         for k, box in enumerate(boxes):
             assert not any(box.overlaps(other) for other in boxes[k + 1 :]), (k, box)
+
+
+def test_maps_of_arms_with_long_names_do_not_overlap(nine):
+    for draw in (plot.where_noise_moved, plot.significance):
+        ax = draw(nine, NINE[0], NINE[8], 16, labels={NINE[0]: 24 * "W", NINE[8]: "M" * 24})
+        boxes = [box for text, box in texts(ax.figure) if len(text) > 8]
+        assert len(boxes) == 2 and not boxes[0].overlaps(boxes[1])
+        assert ax.get_window_extent().width > 0.4 * ax.figure.get_window_extent().width
+    ax = plot.ladder(nine, arms=NINE, labels={name: 24 * "W" for name in NINE})
+    ax.figure.draw_without_rendering()
+    assert ax.get_window_extent().width > 0.6 * ax.figure.get_window_extent().width
+
+
+def test_times_state_their_threads_and_crops_name_heavy_tails(nine, monkeypatch):
+    threads = f"{nine.threads} thread"
+    assert threads in plot.bars(nine, against="time").get_xlabel() and threads not in plot.bars(nine).get_xlabel()
+    crops = plot.crops(nine, None, [0, 0, 8, 8], against="time")
+    assert threads in crops[0].get_xlabel() and not any("heavy" in ax.get_xlabel() for ax in crops)
+    monkeypatch.setattr(plot, "heavy_arms", lambda *_: {"cosine"})
+    crops = plot.crops(nine, 16, [0, 0, 8, 8])
+    assert [ax.get_title()[:6] for ax in crops if "heavy tail" in ax.get_xlabel()] == ["cosine"]
+
+
+def test_an_arm_without_variance_has_an_infinite_efficiency(nine):
+    r = crescent.experiments.Measured(nine._core)
+    rows = nine.records()
+    for row in rows:
+        if row["metric"] == "var" and row["arm"] == "cosine":
+            row["value"] = 0.0
+    r._rows = rows
+    for metric in ("efficiency_n", "efficiency_time"):
+        assert str(r.metric(metric, "cosine", 16, "ball")) == "∞"
+        table = next(line for line in r.to_latex(metric, "ball").splitlines() if line.startswith("cosine"))
+        assert table == r"cosine & $\mathbf{\infty}$ & $\mathbf{\infty}$ \\"
+        ax = plot.bars(r, metric, "ball", arms=["cosine", "phong", NINE[0]], n=4)
+        assert [t.get_text() for t in ax.get_yticklabels()][-1] == "cosine" and ax.texts[-1].get_text() == "∞"
+        ax = plot.ladder(r, metric, "ball")
+        edge = [line for line in ax.get_lines() if line.get_gid() == "∞"]
+        assert len(edge) == 1 and list(edge[0].get_xdata()) == [4, 16]
+        assert np.isfinite(ax.get_ylim()).all()
+        plot.page(r, metric=metric).draw_without_rendering()
+
+
+def test_an_efficiency_at_another_cost_is_that_of_the_nearest_count(nine):
+    compared = compared_at(nine, "efficiency_n", "ball", None, ["phong", "cosine"], "n", 4, None)
+    rays = compared_at(nine, "efficiency_n", "ball", None, ["phong", "cosine"], "rays", None, 64.0)
+    np.testing.assert_array_equal(compared.values["phong"], rays.values["phong"])
+
+
+def test_a_table_compiles_with_any_label(nine, monkeypatch):
+    monkeypatch.setattr(crescent._tables, "heavy_arms", lambda *_: {"cosine"})
+    rows = nine.records()
+    for row in rows:
+        row["value"] = row["value"] * 1e9 if row["metric"] == "rmse" else row["value"]
+    r = crescent.experiments.Measured(nine._core)
+    r._rows = rows
+    table = r.to_latex("rmse", "ball", labels={"cosine": "a^b ~ \\c {d}_e\n"}, arms=["cosine"])
+    row = next(line for line in table.splitlines() if line.startswith("a"))
+    assert row.startswith(r"a\textasciicircum{}b \textasciitilde{} \textbackslash{}c \{d\}\_e  & ")
+    assert r"\times 10^{" in row and "}^{" not in row.replace("{}^{", ""), "a second superscript"
