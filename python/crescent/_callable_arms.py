@@ -38,9 +38,37 @@ class Samplers(dict[str, Sampler | Combination]):
         super().__setitem__(name, _sampler_of(name, sampler))
 
     def update(self, *given: Any, **named: Any) -> None:
-        """As dict.update, with the checks of an assignment."""
-        for name, sampler in dict(*given, **named).items():
+        """As dict.update, with the checks of an assignment, which are made before any change."""
+        super().update({name: _sampler_of(name, sampler) for name, sampler in dict(*given, **named).items()})
+
+    def __ior__(self, other: Any) -> Samplers:  # type: ignore[override,misc]
+        self.update(other)
+        return self
+
+    def setdefault(self, name: str, sampler: Any = None) -> Any:
+        """The sampler of a name, which is added if there is none."""
+        if name not in self:
             self[name] = sampler
+        return self[name]
+
+    def __delitem__(self, name: str) -> None:
+        if name not in self:
+            self.__missing__(name)
+        super().__delitem__(name)
+
+    def pop(self, name: str, *default: Any) -> Any:
+        """Takes a sampler out and returns it."""
+        if name not in self and not default:
+            self.__missing__(name)
+        return super().pop(name, *default)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"samplers have no attribute '{name}': expected e.samplers[{name!r}] = sampler")
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise AttributeError(f"samplers have no attribute '{name}': expected e.samplers[{name!r}]")
 
 
 def _sampler_of(name: Any, sampler: Any) -> Sampler | Combination:

@@ -17,6 +17,9 @@ def experiments() -> dict[str, Path]:
 def experiment_file(given: str | os.PathLike[str]) -> str:
     """The path of an experiment: the file itself, or the installed one of that name. ValueError names those."""
     text = os.fspath(given)
+    if "\n" in text:
+        first = next(filter(None, text.splitlines()), "")
+        raise ValueError(f"the path is a text of several lines, {first!r} ...: expected a file; crescent.parse reads text")
     if Path(text).is_file():
         return text
     names = experiments()

@@ -27,7 +27,30 @@ def plain(value: Any) -> Any:
     return [plain(v) for v in value] if isinstance(value, list) else value
 
 
-class Table(dict[str, Any]):
+class _WithoutAttributes:
+    """What has keys and no attributes of the user: e["image"].width = 320 would change nothing."""
+
+    _e: Experiment
+    _steps: tuple[str, ...]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in ("_e", "_steps"):
+            raise AttributeError(self._without(name, f" = {value!r}"))
+        super().__setattr__(name, value)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise AttributeError(self._without(name, ""))
+
+    def _without(self, name: str, rest: str) -> str:
+        path = path_of(self._steps)
+        if isinstance(self, dict):
+            return f"{path} has no attribute '{name}': expected e[{path_of([*self._steps, name])!r}]{rest}"
+        return f"{path} is a list without an attribute '{name}': expected an index, such as e['{path}[0]']{rest}"
+
+
+class Table(_WithoutAttributes, dict[str, Any]):
     """A table of an experiment: a dictionary whose changes are checked and made in the experiment."""
 
     def __init__(self, e: Experiment, steps: Sequence[str], value: Mapping[str, Any]) -> None:
@@ -117,7 +140,7 @@ class Table(dict[str, Any]):
         return dict, (plain(self),)
 
 
-class Items(list[Any]):
+class Items(_WithoutAttributes, list[Any]):
     """A list of an experiment: its changes are checked and made in the experiment."""
 
     def __init__(self, e: Experiment, steps: Sequence[str], value: Sequence[Any]) -> None:

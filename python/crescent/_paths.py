@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from os import PathLike, fspath
 from typing import Any
 
 import numpy as np
@@ -16,14 +17,20 @@ Steps = tuple[str, ...]
 
 def toml(value: Any) -> str:
     """Formats a value for a file, or for a change as of --set."""
+    if isinstance(value, np.generic) or isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    if isinstance(value, PathLike):
+        value = fspath(value)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return json.dumps(value)
-    if isinstance(value, (int, float, np.number)):
-        return repr(value.item() if isinstance(value, np.number) else value)
+        if any("\ud800" <= letter <= "\udfff" for letter in value):
+            raise ValueError(f"{value!a} has half of a surrogate pair: expected a text of whole characters")
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", r"\u007f")
+    if isinstance(value, (int, float)):
+        return repr(value)
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{json.dumps(str(key))} = {toml(v)}" for key, v in value.items()) + "}"
+        return "{" + ", ".join(f"{toml(str(key))} = {toml(v)}" for key, v in value.items()) + "}"
     if isinstance(value, Iterable):
         return "[" + ", ".join(toml(v) for v in value) + "]"
     more = "; e.remove(path) takes a key out" if value is None else ""
@@ -119,9 +126,9 @@ def nearest_key(tree: Mapping[str, Any], word: str) -> str:
 def lines(table: Mapping[str, Any], path: str = "") -> Iterator[str]:
     """A table as the lines of a file."""
     tables = {key: value for key, value in table.items() if isinstance(value, Mapping)}
-    yield from (f"{json.dumps(key)} = {toml(value)}" for key, value in table.items() if key not in tables)
+    yield from (f"{toml(key)} = {toml(value)}" for key, value in table.items() if key not in tables)
     for key, value in tables.items():
-        at = f"{path}.{json.dumps(key)}" if path else json.dumps(key)
+        at = f"{path}.{toml(key)}" if path else toml(key)
         yield from (f"[{at}]", *lines(value, at))
 
 

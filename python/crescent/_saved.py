@@ -108,11 +108,29 @@ def _timing(folder: Path) -> tuple[list[Any], int, list[Any]]:
         raise ValueError(f"{path}: expected the timing.json of a run: {error}") from None
 
 
+UNHASHABLE = "which cannot be hashed"  #: the end of an identity that says what of a sampler is not in it
+
+
+def _same_samplers(parts: Sequence[tuple[Path, Mapping[str, Any]]]) -> None:
+    """ValueError if a sampler of the same name is another one in another part."""
+    first: dict[str, tuple[Path, str]] = {}
+    for folder, index in parts:
+        for name, identity in index["samplers"].items():
+            at, known = first.setdefault(name, (folder, identity))
+            if identity != known and not identity.endswith(UNHASHABLE) and not known.endswith(UNHASHABLE):
+                raise ValueError(
+                    f"{folder}: cannot be joined with {at}: the sampler '{name}' is {known} there and {identity} here; "
+                    "expected parts of one experiment"
+                )
+
+
 def joined(parts: Sequence[str]) -> tuple[_crescent.RunResult, dict[str, str]]:
     """The result of parts of the seeds: the films of the first seed that has any, all times, and the references."""
     state = list(_crescent.join(list(parts)).__getstate__())
     folders = [path.parent if path.is_file() else path for path in map(Path, parts)]
-    found = [index for index in map(arrays_in, folders) if index is not None]
+    parts_with_arrays = [(folder, index) for folder in folders if (index := arrays_in(folder)) is not None]
+    _same_samplers(parts_with_arrays)
+    found = [index for _, index in parts_with_arrays]
     order = [row.split(",")[3] for row in str(state[3]).splitlines()[1:]]
     rank = {seed: k for k, seed in reversed(list(enumerate(order)))}
     films = sorted((film for index in found for film in index["films"]), key=lambda film: rank.get(str(film[3]), 0))

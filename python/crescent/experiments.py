@@ -30,7 +30,7 @@ from ._callable_arms import Samplers, all_counts, callable_arms, counts_of, tabl
 from ._cost import Against
 from ._installed import experiment_file
 from ._live import live
-from ._paths import found, inside, nearest_key, overrides, path_of, quoted, steps_of
+from ._paths import found, inside, nearest_key, overrides, path_of, quoted, steps_of, toml
 from ._progress import bar
 from ._resize import resize_hint, resized
 from ._sampler import whole
@@ -91,6 +91,9 @@ class Experiment:
             raise AttributeError(name)
         raise AttributeError(self._without_attribute(name, ""))
 
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"'{name}' cannot be deleted: expected del e[path], or e.samplers.pop(name)")
+
     def _without_attribute(self, name: str, rest: str) -> str:
         if name in _INSTEAD:
             return f"an experiment has no attribute '{name}': expected {_INSTEAD[name]}"
@@ -119,6 +122,15 @@ class Experiment:
         changed, removed = self._changed(changes)
         self._core, self._source = changed._core, changed._source
         _warn_of(removed, stacklevel)
+        if "n" in changes:
+            changed._warn_of_unused_n(stacklevel)
+
+    def _warn_of_unused_n(self, stacklevel: int) -> None:
+        """Says that the experiment's n is of no arm, if each has its own."""
+        arms = self._source.tree().get("arms", {})
+        if all("n" in arm for arm in arms.values()):
+            paths = ", ".join(f"e[{path_of(['arms', name, 'n'])!r}]" for name in arms)
+            warnings.warn(f"no arm takes n = {self['n']}, each has its own: {paths}", stacklevel=stacklevel)
 
     def _set(self, changes: Mapping[tuple[str, ...], Any]) -> None:
         """Sets values at steps; inside a list, the list is set as a whole."""
@@ -192,12 +204,15 @@ class Experiment:
         """Another experiment, with these keys changed all at once: ``e.with_({"sphere.s": 8}, n=16)``."""
         changed, removed = self._changed({**_table_of(changes), **more})
         _warn_of(removed, 3)
+        if "n" in more or "n" in (changes or {}):
+            changed._warn_of_unused_n(3)
         return changed
 
     def _changed(self, changes: Mapping[str, Any]) -> tuple[Experiment, list[str]]:
         """With these changes, and what was removed because it named what is no longer there."""
         source, lost = self._source, []
         for path, value in changes.items():
+            self._refuse_in_place_of_a_table(path, value)
             source, names = source.with_value(*self._whole_list(source, path, value))
             lost += names
         try:
@@ -211,6 +226,19 @@ class Experiment:
                 hint = resize_hint(self._tree(), source, str(error))
             raise (ValueError(f"{error}\n{hint}") if hint else error) from None
         return Experiment(core, self.samplers, source), [path_of(steps) for steps in removed]
+
+    def _refuse_in_place_of_a_table(self, path: str, value: Any) -> None:
+        """ValueError for a number, a text or a list where there is a table."""
+        try:
+            there = found(self._tree(), path)[1]
+        except KeyError:
+            return
+        if isinstance(there, Mapping) and not isinstance(value, Mapping):
+            if value is not None:
+                toml(value)  # which says what is no value at all
+            keys = ", ".join(f"{key!r}: ..." for key in list(there)[:2])
+            more = "; e.remove(path) takes it out" if value is None else ""
+            raise ValueError(f"{path} is {value!r}: expected a table, such as {{{keys}}}{more}")
 
     def _whole_list(self, source: Source, path: str, value: Any) -> tuple[str, Any]:
         """The change of an item of a list that the file does not give, as the change of the list."""
@@ -297,7 +325,7 @@ def _sampler_ids(e: Experiment) -> dict[str, str]:
     out = file_ids(e._tree()["arms"])
     for name, sampler in e.samplers.items():
         kinds = unhashable_of(sampler)
-        out[name] = sampler_id(sampler) + (f" with {', '.join(kinds)}, which cannot be hashed" if kinds else "")
+        out[name] = sampler_id(sampler) + (f" with {', '.join(kinds)}, {_saved.UNHASHABLE}" if kinds else "")
     return out
 
 
@@ -410,7 +438,11 @@ class Films(Mapping[tuple[str, int], Film]):
         at: Any = (*key, self._s)[:3] if isinstance(key, tuple) else key
         if at not in self._films:
             told = ", ".join(f"{a} n={m} s={t:g}" for a, m, t in self._films)
-            raise KeyError(f"no film {key!r}, expected (arm, n) or (arm, n, s): there are {told}")
+            arms = list(dict.fromkeys(arm for arm, _, _ in self._films))
+            arm = str(key[0] if isinstance(key, tuple) and key else key)
+            near = "" if arm in arms else _crescent.nearest(arm, arms)
+            hint = f"; did you mean '{near}'?" if near else ""
+            raise KeyError(f"no film {key!r}, expected (arm, n) or (arm, n, s): there are {told}{hint}")
         return self._films[at]
 
     def __iter__(self) -> Iterator[Any]:
@@ -629,7 +661,7 @@ def run(
     Each sampler of ``e.samplers`` is an arm of its name, at the sample counts of the other arms. What it raises is
     raised here. `code`: False refuses an experiment whose file names a plugin, a program or a Python file.
     """
-    folder = None if out is None else abspath(out)
+    folder = None if out is None else abspath(_folder("out", out))
     if studies and not references:
         raise ValueError("studies=True, references=False: without references there are no metrics to study")
     e = experiment if isinstance(experiment, Experiment) else load(experiment)
@@ -642,6 +674,7 @@ def run(
         raise ValueError(
             f"seeds is {seeds!r}: expected a number of seeds, or the first and the last of the series, (1, 0) for all"
         )
+    first, last = (whole("seeds", seed, 0, 4096, "expected whole numbers, 0 to 4096") for seed in seeds)
     threads = whole("threads", threads, 0, 1024, "expected a whole number, 0 for one a core")
     with_arms = e._with_arms()
     repeats = whole("repeats", repeats, 1, 1000, "expected how often each arm is run")
@@ -650,8 +683,8 @@ def run(
         try:
             core = _crescent.run(
                 with_arms._core,
-                seeds[0],
-                seeds[1],
+                first,
+                last,
                 threads=threads,
                 isa=isa,
                 studies=studies,
@@ -678,7 +711,7 @@ def join(parts: Sequence[str | PathLike[str]], out: str | PathLike[str] | None =
     `parts`: folders of runs, or their metrics.json. `out`: a folder for the result. It has the times of all parts, and the
     films and references of those that :meth:`Measured.write` wrote.
     """
-    folder = None if out is None else abspath(out)
+    folder = None if out is None else abspath(_folder("out", out))
     if isinstance(parts, (str, PathLike)) or not parts:
         raise ValueError(f"parts is {parts!r}: expected one or more folders of runs, such as ['part-1', 'part-2']")
     measured = Measured(*_saved.joined([fspath(part) for part in parts]))
@@ -690,4 +723,11 @@ def join(parts: Sequence[str | PathLike[str]], out: str | PathLike[str] | None =
 def open(folder: str | PathLike[str]) -> Measured:
     """The result in a folder that :meth:`Measured.write`, ``run(out=...)`` or the program wrote: metrics, provenance and
     times, and films and references, which the program does not write for this."""
-    return Measured(*_saved.opened(Path(folder)))
+    return Measured(*_saved.opened(Path(_folder("folder", folder))))
+
+
+def _folder(what: str, given: Any) -> str | PathLike[str]:
+    """A folder, or a TypeError that names the argument."""
+    if not isinstance(given, (str, PathLike)):
+        raise TypeError(f"{what} is {given!r}: expected the path of a folder")
+    return given

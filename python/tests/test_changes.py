@@ -8,6 +8,7 @@ import re
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 from test_settings import RICH
 from tiny import TINY
@@ -163,6 +164,75 @@ def test_attributes_are_not_keys():
         e["arms.mine"] = crescent.mis("cosine", "phong")
 
 
+@pytest.mark.parametrize("name", SHIPPED)
+def test_attributes_of_tables_and_lists_are_not_keys(name):
+    e = crescent.load(name)
+    before = e.text
+    tables = [(steps, value) for steps, value in leaves(e._tree()) if isinstance(value, (dict, list))]
+    for steps, value in tables:
+        if any(isinstance(step, int) for step in steps):
+            continue
+        part, path = e[path_of(steps)], path_of(steps)
+        for attribute in ("width", "n", "phong"):
+            said = re.escape(f"expected e['{path}.{attribute}'] = 16" if isinstance(value, dict) else "expected an index")
+            if '"' in path:
+                said = "expected"
+            with pytest.raises(AttributeError, match=said):
+                setattr(part, attribute, 16)
+            with pytest.raises(AttributeError, match="expected"):
+                getattr(part, attribute)
+    assert e.text == before and len(tables) > 20
+
+
+def test_what_is_refused_leaves_the_samplers_as_they_were():
+    def sample(wo, u):
+        return wo, u[:, 0]
+
+    e = crescent.parse(TINY)
+    with pytest.raises(TypeError, match=r"samplers\['wrong'\] is int: expected a crescent.Sampler"):
+        e.samplers |= {"right": sample, "wrong": 3}
+    with pytest.raises(TypeError, match="expected a crescent.Sampler"):
+        e.samplers.setdefault("wrong", 3)
+    with pytest.raises(AttributeError, match=r"expected e.samplers\['mine'\] = sampler"):
+        e.samplers.mine = sample
+    with pytest.raises(AttributeError, match="cannot be deleted"):
+        del e.samplers
+    assert e.samplers == {}
+    assert isinstance(e.samplers.setdefault("mine", sample), crescent.Sampler)
+    e.samplers |= {"other": sample}
+    for change in (lambda: e.samplers.pop("mien"), lambda: e.samplers.__delitem__("mien")):
+        with pytest.raises(KeyError, match="did you mean 'mine'"):
+            change()
+    assert list(e.samplers) == ["mine", "other"] and e.samplers.pop("none", None) is None
+    assert list(pickle.loads(pickle.dumps(crescent.parse(TINY).samplers))) == []
+
+
+def test_an_n_that_no_arm_takes_is_said(recwarn):
+    e = crescent.load("cousins")
+    with pytest.warns(UserWarning, match=r"no arm takes n = 16, each has its own: e\['arms.uniform.n'\], e\['arms.cos") as told:
+        e["n"] = 16
+    assert Path(told[0].filename) == Path(__file__)
+    with pytest.warns(UserWarning, match="no arm takes n = 4") as told:
+        e.with_(n=4)
+    assert Path(told[0].filename) == Path(__file__)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        crescent.load("gallery")["n"] = 16
+        e["arms.phong.n"] = 16
+
+
+def test_values_of_other_types_are_those_of_python():
+    e = crescent.parse(TINY)
+    e["title"] = "\u00e9 \U0001f600 \x7f"[:4]
+    assert e["title"] == "\u00e9 \U0001f600 "
+    e["seeds"], e["key.radius"], e["camera.vfov_deg"] = np.int8(3), np.array(0.25), np.float32(20.5)
+    assert (e["seeds"], e["key.radius"], e["camera.vfov_deg"]) == (3, 0.25, 20.5)
+    e["note_evidence"] = np.bool_(True)
+    assert e["note_evidence"] is True
+    e["arms.mine"] = {"python": Path("mine.py"), "n": np.arange(1, 3)}
+    assert e["arms.mine.n"] == [1, 2] and e["arms.mine.python"].endswith("mine.py")
+
+
 def test_resize_scales_what_is_in_pixels():
     e = crescent.load("gallery").resize(320, 180)
     assert (e["image.width"], e["image.height"]) == (320, 180)
@@ -208,6 +278,11 @@ def test_paths_are_read_as_they_are_written():
         (lambda e: e["image"]["widht"], "did you mean 'width'"),
         (lambda e: e["widht"], "did you mean 'image.width'"),
         (lambda e: e.with_(widht=3), "did you mean 'image.width'"),
+        (lambda e: e.with_({"camera": 3}), r"^camera is 3: expected a table, such as \{'eye': ..., 'target': ...\}"),
+        (lambda e: e.with_({"arms": ["phong"]}), r"^arms is \['phong'\]: expected a table, such as \{'cosine': ..."),
+        (lambda e: e.with_({"arms.phong": None}), r"^arms.phong is None: expected a table.*e\.remove\(path\) takes it out"),
+        (lambda e: e.with_({"arms.phong": crescent.mis("cosine")}), r"e\.samplers\[NAME\] = sampler"),
+        (lambda e: e.with_(title="\ud800"), "half of a surrogate pair"),
         (lambda e: e.with_({"arms": {}}), r"^--set arms=\{\}: arms: expected one or more tables"),
         (lambda e: e["arms"].clear(), r"^--set arms=\{\}: arms: expected one or more tables"),
         (lambda e: e["image", "width"], "is no path: expected a text such as"),

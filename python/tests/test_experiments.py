@@ -4,6 +4,7 @@ import copy
 import json
 import os
 import pickle
+import re
 import signal
 
 import numpy as np
@@ -384,3 +385,34 @@ def test_a_damaged_result_is_named(tmp_path):
     (tmp_path / "out" / "arrays.npz").write_bytes(b"xx")
     with pytest.raises(ValueError, match="arrays.npz: is damaged"):
         crescent.open(tmp_path / "out")
+
+
+def test_parts_of_another_sampler_are_not_joined(tmp_path):
+    def sampler(factor):
+        return lambda wo, u: (wo, factor * u[:, 0])
+
+    for k, factor in enumerate((1.0, 1.0, 2.0)):
+        e = crescent.parse(TINY)
+        e.samplers["mine"] = crescent.Sampler(sampler(factor), n=4)
+        crescent.run(e, seeds=(1 + (k > 0), 1 + (k > 0)), out=tmp_path / str(k))
+    assert crescent.join([tmp_path / "0", tmp_path / "1"]).samplers == crescent.open(tmp_path / "0").samplers
+    with pytest.raises(ValueError, match="2: cannot be joined with .*0: the sampler 'mine' is .* there and .* here"):
+        crescent.join([tmp_path / "0", tmp_path / "2"])
+
+
+@pytest.mark.parametrize(
+    ("use", "said"),
+    [
+        (lambda m: crescent.run(TINY), "'title = .*: expected a file; crescent.parse reads text"),
+        (lambda m: crescent.run(crescent.parse(TINY), seeds=(1, 2.5)), r"^seeds is 2.5: expected whole numbers"),
+        (lambda m: crescent.run(crescent.parse(TINY), out=3), "^out is 3: expected the path of a folder"),
+        (lambda m: crescent.join(["a"], out=3), "^out is 3: expected the path of a folder"),
+        (lambda m: crescent.open(3), "^folder is 3: expected the path of a folder"),
+        (lambda m: m.films["cosin", 4], r"did you mean 'cosine'\?$"),
+        (lambda m: m.films["cosine", 5], r"n=16 s=32, phong n=4 s=32$"),
+    ],
+)
+def test_wrong_arguments_are_named(measured, use, said):
+    with pytest.raises((TypeError, ValueError, KeyError)) as raised:
+        use(measured)
+    assert re.search(said, raised.value.args[0]), raised.value.args[0]
