@@ -122,6 +122,9 @@ void add_import(CLI::App& app, Work& work) {
     c->add_option("--sky", f->sky, "the sky of the experiment in a folder; without it, a disk light")
         ->type_name("FILE")
         ->check(not_empty);
+    c->add_option("--layer", f->layer, "the layer of the sky, or of an image, in OpenEXR; default: the first part")
+        ->type_name("NAME")
+        ->check(not_empty);
     c->add_option("--memory", f->memory_mib, "limit of the importer")
         ->type_name("MIB")
         ->check(whole_number(64, 1 << 20));

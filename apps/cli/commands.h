@@ -150,6 +150,7 @@ struct ImportFlags {
     std::string file, out, material;  // "": all materials
     std::string select, up = "y";     // select: a mesh, node or material; "": all
     std::string sky;                  // of the experiment in a folder; "": a disk light
+    std::string layer;                // of the sky or of an image; "": its first part
     std::optional<double> smooth;     // degrees; none: normals as they are
     double scale = 1;
     double timeout = 300;  // s

@@ -184,7 +184,7 @@ namespace {
 int import_image(const ImportFlags& flags) {
     if (!flags.out.ends_with(".image")) refuse(flags.out, "expected a name that ends with .image (--out)");
     can_write(flags.out);
-    const std::shared_ptr<const RgbImage> image = read_texture(flags.file);
+    const std::shared_ptr<const RgbImage> image = read_texture(flags.file, flags.layer);
     write_whole(flags.out, image_file(*image));
     print(fmt::format("# {}: {} x {} texels, hash {}\n", flags.out, image->width, image->height, content_hash(*image)));
     return passed;
@@ -199,6 +199,8 @@ int import(const ImportFlags& flags) {
     if (std::ranges::find(known, extension) == known.end())
         refuse(flags.file,
             "expected a model with the extension .obj, .ply, .glb, .gltf or .stl, or an image .exr or .hdr");
+    if (!flags.layer.empty() && flags.sky.empty())
+        throw InputError({"--layer", 0, 0}, "expected together with --sky, or with an image as FILE");
     if (std::error_code unknown; !std::filesystem::is_regular_file(flags.file, unknown))
         refuse(flags.file, "expected a file that can be read");
     if (!flags.out.ends_with(".mesh")) return import_folder(flags);

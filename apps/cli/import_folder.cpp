@@ -265,10 +265,12 @@ private:
     void add_sky() {
         const std::string name = "sky" + std::filesystem::path(flags_.sky).extension().string();
         SkyLight sky{.file = flags_.sky};
+        if (!flags_.layer.empty()) sky.layer = flags_.layer;
         load_sky(sky);  // refused with the place in the reader's own file
         stage_.write(name, contents_of(flags_.sky));
         written_.push_back(name);
         scene_.sky = name;
+        scene_.sky_layer = flags_.layer;
     }
 
     const ImportFlags& flags_;

@@ -94,7 +94,12 @@ CRESCENT_EXPORT(experiment_of_files)()->void {
 namespace crescent {
 
 std::shared_ptr<const MeshPack> mesh_in_file(const std::string& path) { return web::given(web::meshes, path, ".mesh"); }
-std::shared_ptr<const RgbImage> sky_in_file(const std::string& path) { return web::image(path, why_no_sky_of); }
+std::shared_ptr<const RgbImage> sky_in_file(const std::string& path, const std::string& layer) {
+    if (!layer.empty())
+        throw InputError({path, 0, 0},
+            "a page reads packs, which have no layers: `crescent import FILE --layer NAME --out NAME.image` makes one");
+    return web::image(path, why_no_sky_of);
+}
 std::string read_input(const std::string& path, std::size_t /*limit*/, std::string_view what) {
     throw InputError(
         {path, 0, 0}, "expected " + std::string(what) + " that can be read: there are no files in a browser");

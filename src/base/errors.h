@@ -40,6 +40,11 @@ private:
     std::vector<Diagnostic> all_;
 };
 
+/// A file of images has no layer of this name, or several.
+struct LayerError : InputError {
+    using InputError::InputError;
+};
+
 /// Something could not be written, or a needed part (font, driver, library) is missing.
 struct OutputError : std::runtime_error {
     using std::runtime_error::runtime_error;

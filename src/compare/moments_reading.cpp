@@ -8,7 +8,7 @@
 #include <span>
 
 #include "base/errors.h"
-#include "compare/exr_file.h"
+#include "images/exr_file.h"
 #include "compare/moments.h"
 #include "compare/noise.h"
 #include "compare/renders.h"

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <vector>
 
-#include "compare/exr_file.h"
+#include "images/exr_file.h"
 #include "compare/renders.h"
 
 namespace crescent {

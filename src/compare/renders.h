@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "compare/exr_file.h"
+#include "images/exr_file.h"
 #include "compare/image_file.h"
 #include "images/open_file.h"
 #include "compare/outliers.h"

@@ -181,6 +181,8 @@ void check_light(ParseContext& context) {
             fmt::format("disks and lights: expected at most {}, found {}", most_lights, light_count));
     if (const auto& sky = context.e.sky; sky && context.is_valid("sky.file") && sky->file.empty())
         context.report("sky.file", "sky.file: expected the name of a file, found an empty text");
+    if (const auto& sky = context.e.sky; sky && sky->layer && sky->layer->empty())
+        context.report("sky.layer", "sky.layer: expected the name of a layer, found an empty text");
     if (const auto& sky = context.e.sky) check_content(context, "sky.content", sky->content);
     for (const Light& light : lights) check_form(context, "lights." + light.name, light.form);
     const Rgb& fill = context.e.fill;

@@ -70,7 +70,9 @@ bool leads_out(const std::string& folder, const std::string& path) {
 std::shared_ptr<const MeshPack> mesh_in_file(const std::string& path) {
     return packs_in_use.read(contents_of_regular_file(path), path);
 }
-std::shared_ptr<const RgbImage> sky_in_file(const std::string& path) { return read_sky(path); }
+std::shared_ptr<const RgbImage> sky_in_file(const std::string& path, const std::string& layer) {
+    return read_sky(path, layer);
+}
 std::shared_ptr<const RgbImage> texture_in_file(const std::string& path) { return read_texture(path); }
 
 }  // namespace crescent

@@ -236,6 +236,9 @@ std::string text_with_overrides(
 /// yet. Throws InputError.
 Experiment with_files(Experiment experiment);
 
+/// Returns a text as a string of TOML, in quotes.
+std::string toml_text(std::string_view text);
+
 /// Returns the experiment as a file that is read as the same experiment: every key with its effective value, in one
 /// layout.
 std::string canonical_text(const Experiment& experiment);

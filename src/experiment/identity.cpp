@@ -11,8 +11,6 @@
 
 namespace crescent {
 
-namespace {
-
 std::string toml_text(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
@@ -25,6 +23,8 @@ std::string toml_text(std::string_view text) {
     }
     return out + '"';
 }
+
+namespace {
 
 /// Returns the shortest text that is read as the same double. TOML's integer -0 is 0.
 std::string number(double x) { return x == 0 && std::signbit(x) ? "-0.0" : fmt::format("{}", x); }
@@ -167,7 +167,10 @@ std::uint64_t hash(const Experiment& experiment) {
     Experiment counted = experiment;
     counted.seeds = 1;                                  // a longer series is more of the same experiment
     if (experiment.figures) counted.published.reset();  // their content counts, not their path
-    if (experiment.sky && experiment.sky->content) counted.sky->file.clear();
+    if (experiment.sky && experiment.sky->content) {
+        counted.sky->file.clear();
+        counted.sky->layer.reset();
+    }
     for (MeshObject& mesh : counted.meshes) {
         const std::optional<std::string> content = mesh.pack ? content_of(mesh) : mesh.content;
         if (!content) continue;

@@ -16,7 +16,7 @@
 namespace crescent {
 
 void load_sky(SkyLight& sky) {
-    std::shared_ptr<const RgbImage> image = sky_in_file(sky.file);
+    std::shared_ptr<const RgbImage> image = sky_in_file(sky.file, sky.layer.value_or(""));
     sky.raised = 0;
     if (smallest_number(*image) < 0) {
         const auto raised = std::make_shared<RgbImage>(*image);

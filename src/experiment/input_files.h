@@ -38,9 +38,9 @@ std::string content_of(const MeshObject& mesh);
 // ---- Where files are found by their paths: on the disk (disk_files.cpp), or, in a program without one, among those
 // that it was given (apps/web/files.cpp). Throw InputError with the path.
 
-/// Returns the content of the file.
+/// Returns the content of the file; of a sky, that of a layer, or of the first part ("").
 std::shared_ptr<const MeshPack> mesh_in_file(const std::string& path);
-std::shared_ptr<const RgbImage> sky_in_file(const std::string& path);
+std::shared_ptr<const RgbImage> sky_in_file(const std::string& path, const std::string& layer);
 std::shared_ptr<const RgbImage> texture_in_file(const std::string& path);
 
 /// Whether a path below `folder` leads out of it by a link.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 
+#include "experiment/experiment.h"
 #include "math/simd/math.h"
 #include "math/simd/scalar.h"
 
@@ -35,6 +36,11 @@ std::string light_over(const Ball& ball) {
         0.6 * ball.radius);
 }
 
+std::string sky_table(const std::string& file, const std::string& layer = "") {
+    return fmt::format(
+        "[sky]\nfile = {}\n{}", toml_text(file), layer.empty() ? "" : fmt::format("layer = {}\n", toml_text(layer)));
+}
+
 std::string arm(const std::string& name) { return fmt::format("[arms.{}]\nn = [4, 16, 64]\n\n", name); }
 
 }  // namespace
@@ -59,7 +65,7 @@ std::string experiment_for(const std::vector<NamedMesh>& meshes, const std::opti
         out += fmt::format(
             "[meshes.{}]\nfile = \"{}\"\nrho_d = [0.3, 0.25, 0.2]\nrho_s = 0.4\nbrdf = \"ggx\"\nalpha = 0.2\n\n",
             table_name_of(file), file);
-    out += sky ? fmt::format("[sky]\nfile = \"{}\"\n", *sky) : light_over(Ball(points.box()));
+    out += sky ? sky_table(*sky) : light_over(Ball(points.box()));
     out += "\n[reference]\nn = 32\n\n";
     out += arm("cosine") + arm("material") + arm("renderer");
     return out + fmt::format("[regions.all]\nbox = [0, 0, {}, {}]\n", width - 1, height - 1);
@@ -101,7 +107,7 @@ std::string experiment_for(const ModelScene& scene) {
             point_in_table(scene.camera->up, 1), scene.camera->vfov_deg);
     else out += camera_table(scene.points) + "\n";
     for (const ModelMesh& mesh : scene.meshes) out += mesh_table(mesh);
-    out += scene.sky ? fmt::format("[sky]\nfile = \"{}\"\n", *scene.sky) : light_over(ball);
+    out += scene.sky ? sky_table(*scene.sky, scene.sky_layer) : light_over(ball);
     out += "\n[reference]\nn = 64\n\n";
     out += arm("cosine") + arm("material") + arm(scene.sky ? "sky" : "light-solid-angle") + arm("renderer");
     out += fmt::format("[regions.all]\nbox = [0, 0, {}, {}]\n\n", width - 1, height - 1);

@@ -43,6 +43,7 @@ struct ModelScene {
     std::optional<Camera> camera;    // none: one that sees the box
     double aspect = 4.0 / 3;         // width over height
     std::optional<std::string> sky;  // a file; none: a disk light
+    std::string sky_layer = {};      // of it; "": its first part
 };
 
 /// Returns an experiment of a whole scene: the arms that its lights and materials call for at three sample counts, a

@@ -483,12 +483,14 @@ Experiment load(const std::string& path, const std::vector<std::string>& overrid
             context.e.figures = load_published(*context.e.published);
         } catch (const InputError& error) { context.report("published", fmt::format("published: {}", error.what())); }
     }
-    if (context.e.sky && context.is_valid("sky.file")) {
+    if (context.e.sky && context.is_valid("sky.file") && context.is_valid("sky.layer")) {
         try {
             if (leads_out(std::filesystem::path(path).parent_path().string(), context.e.sky->file))
                 throw InputError({context.e.sky->file, 0, 0},
                     "expected a file in the folder of the experiment or below it, found one in another place");
             load_sky(*context.e.sky);
+        } catch (const LayerError& error) {
+            context.report("sky.layer", fmt::format("sky.layer: {}", error.what()));
         } catch (const InputError& error) { context.report("sky.file", fmt::format("sky.file: {}", error.what())); }
     }
     if (context.diagnostics.empty()) {

@@ -218,6 +218,9 @@ Section sky() {
                      "wide "
                      "as high, at most 8192 x 4096.",
                      to<&SkyLight::file>},
+            {"layer", Type::text, none, "", optional, "the first part of the file",
+                "The layer of an OpenEXR file with several, as `compare --layer` names it: R, G and B, or Y.",
+                to<&SkyLight::layer>},
             {"rotation", Type::number, {-360, 360}, "degrees", defaulted, "0",
                 "About the y axis, counterclockwise seen from above.", to<&SkyLight::rotation>},
             {"scale", Type::number, {0, 1e9, true}, "", defaulted, "1", "Factor of the image's radiance.",

@@ -14,7 +14,6 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
-#include <OpenEXR/openexr.h>
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -27,6 +26,8 @@
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/parallel.h"
+#include "images/exr_file.h"
+#include "images/exr_layers.h"
 #include "images/open_file.h"
 #include "images/stored_image.h"
 #include "scene/texture.h"
@@ -153,20 +154,45 @@ void write_texture(const std::string& path, const RgbImage& image) {
 
 namespace {
 
-/// Returns the names of the channels that become r, g and b.
-std::array<std::string, 3> channels_of(const Imf::Header& header, const std::string& path) {
-    const Imf::ChannelList& channels = header.channels();
-    std::array<std::string, 3> names = {"R", "G", "B"};
-    if (!channels.findChannel("R") && channels.findChannel("Y")) names = {"Y", "Y", "Y"};
+/// Where the pixels of an image are in a file: a part, and the channels that become r, g and b.
+struct ImageChannels {
+    int part = 0;
+    std::array<std::string, 3> names;
+};
+
+/// The channels of a layer, or, if none is named, R, G and B or Y of the first part.
+ImageChannels channels_of(const std::string& path, const std::string& layer) {
+    const OpenFile file(path);
+    const ExrFile exr(file);
+    if (!layer.empty()) {
+        const ExrLayer found = chosen_layer(exr, path, layer);
+        if (found.kind == ExrLayer::Kind::grey)
+            return {found.part, {found.channels[0], found.channels[0], found.channels[0]}};
+        if (found.kind == ExrLayer::Kind::rgb)
+            return {found.part, {found.channels[0], found.channels[1], found.channels[2]}};
+        throw LayerError({path, 0, 0},
+            fmt::format(
+                "expected a layer of R, G and B, or Y, found '{}' of {}", layer, fmt::join(found.channels, ", ")));
+    }
+    const ExrPart& part = exr.parts().front();
+    if (!part.channel("R") && part.channel("Y")) return {0, {"Y", "Y", "Y"}};
+    for (const char* name : {"R", "G", "B"}) {
+        if (part.channel(name)) continue;
+        const std::string layers = layers_found(exr);
+        throw InputError({path, 0, 0},
+            fmt::format("expected channels R, G and B, or Y, found no '{}' in the first part{}", name,
+                layers.empty() ? "" : "; a layer can be named: " + layers));
+    }
+    return {0, {"R", "G", "B"}};
+}
+
+void check_sampling(const Imf::Header& header, const std::string& path, const std::array<std::string, 3>& names) {
     for (const std::string& name : names) {
-        const Imf::Channel* channel = channels.findChannel(name);
-        if (!channel)
-            throw InputError(
-                {path, 0, 0}, fmt::format("expected channels R, G and B, or Y, found no '{}' in the first part", name));
+        const Imf::Channel* channel = header.channels().findChannel(name);
+        if (!channel) throw InputError({path, 0, 0}, fmt::format("expected a channel '{}', found none", name));
         if (channel->xSampling != 1 || channel->ySampling != 1)
             throw InputError({path, 0, 0}, fmt::format("expected a sample of '{}' for every pixel", name));
     }
-    return names;
 }
 
 /// Returns what an image of this size is not; "" if it may be read.
@@ -178,21 +204,6 @@ std::array<int, 2> size_of(const Imath::Box2i& window, const std::string& path, 
     const std::int64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
     if (const std::string why = why_not(width, height); !why.empty()) throw InputError({path, 0, 0}, why);
     return {static_cast<int>(width), static_cast<int>(height)};
-}
-
-thread_local std::string header_message;
-
-/// Throws if a size in the headers contradicts the size of the file: OpenEXR's C library checks what its C++ library
-/// takes memory for.
-void check_header(const std::string& path) {
-    exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    start.error_handler_fn = [](exr_const_context_t, exr_result_t, const char* why) { header_message = why; };
-    exr_context_t context = nullptr;
-    header_message.clear();
-    const exr_result_t result = exr_start_read(&context, path.c_str(), &start);
-    exr_finish(&context);
-    // It skips a part of a broken attribute, and succeeds.
-    if (result != EXR_ERR_SUCCESS || !header_message.empty()) throw std::runtime_error(header_message);
 }
 
 /// Reads all rows as numbers of this type.
@@ -217,16 +228,16 @@ template <class Number> void read_rows(Imf::InputPart& part, const Imath::Box2i&
     for (std::size_t k = 0; grey && k < rgb.size(); k += 3) rgb[k + 1] = rgb[k + 2] = rgb[k];
 }
 
-std::shared_ptr<const RgbImage> read_parts(const std::string& path, WhyNot why_not) {
-    check_header(path);
+std::shared_ptr<const RgbImage> read_parts(const std::string& path, const std::string& layer, WhyNot why_not) {
+    const auto [index, names] = channels_of(path, layer);  // checks the sizes in the headers, too
     Imf::MultiPartInputFile file(path.c_str(), 0);
-    const Imf::Header& header = file.header(0);
+    const Imf::Header& header = file.header(index);
     if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
         throw InputError({path, 0, 0}, "expected a flat image, found a deep one");
     const Imath::Box2i window = header.dataWindow();
     const auto [width, height] = size_of(window, path, why_not);
-    const std::array<std::string, 3> names = channels_of(header, path);
-    Imf::InputPart part(file, 0);
+    check_sampling(header, path, names);
+    Imf::InputPart part(file, index);
     auto out = std::make_shared<RgbImage>();
     out->width = width;
     out->height = height;
@@ -274,7 +285,7 @@ std::shared_ptr<const RgbImage> read_pack(const std::string& path, std::string_v
     return image;
 }
 
-std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
+std::shared_ptr<const RgbImage> read(const std::string& path, const std::string& layer, WhyNot why_not) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
@@ -286,10 +297,12 @@ std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
             {path, 0, 0}, fmt::format("expected an image that can be read: {}", std::strerror(errno ? errno : ENOENT)));
     std::string head(image_header_size, '\0');
     file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    if (!layer.empty() && (is_image_file(head) || head.starts_with("#?")))
+        throw LayerError({path, 0, 0}, fmt::format("expected an OpenEXR image, which can have a layer '{}'", layer));
     if (is_image_file(head)) return read_pack(path, head, why_not);
     if (head.starts_with("#?")) return read_hdr(path, why_not);
     try {
-        return read_parts(path, why_not);
+        return read_parts(path, layer, why_not);
     } catch (const InputError&) { throw; } catch (const std::exception& why) {
         throw InputError({path, 0, 0}, fmt::format("expected an OpenEXR image: {}", why.what()));
     }
@@ -297,7 +310,11 @@ std::shared_ptr<const RgbImage> read(const std::string& path, WhyNot why_not) {
 
 }  // namespace
 
-std::shared_ptr<const RgbImage> read_sky(const std::string& path) { return read(path, why_no_sky_of); }
-std::shared_ptr<const RgbImage> read_texture(const std::string& path) { return read(path, why_no_texture_of); }
+std::shared_ptr<const RgbImage> read_sky(const std::string& path, const std::string& layer) {
+    return read(path, layer, why_no_sky_of);
+}
+std::shared_ptr<const RgbImage> read_texture(const std::string& path, const std::string& layer) {
+    return read(path, layer, why_no_texture_of);
+}
 
 }  // namespace crescent

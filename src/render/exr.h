@@ -28,12 +28,13 @@ void write_exr(const std::string& path, const std::vector<std::pair<std::string,
 /// Writes the texels of a texture as half floats, Y alone if all are grey. Throws OutputError.
 void write_texture(const std::string& path, const RgbImage& image);
 
-// ---- Reads the image of a sky or of a texture: from an OpenEXR file, R, G and B, or Y alone, of its first part, in
-// half, float or integers; from Radiance HDR; or from a pack (scene/texture.h).
+// ---- Reads the image of a sky or of a texture: from an OpenEXR file, R, G and B, or Y alone, of its first part or of
+// a layer (images/exr_layers.h), in half, float or integers; from Radiance HDR; or from a pack (scene/texture.h).
 
-/// Throws InputError with the file's name if it cannot be read, is no image of this kind, or is larger than a sky or a
-/// texture may be; the size is checked before memory is taken for it.
-std::shared_ptr<const RgbImage> read_sky(const std::string& path);
-std::shared_ptr<const RgbImage> read_texture(const std::string& path);
+/// `layer`: of an OpenEXR file; "": its first part. Throws InputError with the file's name if it cannot be read, is no
+/// image of this kind, or is larger than a sky or a texture may be; the size is checked before memory is taken for it.
+/// Throws LayerError if the file has no such layer.
+std::shared_ptr<const RgbImage> read_sky(const std::string& path, const std::string& layer = "");
+std::shared_ptr<const RgbImage> read_texture(const std::string& path, const std::string& layer = "");
 
 }  // namespace crescent

@@ -90,8 +90,9 @@ Json scene_section(Page& page) {
         lights.push_back({{"name", light.name}, {"kind", light.kind()}, {"where", parameters_of(light.form)},
             {"radiance", rgb(light.radiance)}});
     if (e.sky)
-        sky = {{"file", e.sky->file}, {"content", e.sky->content.value_or("not read")},
-            {"rotation", shortest(e.sky->rotation)}, {"scale", shortest(e.sky->scale)}};
+        sky = {{"file", e.sky->layer ? fmt::format("{}, layer {}", e.sky->file, *e.sky->layer) : e.sky->file},
+            {"content", e.sky->content.value_or("not read")}, {"rotation", shortest(e.sky->rotation)},
+            {"scale", shortest(e.sky->scale)}};
     return {{"eye", vec(e.camera.eye)}, {"target", vec(e.camera.target)}, {"vfov", shortest(e.camera.vfov_deg)},
         {"width", e.image.width}, {"height", e.image.height}, {"geometry_pixels", page.in.metrics.geometry_pixels},
         {"warnings", page.find.warnings()}, {"plates", page.figures.plates(PlateKind::gallery)},

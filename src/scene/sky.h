@@ -30,6 +30,7 @@ inline constexpr double brightest_sky = 1e9;                 // W/(sr m^2), the 
 /// The sky of a scene.
 struct SkyLight {
     std::string file;
+    std::optional<std::string> layer{};    // of an OpenEXR file; none: its first part
     double rotation = 0;                   // degrees about +y
     double scale = 1;                      // of the radiance
     bool visible = true;                   // to the camera, where it sees no surface

@@ -109,7 +109,7 @@ def mesh() -> bytes:
 
 def image(width: int, height: int, rule: str) -> bytes:
     with tempfile.NamedTemporaryFile(suffix=".exr") as file:
-        sky_image.write(file.name, width, height, sky_image.texels(width, height, rule))
+        sky_image.write(file.name, width, height, {"": sky_image.texels(width, height, rule)})
         return Path(file.name).read_bytes()
 
 

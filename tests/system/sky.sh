@@ -72,6 +72,30 @@ for name in one half; do
     done
     cmp $name-exr/metrics.csv $name-hdr/metrics.csv || die "$name.hdr gives other numbers than $name.exr"
 done
+
+# A layer of a file with several: the numbers and the identity of the same texels in a file of their own.
+hash_of() { sed -n 's/.*"hash": "\([0-9a-f]*\)".*/\1/p' "$1/metrics.json" | head -n 1; }
+image sun.exr 8 '(2, 1 + up, 1)'
+image layers.exr 8 '(2, 1 + up, 1) if layer == "sun" else (0.5, 0.5, 0.5)' 4 sun ambient
+experiment sun.exr
+run 0 --only metrics --out sun
+experiment layers.exr 'layer = "sun"'
+run 0 --only metrics --out layer
+expect 0 "$CRESCENT" import layers.exr --layer sun --out sun.image
+experiment sun.image
+run 0 --only metrics --out packed-layer
+for out in layer packed-layer; do
+    cmp sun/metrics.csv $out/metrics.csv || die "$out: other numbers than those of the texels"
+    [ "$(hash_of sun)" = "$(hash_of $out)" ] || die "$out: another identity than that of the texels"
+done
+refuses "sky.toml:[0-9]*:[0-9]*: sky.layer: .*no layer 'son': expected one of 'ambient', 'sun'; did you mean 'sun'?" \
+    layers.exr 'layer = "son"'
+refuses "sky.file: .*no 'R' in the first part; a layer can be named: 'ambient', 'sun'" layers.exr
+refuses 'sky.layer: .*OpenEXR' one.hdr 'layer = "sun"'
+refuses 'sky.layer: .*empty' layers.exr 'layer = ""'
+expect 2 "$CRESCENT" import layers.exr --layer son --out none.image
+grep -q "^layers.exr: no layer 'son'" said || die "no list of layers: $(cat said)"
+
 radiance wide.hdr 'PRIMARIES=0.71 0.29 0.17 0.8 0.13 0.05 0.31 0.33\n'
 refuses 'wide.hdr.*PRIMARIES' wide.hdr
 head -c 60 one.hdr >cut.hdr
@@ -93,7 +117,6 @@ END
 run 0 --out holds
 
 # Another path, another folder: the same identity. Another content: another one.
-hash_of() { sed -n 's/.*"hash": "\([0-9a-f]*\)".*/\1/p' "$1/metrics.json" | head -n 1; }
 mkdir elsewhere && cp sunset.exr elsewhere/image.exr && sed 's/sunset.exr/image.exr/' sky.toml >elsewhere/sky.toml
 expect 0 "$CRESCENT" run elsewhere/sky.toml --quiet --only metrics --out moved
 [ "$(hash_of holds)" = "$(hash_of moved)" ] || die "the path of a sky is part of the identity"

@@ -6,6 +6,8 @@ import subprocess
 import sys
 import zlib
 
+import sky_image
+
 crescent = sys.argv[1]
 
 
@@ -97,6 +99,15 @@ has(text, "[meshes.cube]", "[[meshes.cube.instances]]", "rho_s = [1, 0.8, 0.3]",
 command("run", "scene/experiment.toml", "--quiet", "--out", "out", "--set", "image.width=64", "--set", "image.height=32", "--set", "regions.all.box=[0,0,63,31]")
 runs = json.loads(pathlib.Path("out/metrics.json").read_text())["runs"]
 assert all(run["bad"] == 0 and run["y_mean"] > 0 for run in runs if "bad" in run), runs
+
+# A layer of the sky is named in the experiment.
+sky = sky_image.texels(8, 4, "(1, 1, 1)")
+sky_image.write("layers.exr", 8, 4, {"sun": sky, "ambient": sky})
+command("import", "scene.glb", "--out", "under-sky", "--sky", "layers.exr", "--layer", "sun")
+has(pathlib.Path("under-sky/experiment.toml").read_text(), '[sky]\nfile = "sky.exr"\nlayer = "sun"\n')
+has(command("import", "scene.glb", "--out", "none", "--sky", "layers.exr", "--layer", "son", code=2), "no layer 'son'", "did you mean 'sun'")
+has(command("import", "scene.glb", "--out", "none", "--layer", "sun", code=2), "--layer: expected together with --sky")
+assert not pathlib.Path("none").exists()
 
 # One mesh and the folder have the same material.
 for material in ("tiles", "gold", "lamp"):

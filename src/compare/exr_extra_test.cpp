@@ -1,5 +1,5 @@
-// Layers, variances, sample counts and times by their names, of parts that are in no file.
-#include "compare/exr_layers.h"
+// Variances, sample counts and times by their names, of parts that are in no file.
+#include "compare/exr_extra.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <limits>
 
 namespace crescent {
-namespace exr_layers_test {
+namespace exr_extra_test {
 
 using ::testing::ElementsAre;
 using Kind = ExrExtra::Kind;
@@ -16,16 +16,6 @@ ExrPart part(const std::vector<std::string>& channels) {
     ExrPart out;
     for (const std::string& name : channels) out.channels.emplace_back().name = name;
     return out;
-}
-
-TEST(ExrChannelNames, AreSplitIntoLayerAndColour) {
-    const auto found = exr_channels(part({"R", "red", "View.Combined.G", "diffuse_B", "rgba.[blue]", "Z", "depth_z1"}));
-    EXPECT_EQ(found.at("").at("r"), "R");  // the first of two spellings
-    EXPECT_EQ(found.at("").at("z"), "Z");
-    EXPECT_EQ(found.at("").at("depth_z1"), "depth_z1");
-    EXPECT_EQ(found.at("View.Combined").at("g"), "View.Combined.G");
-    EXPECT_EQ(found.at("diffuse").at("b"), "diffuse_B");
-    EXPECT_EQ(found.at("rgba").at("b"), "rgba.[blue]");
 }
 
 TEST(ExrVariance, HasTheKindOfItsLayer) {
@@ -90,5 +80,5 @@ TEST(ExrAttributes, AreNumbersOrTimesOfAnyRenderer) {
     EXPECT_THROW((void)seconds({"renderTime", -1.0, "", {}}), InputError);
 }
 
-}  // namespace exr_layers_test
+}  // namespace exr_extra_test
 }  // namespace crescent

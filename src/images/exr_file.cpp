@@ -1,5 +1,5 @@
 // The headers of OpenEXR files, and their chunks.
-#include "compare/exr_file.h"
+#include "images/exr_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "compare/exr_file.h"
+#include "images/exr_file.h"
 #include "compare/renders.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/written_exr.h"
