@@ -45,7 +45,8 @@ struct Slot {
 struct Bench {
     Experiment experiment;
     Scene scene;
-    ShapeMap shapes;
+    ShapeMap shapes;                     // of the boxes that were computed here
+    std::optional<ShapeMap> all_shapes;  // of the whole image; none before it is needed
     std::vector<Slot> slots;
     /// Hits of primary rays, by box, for the following samplers and sample counts; and those of the last box that did
     /// not fit.

@@ -29,23 +29,7 @@ std::string class_of(const std::string& arm) {
     return fmt::format("c{}", at % 6);
 }
 
-/// Merges the largest samples of a box with those of the boxes before it.
-void keep_largest(
-    const TileBox& box, int surface, const SamplerRef& sampler, const TailPlan& plan, std::vector<float>& largest) {
-    const Area ends{{box.x0, box.y0, box.x1 - 1, box.y1 - 1}, surface};
-    ProgressMonitor monitor;
-    std::uint64_t drawn = 0;
-    const std::vector<float> here =
-        largest_samples(bench().scene, sampler, plan.n, bench().experiment.seed, ends, plan.kept, "", monitor, drawn);
-    largest.insert(largest.end(), here.begin(), here.end());
-    if (largest.size() <= plan.kept) return;
-    std::ranges::nth_element(largest, largest.begin() + static_cast<std::ptrdiff_t>(plan.kept), std::greater<>());
-    largest.resize(plan.kept);
-}
-
-void send_tail(std::vector<float>& largest) {
-    std::ranges::sort(largest, std::greater<>());
-    const std::optional<Tail> found = fit_pooled_tail(largest);
+void send_tail(const std::optional<Tail>& found) {
     if (!found) return respond(ordered_json{{"words", "no tail: the samples do not spread"}});
     // The mean is the integral and exists for any k; from k = 1 on the observed samples do not bound it.
     const bool sure = std::fabs(found->k - 0.5) >= 2 * found->se;
@@ -86,17 +70,14 @@ CRESCENT_EXPORT(metrics)(int index)->void {
 }
 
 /// {arm, region, box: [x0, y0, x1, y1]} -> {k, se, heavy, text, words}: the tail index of the arm's samples in a box,
-/// of the region's object if it has one.
+/// in the pixels of the region's object if it has one.
 CRESCENT_EXPORT(tail)()->void {
     const ordered_json query = request();
     const Area area = requested_area(query);
     const SamplerRef sampler = sampler_of(arm_of(query.at("arm").get<std::string>()));
-    const TailPlan plan = tail_plan(pixels_of(tile_of(area.box)));
-    std::vector<float> largest;
-    if (plan.kept > 0)
-        for (const TileBox& part : parts_of(tile_of(area.box), cost_of(sampler, tail_cost * plan.n)))
-            keep_largest(part, area.surface, sampler, plan, largest);
-    send_tail(largest);
+    const ShapeMap& shapes = area.surface == any_surface ? bench().shapes : all_shapes();
+    ProgressMonitor monitor;
+    send_tail(region_tail(bench().scene, sampler, bench().experiment.seed, AreaPixels(area, shapes), "", monitor));
 }
 
 /// {region, series: [{arm, points: [[n, rmse], ...], band: [[n, low, high], ...]}]} -> RMSE against N as SVG, with

@@ -54,6 +54,12 @@ Area requested_area(const ordered_json& query) {
     return {requested_box(query), region ? region->surface : any_surface};
 }
 
+const ShapeMap& all_shapes() {
+    Bench& b = bench();
+    if (!b.all_shapes) b.all_shapes = shape_map(b.scene);
+    return *b.all_shapes;
+}
+
 TileBox tile_of(const Box& box) { return {box.x0, box.y0, box.x1 + 1, box.y1 + 1}; }
 
 std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel) {

@@ -15,13 +15,13 @@ inline constexpr std::uint64_t most_of_part = 100'000;
 std::uint64_t reference_cost(const Experiment& experiment);
 /// The cost of a pixel in films without its samples.
 inline constexpr std::uint64_t film_cost = 30;
-/// The cost of a sample used for a tail.
-inline constexpr std::uint64_t tail_cost = 4;
 
 /// Returns "box": [x0, y0, x1, y1] of a request, both ends inclusive.
 Box requested_box(const ordered_json& query);
 /// The same with the object of "region", if that is a region of the experiment's and has one.
 Area requested_area(const ordered_json& query);
+/// The surfaces that the camera sees in the whole image, traced once.
+const ShapeMap& all_shapes();
 TileBox tile_of(const Box& box);
 std::uint64_t pixels_of(const TileBox& box);
 

@@ -110,6 +110,7 @@ ShadingPoints furnace_points(const Surface& surface, std::size_t count, double c
 // ---- Draws four million samples over the region's pixels, at most 256 per pixel, and keeps the largest of all.
 
 TailPlan tail_plan(std::uint64_t pixels) {
+    if (pixels == 0) return {};
     constexpr std::uint64_t sample_limit = 4'000'000, most_a_pixel = 256;
     const std::uint64_t n = std::min(std::max<std::uint64_t>(sample_limit / pixels, 1), most_a_pixel);
     const std::size_t length = tail_length(pixels * n);

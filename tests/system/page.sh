@@ -50,6 +50,9 @@ in_node() {
 }
 in_node verdicts api phong.json 60
 in_node tiles api "$CRESCENT_SOURCE/experiments/gallery.toml"
+body='regions.body={shape = "ball"}'  # its pixels, not its box, plan the samples
+expect 0 "$CRESCENT" run "$tiny" --quiet --only metrics --seeds 1 --set "$body" --out tails
+in_node tails api "$tiny" "$work/tails/metrics.json" "$body"
 in_node exercises exercises
 
 # The programs that the page exports have its verdicts.
