@@ -1,8 +1,10 @@
 """What identifies a result of a sweep: a sampler with its state; and results that are damaged or cannot be distinguished."""
 
+import dataclasses
 import functools
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -15,6 +17,7 @@ import crescent
 for needed in ("dask", "distributed", "pyarrow"):
     pytest.importorskip(needed)
 
+from crescent._sweep.attributes import with_attributes  # noqa: E402
 from crescent._sweep.grid import UsageError  # noqa: E402
 from crescent._sweep.identity import arms_of  # noqa: E402
 from crescent._sweep.state import state_of  # noqa: E402
@@ -269,3 +272,60 @@ def test_attributes_of_samplers_are_swept(tmp_path):
     for path, said in (("samplers.powr.k", "did you mean 'power'"), ("samplers.power.kk", "no attribute 'kk'")):
         with pytest.raises(ValueError, match=said):
             crescent.sweep(e, over={path: [1.0]}, out=tmp_path / "other", workers=1)
+
+
+@dataclasses.dataclass(frozen=True)
+class Frozen:
+    k: float = 1.0
+
+    def __call__(self, wo, u):
+        return Power(self.k).sample(wo, u)
+
+    @property
+    def twice(self):
+        return 2 * self.k
+
+
+class Calling(Power):
+    def __call__(self, wo, u):
+        return self.sample(wo, u)
+
+
+def to_a_power(wo, u, k):
+    return Power(k).sample(wo, u)
+
+
+def test_what_a_sampler_calls_has_attributes_too():
+    e = crescent.parse(TINY)
+    e.samplers["object"] = Calling(1.0)
+    e.samplers["frozen"] = Frozen()
+    e.samplers["partial"] = functools.partial(to_a_power, k=1.0)
+    e.samplers["ris"] = crescent.ris("cosine", "phong", candidates=2)
+    e.samplers["mis"] = crescent.mis("cosine", "phong")
+    wo, u = np.ones((2, 3)), np.full((2, 2), 0.25)
+    for name in ("object", "frozen", "partial"):
+        for k in (1.0, 3.0):
+            changed = with_attributes(e, {f"samplers.{name}.k": k})
+            np.testing.assert_array_equal(changed.samplers[name].sample(wo, u)[1], Power(k).sample(wo, u)[1])
+        assert changed.hash != e.hash
+    assert with_attributes(e, {"samplers.ris.candidates": 4}).samplers["ris"].candidates == 4
+    assert with_attributes(e, {"samplers.ris.n": [2, 8]}).samplers["ris"].n == (2, 8)
+    for path, said in (
+        ("samplers.object.kk", "the sampler has k; did you mean 'k'?"),
+        ("samplers.partial.kk", "the sampler has k; did you mean 'k'?"),
+        ("samplers.frozen.twice", "'twice' cannot be set"),
+        ("samplers.ris.candidate", "the sampler has candidates, n; did you mean 'candidates'?"),
+    ):
+        with pytest.raises(UsageError, match=re.escape(said)):
+            with_attributes(e, {path: 2})
+
+
+def test_flags_without_effect_are_refused(tmp_path):
+    (tmp_path / "e.toml").write_text(TINY)
+    for words, said in (
+        (("summary", ".", "--set", "n=3"), "--set: a summary computes nothing"),
+        (("summary", ".", "--no-resume"), "--no-resume: a summary computes nothing"),
+        (("e.toml", "--over", "ball.s=8", "--engine", "commands", "--workers", "2"), "workers is 2: is of the engine 'local'"),
+    ):
+        code, text = command(*words, cwd=tmp_path)
+        assert code == 2 and said in text, text

@@ -141,6 +141,15 @@ def _refuse(given: argparse.Namespace, names: Sequence[str], why: str) -> None:
             raise UsageError(f"--{name}: {why}")
 
 
+def _refuse_of_summary(given: argparse.Namespace) -> None:
+    """Refuses all flags but --metric."""
+    defaults = vars(_parser().parse_args([]))
+    for name, value in vars(given).items():
+        if name not in ("file", "metric") and value != defaults[name]:
+            flag = "no-resume" if name == "resume" else name.replace("_", "-")
+            raise UsageError(f"--{flag}: a summary computes nothing: expected --metric alone")
+
+
 def _versions(given: argparse.Namespace) -> dict[str, str]:
     versions = {}
     for text in given.sampler_version:
@@ -231,6 +240,7 @@ def _dispatch(words: list[str]) -> int:
         given = _parsed(words[1:])
         if not given.file:
             raise UsageError("summary: expected DIR, the folder of a sweep")
+        _refuse_of_summary(given)
         print(summary(given.file, given.metric or ""))
         return 0
     given = _parsed(words)

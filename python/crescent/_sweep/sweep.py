@@ -513,6 +513,8 @@ def settled_options(
         seeds = whole("seeds", seeds, 1, 4096, "expected a whole number, 1 to 4096")
     if workers is not None:
         workers = whole("workers", workers, 1, 4096, "expected a whole number, 1 to 4096")
+        if engine_of(engine) != "local":
+            raise UsageError(f"workers is {workers}: is of the engine 'local', and the engine is {engine!r}")
     if engine_of(engine).startswith("slurm:"):
         profile_of(engine.partition(":")[2])
     return Options(
