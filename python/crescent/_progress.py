@@ -17,17 +17,22 @@ def _is_shown() -> bool:
 
 @contextmanager
 def bar(progress: Progress | bool | None) -> Iterator[Progress | None]:
-    """What _crescent.run calls: the user's callable, a bar, or None."""
+    """What _crescent.run calls: the user's callable, a bar, or None. Each stage ends at 100 %."""
     if callable(progress):
         last_call: list[Any] = []
 
+        def end_stage() -> None:
+            if last_call and last_call[1] < last_call[2]:
+                progress(last_call[0], last_call[2], last_call[2])
+
         def told(what: str, done: float, total: float) -> None:
+            if last_call and last_call[0] != what:
+                end_stage()
             last_call[:] = [what, done, total]
             progress(what, done, total)
 
         yield told
-        if last_call and last_call[1] < last_call[2]:  # a run ends at 100 %
-            progress(last_call[0], last_call[2], last_call[2])
+        end_stage()
         return
     if not isinstance(progress, bool) and progress is not None:
         raise TypeError(f"progress is {type(progress).__name__}: expected a callable progress(what, done, total), or a bool")
@@ -46,6 +51,9 @@ def bar(progress: Progress | bool | None) -> Iterator[Progress | None]:
 
         def show(what: str, done: float, total: float) -> None:
             if what != last[0]:
+                if last[0]:
+                    shown.n = shown.total
+                    shown.refresh()
                 shown.reset(total=max(total, 1e-9))
                 shown.set_description(what)
                 last[0] = what

@@ -187,8 +187,7 @@ def ladder(
             name += (": 0" if not middle.any() else ": ∞" if np.isinf(middle).all() else "")
             name += ", heavy tail" if arm in heavy else ""
             shown = np.where(np.isfinite(middle) & ((middle > 0) | (not log)), middle, np.nan)
-            ends = [[_finite_percentile(v, q) for v in over] for q in (low, high)]
-            ends = [np.where(shown > 0, end, np.nan) for end in ends]
+            ends = [np.where(shown > 0, [_finite_percentile(v, q) for v in over], np.nan) for q in (low, high)]
             ax.plot(x, shown, look.marker, ls=look.dashes, ms=3, color=look.colour, label=name, gid=arm)
             ax.fill_between(x, ends[0], ends[1], color=look.colour, alpha=0.2, lw=0)
             if log and (middle <= 0).any():
@@ -339,7 +338,7 @@ def bars(
 
 def _name_above(ax: Axes, y: float, look: _Look) -> None:
     """The marker and the label of an arm over its bar; a label that is longer than the axis has smaller letters."""
-    name = ax.annotate(
+    name: Any = ax.annotate(
         look.label, (0, y), (8, 1.5), xycoords=("axes fraction", "data"), textcoords="offset points", va="bottom",
         size=6.5, gid="name",
     )  # fmt: skip

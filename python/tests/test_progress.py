@@ -16,7 +16,7 @@ class Bar:
     made: list["Bar"] = []
 
     def __init__(self, **options):
-        self.total, self.n, self.texts = options["total"], 0.0, []
+        self.total, self.n, self.texts, self.ends = options["total"], 0.0, [], []
         Bar.made.append(self)
 
     def __enter__(self):
@@ -26,6 +26,7 @@ class Bar:
         return None
 
     def reset(self, total):
+        self.ends.append(self.n)
         self.total, self.n = total, 0.0
 
     def set_description(self, text):
@@ -51,6 +52,7 @@ def test_a_bar_follows_the_stages(tqdm):
         show("films", 9, 8)
     made = Bar.made[0]
     assert made.texts == ["references", "films"] and made.total == 8 and made.n == 8
+    assert made.ends == [0.0, 4]
 
 
 def test_no_bar_is_shown_where_nobody_watches(tqdm, monkeypatch):
@@ -67,6 +69,11 @@ def test_a_callable_is_called_and_ends_at_100_percent():
     with bar(lambda *call: calls.append(call)) as show:
         show("films", 1.0, 4.0)
     assert calls == [("films", 1.0, 4.0), ("films", 4.0, 4.0)]
+    calls.clear()
+    e = crescent.load("two-lamps").resize(160, 90)
+    crescent.run(e, seeds=(1, 1), studies=True, progress=lambda *call: calls.append(call))
+    last = {what: (done, total) for what, done, total in calls}
+    assert len(last) >= 2 and all(done == total for done, total in last.values()), last
     with pytest.raises(TypeError, match="expected a callable"), bar("yes"):
         pass
 

@@ -4,9 +4,10 @@ it calls, a keyword of a functools.partial, or a key of a combination."""
 from __future__ import annotations
 
 import copy
+import dataclasses
 import functools
 from collections.abc import Iterable, Mapping
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import replace
 from types import BuiltinFunctionType, FunctionType, MethodType
 from typing import Any
 
@@ -50,8 +51,10 @@ def _owner(call: Any) -> Any:
 def _with(owner: Any, attribute: str, value: Any, path: str) -> Any:
     """A copy of an object with this attribute; of a data class, made again with it."""
     try:
-        if is_dataclass(owner) and any(field.name == attribute and field.init for field in fields(owner)):
-            return replace(owner, **{attribute: value})
+        fields = dataclasses.fields(owner) if dataclasses.is_dataclass(owner) else ()
+        if any(field.name == attribute and field.init for field in fields):
+            made: Any = dataclasses.replace(owner, **{attribute: value})
+            return made
         out = copy.copy(owner)
         setattr(out, attribute, value)
     except AttributeError as error:

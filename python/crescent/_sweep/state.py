@@ -227,7 +227,7 @@ class _Walk:
         """What a function holds beside its code: defaults, a closure, attributes. Of a function of a library, by which
         it may call functions of the user."""
         names = frozenset(name for code in _codes(function.__code__) for name in code.co_names)
-        out = [[key, self.state(value, names)] for key, value in (function.__kwdefaults__ or {}).items()]
+        out: list[Any] = [[key, self.state(value, names)] for key, value in (function.__kwdefaults__ or {}).items()]
         out += self._many(function.__defaults__ or (), names)
         for cell in function.__closure__ or ():
             try:
@@ -281,7 +281,8 @@ class _Walk:
         if isinstance(value, np.ndarray):
             out.append(self.state(np.asarray(value), names))
         out += [self._container(value, names) for base in _CONTAINERS if isinstance(value, base)]
-        return out + [_plain(base(value)) for base in _PLAIN[2:] if isinstance(value, base)]
+        bases: Any = _PLAIN[1:]
+        return out + [_plain(base(value)) for base in bases if isinstance(value, base)]
 
     def _unhashable(self, value: Any) -> Any:
         kind = type(value)

@@ -151,7 +151,8 @@ def _sampler_with(code: Mapping[str, Any], values: Mapping[str, Any]) -> tuple[A
         sampler, rest = sampler_at(at), dict(values)
     settings = {key: value for key, value in values.items() if key in DEFAULTS} if sampler.uses else {}
     for key in set(rest) - set(settings):
-        sampler = with_attribute(sampler, key, rest[key], key)
+        changed: Any = with_attribute(sampler, key, rest[key], key)
+        sampler = changed
     return sampler, settings or None
 
 
