@@ -1,9 +1,10 @@
 #!/bin/bash
-# Every relative link of README.md, CONTRIBUTING.md, SECURITY.md and docs/*.md leads to a file and a heading that exist.
+# Every relative link of README.md, AGENTS.md, llms.txt, CONTRIBUTING.md, SECURITY.md and docs/*.md leads to a file and a
+# heading that exist.
 . "$(dirname "$0")/common.sh"
 command -v python3 >/dev/null || skip "no python3 here"
 links=$CRESCENT_SOURCE/tests/system/docs/links.py
-pages() { (cd "$CRESCENT_SOURCE" && ls README.md CONTRIBUTING.md SECURITY.md docs/*.md); }
+pages() { (cd "$CRESCENT_SOURCE" && ls README.md AGENTS.md llms.txt CONTRIBUTING.md SECURITY.md docs/*.md); }
 mapfile -t pages < <(pages)
 [ "${#pages[@]}" -gt 10 ] || die "too few pages: ${pages[*]}"
 

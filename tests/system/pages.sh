@@ -1,0 +1,48 @@
+#!/bin/bash
+# What the pages for readers promise: a README of one screen, at most 30,000 words written by hand, and in AGENTS.md the
+# names of options and of the JSON of check as they are.
+. "$(dirname "$0")/common.sh"
+command -v python3 >/dev/null || skip "no python3 here"
+words() { python3 "$CRESCENT_SOURCE/tests/system/docs/words.py" "$@"; }
+
+[ "$(wc -l <"$CRESCENT_SOURCE/README.md")" -le 80 ] || die "README.md has more than 80 lines"
+expect 0 words --most 30000
+
+# Code and what a program measured do not count; all else does, and too much is refused.
+mkdir -p tree/docs tree/examples
+for page in README.md AGENTS.md llms.txt CONTRIBUTING.md SECURITY.md docs/field.md; do echo "One - 2." >"tree/$page"; done
+cat >tree/docs/page.md <<'PAGE'
+| a | b |
+|---|---|
+<!-- measured by x.py -->
+not these
+<!-- end of x.py -->
+```sh
+nor these
+```
+1. An item
+
+   ```sh
+   nor these
+   ```
+PAGE
+expect 0 words --root tree --most 15
+expect 1 words --root tree --most 14
+grep -q "have 15 words. Expected at most 14" said || die "too many words: $(cat said)"
+
+# Each key that AGENTS.md names is one of the schema or of the evidence, and each option one of check or compare.
+expect 0 "$CRESCENT" check cosine --wo 30 --quiet --json check.json
+python3 - "$CRESCENT_SOURCE" <<'PY' || die "AGENTS.md names what is not there"
+import re, sys
+from pathlib import Path
+root = Path(sys.argv[1])
+page, known = (root / "AGENTS.md").read_text(), (root / "docs/check.schema.json").read_text() + open("check.json").read()
+json = page[page.index("In the JSON:") : page.index("Work on the first")]
+keys = {key for words in re.findall(r"`([a-z_.]+)`", json) for key in words.split(".")} - {"density", "normalised"}
+missing = [key for key in sorted(keys) if f'"{key}"' not in known]
+assert len(keys) >= 8 and not missing, (keys, missing)
+PY
+"$CRESCENT" check --help >options && "$CRESCENT" compare --help >>options
+for option in $(grep -o -- '`[^`]*`' "$CRESCENT_SOURCE/AGENTS.md" | grep -o -- '--[a-z]\+' | sort -u); do
+    grep -q -- "$option\b" options || die "AGENTS.md names $option, which check and compare do not have"
+done
