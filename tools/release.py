@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """release.py: the parts of a release that need no network.
 
-    release.py check [TAG]     TAG is v and VERSION; CHANGELOG.md has that version with a date, and text below it
+    release.py check [TAG]     TAG is v and VERSION; CHANGELOG.md has that version with a date, and text below it; with
+                               TAG, nothing is left under [Unreleased]
     release.py notes           prints the text of CHANGELOG.md for VERSION
     release.py metadata FILE   writes the metadata of a DOI (DataCite 4.5, as JSON) from CITATION.cff, VERSION, the date in
                                CHANGELOG.md and tools/addresses.txt
@@ -37,6 +38,13 @@ def changes() -> tuple[str, str]:
     if not re.search(r"^- ", found[2], re.M):
         raise Mistake(f"CHANGELOG.md: expected changes below [{version()}]")
     return found[1], found[2].strip()
+
+
+def unreleased() -> bool:
+    """Returns whether CHANGELOG.md has changes of no version."""
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    found = re.search(r"^## \[Unreleased\]\n(.*?)(?=^## \[|\Z)", text, re.M | re.S)
+    return bool(found and re.search(r"^- ", found[1], re.M))
 
 
 def addresses() -> dict[str, str]:
@@ -88,6 +96,8 @@ def main() -> int:
                 if tag and tag[0] != f"v{version()}":
                     raise Mistake(f"VERSION: expected the tag v{version()}, not {tag[0]}")
                 changes()
+                if tag and unreleased():
+                    raise Mistake(f"CHANGELOG.md: expected no changes below [Unreleased]; move them to [{version()}]")
                 metadata()
             case ["notes"]:
                 print(changes()[1])

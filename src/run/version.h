@@ -5,7 +5,7 @@
 
 namespace crescent {
 
-std::string version();   // "0.2.0"
+std::string version();   // "1.2.3", of the file VERSION
 std::string commit();    // from `git describe`, or "unknown"
 std::string compiler();  // "GNU 12.2.0"
 

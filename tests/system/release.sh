@@ -7,6 +7,15 @@ cp "$CRESCENT_SOURCE"/{VERSION,CHANGELOG.md,CITATION.cff} . && cp "$CRESCENT_SOU
 release() { python3 tools/release.py "$@"; }
 version=$(cat VERSION)
 
+# Changes that no version has stop a release; without a tag they do not.
+printf '## [Unreleased]\n\n### Added\n\n- x\n\n' >new.md
+sed -i '/^## \[Unreleased\]/,/^## \[[0-9]/{/^## \[[0-9]/!d}' CHANGELOG.md
+cp CHANGELOG.md released.md
+cat new.md released.md >CHANGELOG.md
+expect 0 release check
+expect 1 release check "v$version"
+grep -q "CHANGELOG.md: expected no changes below \[Unreleased\]; move them to \[$version\]" said || die "not named: $(cat said)"
+cp released.md CHANGELOG.md
 expect 0 release check
 expect 0 release check "v$version"
 expect 1 release check "v$version.1"
