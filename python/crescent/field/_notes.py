@@ -19,6 +19,7 @@ class Note:
     kind: str  #: "bug", "no picture changes", "corner", "approximation", "single precision", "the model"
     because: str
     script: str = ""  #: that shows it, instead of one made for the verdict
+    report: str = ""  #: draft of a report to the project
 
     def covers(self, title: str, verdict: Verdict) -> bool:
         """Returns whether it explains this verdict of this plugin."""
@@ -85,6 +86,10 @@ NOTES = [
         "have the same error. Moving the term out of the parentheses fixes it; `LogI0` of pbrt-v4 has the same "
         "fault. The script integrates the density of one fibre lobe; the expected result is 1.",
         _FIBER,
+        "Symptom: the pdf of the hair BSDF with its default parameters integrates to 0.998, not to 1, and so does "
+        "`square_to_rough_fiber_pdf`: 0.9966 at kappa 20, 0.9986 at 47. f has the same error, so hair loses that much "
+        "light. Cause: for x above 12, `log_i0` of include/mitsuba/core/warp.h halves the term 1 / (8 x) of the expansion "
+        "of log I0(x); below 12 its series ends too early. Fix: x + log(1 / (2 pi x)) / 2 + 1 / (8 x), and more terms.",
     ),
     Note(
         "",

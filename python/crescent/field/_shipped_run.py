@@ -60,6 +60,7 @@ def _findings(it: Shipped, result: crescent.CheckResult, shown: set[str]) -> Ite
             first.cause,
             note.kind if note else "open",
             note.because if note else "",
+            report=note.report if note else "",
         )
         own = note.script if note else ""
         if key not in shown and (own or (it.kind == "bsdf" and first.name != "identity")):
