@@ -51,7 +51,7 @@ struct Cell {
 
 /// A fault that a script shows: its kind, its size, and where.
 struct ShownFault {
-    enum class Kind { bad_draw, bad_pdf, bad_f, dark, integral, cell, two_pdfs, energy, not_reciprocal, mean };
+    enum class Kind { bad_draw, bad_pdf, bad_f, dark, integral, cell, two_pdfs, energy, not_reciprocal, mean, weights };
     Kind kind = Kind::integral;
     double size = 0;
     PrimarySample u{};
@@ -367,7 +367,12 @@ private:
         return best;
     }
     std::optional<ShownFault> find_mean() const {
-        if (!sampler_.has_f() || !traits_.has_pdf || traits_.delta) return {};
+        if (!sampler_.has_f() || traits_.delta) return {};
+        std::optional<ShownFault> by_pdf;
+        if (traits_.has_pdf && !traits_.reciprocal_weight) by_pdf = find_mean_by_pdf();
+        return by_pdf ? by_pdf : find_mean_of_weights();
+    }
+    std::optional<ShownFault> find_mean_by_pdf() const {
         std::vector<double> weights;
         std::vector<Vec3d> wi;
         const std::vector<Draw> drawn = draw(numbers());
@@ -378,6 +383,35 @@ private:
         const Mean integral = power(0), mean(weights);
         if (!differ(integral.value, mean.value, std::hypot(integral.error, mean.error))) return {};
         return ShownFault{.kind = Kind::mean, .size = std::fabs(integral.value - mean.value)};
+    }
+    /// The weights of the draws against the integral of f cos; W times the target against the integral of the target.
+    std::optional<ShownFault> find_mean_of_weights() const {
+        const std::vector<Draw> drawn = draw(numbers());
+        if (std::ranges::none_of(drawn, [](const Draw& d) { return d.weight.has_value(); })) return {};
+        std::vector<Pair> pairs;
+        for (const Draw& d : drawn) pairs.push_back({wo_, d.pdf > 0 ? d.wi : Vec3d{0, 0, 1}});
+        std::vector<double> factors(pairs.size(), 1);
+        if (traits_.reciprocal_weight) {
+            // The adapter returns W times a bounded function of the target, which is its f.
+            std::vector<double> bounded(pairs.size());
+            sampler_.target(pairs, factors);
+            sampler_.f(pairs, bounded);
+            for (std::size_t i = 0; i < factors.size(); ++i) factors[i] = bounded[i] > 0 ? factors[i] / bounded[i] : 0;
+        }
+        std::vector<double> values(pairs.size());
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (drawn[i].pdf > 0 && drawn[i].weight)
+                values[i] = factors[i] * (traits_.channels == 3 ? drawn[i].weights.x : *drawn[i].weight);
+        const auto of_target = [&](std::span<const Vec3d> w) {
+            std::vector<Pair> at;
+            for (const Vec3d v : w) at.push_back({wo_, v});
+            std::vector<double> out(w.size());
+            sampler_.target(at, out);
+            return out;
+        };
+        const Mean integral = traits_.reciprocal_weight ? integrate(false, of_target) : power(0), mean(values);
+        if (!differ(integral.value, mean.value, std::hypot(integral.error, mean.error))) return {};
+        return ShownFault{.kind = Kind::weights, .size = std::fabs(integral.value - mean.value)};
     }
 
     const SamplerAdapter& sampler_;
@@ -402,24 +436,37 @@ std::vector<Angles> rounder(Angles worst) {
 Reach reach_program(const std::string& program) {
     const Handshake hello = handshake_with(program);
     Reach out{.hemisphere = hello.hemisphere, .lines = {}};
-    out.lines = ask_lines(hello, program, 4);
+    out.is_reservoir = hello.traits.reciprocal_weight;
+    out.lines = ask_lines(hello, program, 4 + (hello.weight && !out.is_reservoir ? 1 : 0));
     const auto verb = [&](const char* line, const char* block) { return hello.blocks ? block : line; };
     out.lines += fmt::format(
         "\n\ndef sample(wo, u): a = ask('{}', wo, u); return a[:, :3], a[:, 3]\n"
         "def pdf(wo, wi): return ask('{}', wo, wi)[:, 0]\n"
         "def f(wo, wi): return ask('{}', wo, wi){}\n",
         verb("sample", "smpl"), verb("pdf", "pdf_"), verb("f", "f___"), hello.f_cos ? " / np.abs(wi[:, 2:])" : "");
+    out.lines +=
+        fmt::format(fmt::runtime(out.is_reservoir
+                            ? "def target(wo, wi): return ask('{1}', wo, wi)[:, 0]\n"
+                              "def weigh(wo, u): a = ask('{0}', wo, u); return a[:, 3] * target(wo, a[:, :3])\n"
+                            : "def weigh(wo, u): a = ask('{0}', wo, u); return np.where(a[:, 3] > 0, a[:, 4], 0)\n"),
+            verb("sample", "smpl"), verb("target", "trgt"));
     return out;
 }
 
 /// `word`: FILE.py, FILE.py:NAME or module:NAME.
-Reach reach_python(const std::string& word, Traits::WoDomain wo) {
-    Reach out{.lines = import_lines(word)};
-    const char* given = wo == Traits::WoDomain::none ? "" : "wo, ";
+Reach reach_python(const std::string& word, const Traits& traits) {
+    Reach out{.is_reservoir = traits.reciprocal_weight, .lines = import_lines(word)};
+    const char* given = traits.wo == Traits::WoDomain::none ? "" : "wo, ";
     out.lines += fmt::format(
         "\n\ndef sample(wo, u): return sampler.sample({0}u)[:2]\n"
         "def pdf(wo, wi): return sampler.pdf({0}wi)\n"
         "def f(wo, wi): return np.reshape(sampler.f({0}wi), (len(wi), -1))\n",
+        given);
+    out.lines += fmt::format(
+        fmt::runtime(out.is_reservoir ? "def target(wo, wi): return sampler.target({0}wi)\n"
+                                        "def weigh(wo, u): wi, w = sampler.sample({0}u); return w * target(wo, wi)\n"
+                                      : "def weigh(wo, u): _, p, w = sampler.sample({0}u); "
+                                        "return np.where(p > 0, w.reshape(len(u), -1)[:, 0], 0)\n"),
         given);
     return out;
 }
@@ -513,6 +560,14 @@ std::string lines_of(const ShownFault& fault, const Reach& reach, int numbers) {
                 "y = np.where(p > 0, f(wo, wi)[:, 0] * np.abs(wi[:, 2]) / np.where(p > 0, p, 1), 0)\n"
                 "print('integral of f cos', x.mean(), 'and mean of the weights', y.mean())\n"
                 "wrong = abs(x.mean() - y.mean()) > 5 * np.hypot(x.std(), y.std()) / n**0.5\n";
+        case Kind::weights:
+            return many + (reach.is_reservoir ? uniform : cosine) +
+                (reach.is_reservoir ? fmt::format("x = 2 * np.pi * {}\n", over_sides("target(wo, {})")) : power) +
+                fmt::format(
+                    "y = weigh(wo, rng.random((n, {}), np.float32).astype(float))\n"
+                    "print('integral of {}', x.mean(), 'and mean of the weights', y.mean())\n"
+                    "wrong = abs(x.mean() - y.mean()) > 5 * np.hypot(x.std(), y.std()) / n**0.5\n",
+                    numbers, reach.is_reservoir ? "the target" : "f cos");
     }
     return "";
 }
@@ -535,7 +590,7 @@ std::optional<std::string> repro_script(
             if (std::optional<std::string> script = script_of_points(flags, *worst, finding)) return script;
             continue;
         }
-        if (!reach) reach = flags.exec.empty() ? reach_python(flags.arm, traits.wo) : reach_program(flags.exec);
+        if (!reach) reach = flags.exec.empty() ? reach_python(flags.arm, traits) : reach_program(flags.exec);
         const auto found = Bench(sampler, reach->hemisphere, worst->wo).find(finding.name);
         if (!found) continue;
         Angles wo = angles_of(worst->wo);
@@ -569,9 +624,10 @@ std::string why_not_shown(const CheckFlags& flags, const Traits& traits, std::st
     if (traits.neighbours > 0)
         return fmt::format(
             "a draw merges the reservoirs of {} neighbours, which a script cannot supply", traits.neighbours);
-    if (traits.reciprocal_weight)
-        return "the weight of a draw is random and estimates 1/p; a script compares draws with a pdf only";
-    if (!traits.has_pdf && !of_draws) return "the sampler has no pdf that a script could compare the draws with";
+    if (traits.reciprocal_weight && traits.domain)
+        return "the weight of a draw is random and estimates 1/p; a script compares such weights of directions only";
+    if (!traits.has_pdf && !of_draws && (verdict != "mean" || traits.domain))
+        return "the sampler has no pdf that a script could compare the draws with";
     if (traits.delta && verdict == "mean") return "some draws belong to delta parts, which a script does not weigh";
     return "it does not show in 65,536 draws and points";
 }

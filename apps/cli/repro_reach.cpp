@@ -70,12 +70,13 @@ std::string import_lines(const std::string& word) {
 }
 
 std::string without_unused(const std::string& lines, const std::string& script) {
-    static const std::regex definition("def (sample|pdf|f)\\(.*");
+    static const std::regex definition("def (sample|pdf|f|target|weigh)\\(.*");
     std::string out;
     std::istringstream in(lines);
     for (std::string line; std::getline(in, line);)
         if (std::smatch name; !std::regex_match(line, name, definition) ||
-            std::regex_search(script, std::regex("\\b" + name[1].str() + "\\(")))
+            std::regex_search(script, std::regex("\\b" + name[1].str() + "\\(")) ||
+            (name[1] == "target" && std::regex_search(script, std::regex("\\bweigh\\("))))
             out += line + "\n";
     return out;
 }

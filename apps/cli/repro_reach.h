@@ -11,7 +11,8 @@ namespace crescent::cli {
 /// How a script reaches the sampler.
 struct Reach {
     bool hemisphere = false;
-    std::string lines;  // of Python: define sample, pdf and f
+    bool is_reservoir = false;  // the weight of a draw estimates 1/p
+    std::string lines;          // of Python: define sample, pdf and f, weigh, and target of a reservoir
 };
 
 /// The first line that the program answers.

@@ -121,6 +121,42 @@ bias mean expected 1
 bad valid values are not finite
 END
 
+# Weights without a pdf, and those of a reservoir, which estimate 1/p.
+cat >weighs.c <<'C'
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+int main(int count, char **words) {
+    static char line[4096];
+    double x[6];
+    const double pi = 3.14159265358979323846, part = strcmp(words[count - 1], "dim") == 0 ? 0.9 : 1;
+    const int is_reservoir = strcmp(words[1], "reservoir") == 0;
+    while (fgets(line, sizeof line, stdin)) {
+        const int numbers = sscanf(line, "%*s %lf %lf %lf %lf %lf %lf", x, x + 1, x + 2, x + 3, x + 4, x + 5);
+        if (line[0] == 'h')
+            printf("hello 2 weighs domain=hemisphere %s\n", is_reservoir ? "weight=reciprocal" : "weight=yes pdf=no");
+        else if (numbers == 5) {
+            const double z = sqrt(1 - x[3]), r = sqrt(x[3]), phi = 2 * pi * x[4] / (is_reservoir ? 1 : 0.9);
+            if (phi > 2 * pi) puts("0 0 1 0 0");
+            else
+                printf("%.17g %.17g %.17g %.17g%s\n", r * cos(phi), r * sin(phi), z, is_reservoir ? part * pi / z : 1,
+                    is_reservoir ? "" : part < 1 ? " 0.5" : " 0.55555555555555556");
+        } else printf("%.17g\n", is_reservoir ? x[5] : 0.5 / pi);
+        fflush(stdout);
+    }
+    return 0;
+}
+C
+expect 0 "${CC:-cc}" -O2 -o weighs weighs.c -lm
+for kind in plain reservoir; do
+    expect 1 "$CRESCENT" check --quiet --exec "./weighs $kind dim" --wo 50.3,12.7 --repro $kind.py
+    grep -q "^# mean: " $kind.py || die "$kind is not shown by mean: $(head -n 1 $kind.py)"
+    shows "and mean of the weights" $kind.py
+    sed -i "s/ dim\"/ right\"/" $kind.py
+    expect 0 /usr/bin/python3 $kind.py
+done
+
 # Without a fault there is no script; other samplers than a program and a Python file have none.
 expect 0 "$CRESCENT" check --quiet --exec "./faulty right" --wo 45 --repro none.py
 grep -q "no verdict is wrong" said && [ ! -e none.py ] || die "a script without a fault: $(cat said)"
