@@ -46,3 +46,14 @@ PY
 for option in $(grep -o -- '`[^`]*`' "$CRESCENT_SOURCE/AGENTS.md" | grep -o -- '--[a-z]\+' | sort -u); do
     grep -q -- "$option\b" options || die "AGENTS.md names $option, which check and compare do not have"
 done
+
+# The search field of the site finds each word of a heading, and options.
+mkdir -p site/search
+printf 'var indexSectionsWithContent =\n{\n  0: "abr",\n  1: "b"\n};\n' >site/search/searchdata.js
+for at in 0 1 2; do printf "var searchData=\n[\n  ['b_0',['b',['../b.html',1,'']]]\n];\n" >site/search/all_$at.js; done
+printf '<div class="title">Other things</div><h1><a class="anchor" id="x1"></a>\nA <code>b</code> &amp; a Reservoir</h1>' >site/md_a.html
+printf '<div class="title">x</div><td><code>--repro FILE</code></td>' >site/index.html
+expect 0 python3 "$CRESCENT_SOURCE/tools/site_search.py" site
+grep -qF '["reservoir_s1", ["A b & a Reservoir", ["../md_a.html#x1", 1, "Other things"]]],' site/search/all_2.js &&
+    grep -qF '["repro_s2", ["--repro", ["../index.html#", 1, "x"]]],' site/search/all_2.js && grep -q "^  \['b_0'" site/search/all_2.js ||
+    die "the words are not found: $(cat printed site/search/all_2.js)"
