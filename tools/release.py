@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """release.py: the parts of a release that need no network.
 
-    release.py check [TAG]     TAG is v and VERSION; CHANGELOG.md has that version with a date, and text below it; with
-                               TAG, nothing is left under [Unreleased]
+    release.py check [TAG]     TAG is v and VERSION; CHANGELOG.md has that version with a date, and text below it;
+                               with TAG, nothing is left under [Unreleased]
     release.py notes           prints the text of CHANGELOG.md for VERSION
     release.py metadata FILE   writes the metadata of a DOI (DataCite 4.5, as JSON) from CITATION.cff, VERSION, the date in
                                CHANGELOG.md and tools/addresses.txt

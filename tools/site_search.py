@@ -1,5 +1,5 @@
-"""site_search.py DIR: adds the words of the pages' headings, and the options that pages name, to the search field of the
-site that Doxygen made in DIR. Doxygen itself lists titles of pages alone, by their first word.
+"""site_search.py DIR: adds the words of the pages' headings, and the options that pages name, to the search field of
+the site that Doxygen made in DIR. Doxygen itself lists titles of pages alone, by their first word.
 
 An entry is found by what its key begins with, so each word of a heading gets a key that begins there.
 """

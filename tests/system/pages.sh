@@ -10,7 +10,9 @@ expect 0 words --most 30000
 
 # Code and what a program measured do not count; all else does, and too much is refused.
 mkdir -p tree/docs tree/examples
-for page in README.md AGENTS.md llms.txt CONTRIBUTING.md SECURITY.md docs/field.md; do echo "One - 2." >"tree/$page"; done
+for page in README.md AGENTS.md llms.txt CONTRIBUTING.md SECURITY.md docs/field.md; do
+    echo "One - 2." >"tree/$page"
+done
 cat >tree/docs/page.md <<'PAGE'
 | a | b |
 |---|---|
@@ -36,7 +38,8 @@ python3 - "$CRESCENT_SOURCE" <<'PY' || die "AGENTS.md names what is not there"
 import re, sys
 from pathlib import Path
 root = Path(sys.argv[1])
-page, known = (root / "AGENTS.md").read_text(), (root / "docs/check.schema.json").read_text() + open("check.json").read()
+page = (root / "AGENTS.md").read_text()
+known = (root / "docs/check.schema.json").read_text() + Path("check.json").read_text()
 json = page[page.index("In the JSON:") : page.index("Work on the first")]
 keys = {key for words in re.findall(r"`([a-z_.]+)`", json) for key in words.split(".")} - {"density", "normalised"}
 missing = [key for key in sorted(keys) if f'"{key}"' not in known]
@@ -51,9 +54,13 @@ done
 mkdir -p site/search
 printf 'var indexSectionsWithContent =\n{\n  0: "abr",\n  1: "b"\n};\n' >site/search/searchdata.js
 for at in 0 1 2; do printf "var searchData=\n[\n  ['b_0',['b',['../b.html',1,'']]]\n];\n" >site/search/all_$at.js; done
-printf '<div class="title">Other things</div><h1><a class="anchor" id="x1"></a>\nA <code>b</code> &amp; a Reservoir</h1>' >site/md_a.html
+{
+    printf '<div class="title">Other things</div>'
+    printf '<h1><a class="anchor" id="x1"></a>\nA <code>b</code> &amp; a Reservoir</h1>'
+} >site/md_a.html
 printf '<div class="title">x</div><td><code>--repro FILE</code></td>' >site/index.html
 expect 0 python3 "$CRESCENT_SOURCE/tools/site_search.py" site
 grep -qF '["reservoir_s1", ["A b & a Reservoir", ["../md_a.html#x1", 1, "Other things"]]],' site/search/all_2.js &&
-    grep -qF '["repro_s2", ["--repro", ["../index.html#", 1, "x"]]],' site/search/all_2.js && grep -q "^  \['b_0'" site/search/all_2.js ||
+    grep -qF '["repro_s2", ["--repro", ["../index.html#", 1, "x"]]],' site/search/all_2.js &&
+    grep -q "^  \['b_0'" site/search/all_2.js ||
     die "the words are not found: $(cat printed site/search/all_2.js)"

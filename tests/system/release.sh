@@ -14,7 +14,8 @@ cp CHANGELOG.md released.md
 cat new.md released.md >CHANGELOG.md
 expect 0 release check
 expect 1 release check "v$version"
-grep -q "CHANGELOG.md: expected no changes below \[Unreleased\]; move them to \[$version\]" said || die "not named: $(cat said)"
+grep -q "CHANGELOG.md: expected no changes below \[Unreleased\]; move them to \[$version\]" said ||
+    die "not named: $(cat said)"
 cp released.md CHANGELOG.md
 expect 0 release check
 expect 0 release check "v$version"

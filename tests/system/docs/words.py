@@ -1,7 +1,7 @@
 """words.py [--most N]: prints the words of each page that is written by hand, and their sum. Exit 1: more than N.
 
-A word is what stands between spaces and has a letter or a digit. Code blocks do not count, and neither do the pages that
-programs write, nor parts of others between `<!-- measured by PROGRAM -->` and `<!-- end of PROGRAM -->`.
+A word is what stands between spaces and has a letter or a digit. Code blocks do not count, and neither do the pages
+that programs write, nor parts of others between `<!-- measured by PROGRAM -->` and `<!-- end of PROGRAM -->`.
 """
 
 from __future__ import annotations
