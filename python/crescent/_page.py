@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from . import plot
+from . import _crescent, plot
 from ._html import tone
 from ._metric_names import NAMES, UNITS
-from ._values import arms_of, compared_at, film_at, heavy_arms, only_region, with_interval
+from ._values import arms_of, box_in, compared_at, film_at, heavy_arms, only_region, with_interval
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -104,18 +104,19 @@ def _boxes(r: Measured, insets: Any, size: tuple[int, int]) -> list[tuple[int, i
     """Boxes [x0, y0, x1, y1) of boxes, or of names of regions; by default of every region."""
     width, height = size
     out = []
+    if isinstance(insets, str):
+        raise TypeError(f"insets is {insets!r}: expected a list of regions and boxes, [{insets!r}]")
     for given in list(r.boxes) if insets is None else insets:
         if isinstance(given, str):
             if given not in r.boxes:
+                near = _crescent.nearest(given, list(r.boxes))
+                hint = f"; did you mean '{near}'?" if near else ""
                 raise KeyError(
-                    f"insets has {given!r}: expected a box [x0, y0, x1, y1] or a region: {', '.join(r.boxes)}"
+                    f"insets has {given!r}: expected a box [x0, y0, x1, y1] or a region: {', '.join(r.boxes)}{hint}"
                 )
             x0, y0, x1, y1 = r.boxes[given]
             given = (x0, y0, x1 + 1, y1 + 1)
-        x0, y0, x1, y1 = given
-        if not (0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height):
-            raise ValueError(f"insets has {list(given)}: expected x0 < x1 <= {width} and y0 < y1 <= {height}")
-        out.append((x0, y0, x1, y1))
+        out.append(box_in("a box of insets", given, width, height))
     return out
 
 
@@ -166,6 +167,8 @@ def page(
     if columns not in WIDTH_MM:
         raise ValueError(f"columns is {columns!r}: expected 1 or 2")
     parts = ("picture", "grid", "ladder", "bars")
+    if isinstance(show, str):
+        raise TypeError(f"show is {show!r}: expected a list of {', '.join(parts)}")
     for name in show:
         if name not in parts:
             raise ValueError(f"show has {name!r}: expected {', '.join(parts)}")

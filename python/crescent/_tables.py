@@ -10,7 +10,8 @@ import numpy as np
 from ._cost import Costs, at_cost, budget_of
 from ._intervals import Values, half_width, rounded
 from ._metric_names import NAMES, UNITS
-from ._values import arms_of, best_in, heavy_arms, only_region, values_of
+from ._sampler import whole
+from ._values import amount_of, arms_of, best_in, heavy_arms, named_arms, only_region, values_of
 
 if TYPE_CHECKING:
     from .experiments import Measured
@@ -50,11 +51,14 @@ def latex(
     budgets: Sequence[float] | None = None, arms: Sequence[str] | None = None, labels: Mapping[str, str] | None = None,
 ) -> str:  # fmt: skip
     """See :meth:`crescent.Measured.to_latex`."""
+    labels = named_arms("labels", labels, arms_of(result, None))
+    digits = whole("digits", digits, 1, 17, "expected 1 to 17 digits")
     region = only_region(result, metric, region)
     by_arm = values_of(result, metric, region, s)
     costs = Costs(result, against, s)
     order = [arm for arm in arms_of(result, arms) if arm in by_arm and costs.knows(arm)]
     by_arm = {arm: by_arm[arm] for arm in order}
+    budgets = None if budgets is None else [amount_of("a budget of budgets", b) for b in budgets]
     if against == "n":
         columns = [float(n) for n in (budgets or sorted({n for of in by_arm.values() for n in of}))]
     else:
@@ -70,6 +74,12 @@ def latex(
         best = best_in(found, metric) if rank else set()
         for arm, values in found.items():
             cells[arm, column] = _cell(values, digits, arm in best, arm in heavy)
+    empty = [column for column in columns if not any((arm, column) in cells for arm in order)]
+    if empty and (budgets or len(empty) == len(columns)):
+        there = sorted({n for of in by_arm.values() for n in of})
+        what = "N" if against == "n" else "cost"
+        raise KeyError(f"budgets has {empty[0]:g}: no arm has {metric} at this {what}: N are {there}")
+    columns = [column for column in columns if column not in empty]
     name = NAMES.get(metric, metric.translate(_SPECIAL)) + (f", region {region}".translate(_SPECIAL) if region else "")
     name += f" [{UNITS[metric]}]" if metric in UNITS else ""
     heads = [f"$N = {n:g}$" if against == "n" else costs.text(n).replace("µs", r"\textmu s") for n in columns]
@@ -82,7 +92,7 @@ def latex(
     ]
     for arm in order:
         row = [cells.get((arm, column), "--") for column in columns]
-        lines.append(f"{(labels or {}).get(arm, arm).translate(_SPECIAL)} & " + " & ".join(row) + r" \\")
+        lines.append(f"{labels.get(arm, arm).translate(_SPECIAL)} & " + " & ".join(row) + r" \\")
     lines.append(r"\bottomrule")
     notes = [r"$^{\dagger}$ heavy tail: the intervals mean nothing"] if heavy & set(order) else []
     if against == "time":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 def arms_of(r: Measured, arms: Sequence[str] | None) -> list[str]:
     """These arms, or all of the result."""
+    if isinstance(arms, str):
+        raise TypeError(f"arms is {arms!r}: expected a list of names, [{arms!r}]")
     known = list(dict.fromkeys(film.arm for film in r.films.values()))
     known = known or list(dict.fromkeys(row["arm"] for row in r.records()))
     for arm in arms or ():
@@ -29,6 +32,37 @@ def arms_of(r: Measured, arms: Sequence[str] | None) -> list[str]:
             hint = f"; did you mean '{near}'?" if near else ""
             raise KeyError(f"no arm {arm!r}: there are {', '.join(known)}{hint}")
     return list(arms) if arms else known
+
+
+def named_arms(what: str, given: Mapping[str, str] | None, known: Sequence[str]) -> Mapping[str, str]:
+    """Labels or colours by arm; KeyError for a name that is no arm."""
+    if given is not None and not isinstance(given, Mapping):
+        raise TypeError(f"{what} is {given!r}: expected a dictionary by arm, such as {{{known[0]!r}: ...}}")
+    for name in given or {}:
+        if name not in known:
+            near = _crescent.nearest(str(name), list(known))
+            hint = f"; did you mean '{near}'?" if near else ""
+            raise KeyError(f"{what} has {name!r}: there are {', '.join(known)}{hint}")
+    return given or {}
+
+
+def box_in(what: str, given: Any, width: int, height: int) -> tuple[int, int, int, int]:
+    """A box [x0, y0, x1, y1) in a picture of this size."""
+    expected = f"expected a box [x0, y0, x1, y1] with x0 < x1 <= {width} and y0 < y1 <= {height}"
+    try:
+        x0, y0, x1, y1 = map(operator.index, given)
+    except (TypeError, ValueError):
+        raise ValueError(f"{what} is {given!r}: {expected}") from None
+    if not (0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height):
+        raise ValueError(f"{what} is {[x0, y0, x1, y1]}: {expected}")
+    return x0, y0, x1, y1
+
+
+def amount_of(what: str, given: Any) -> float:
+    """A cost above 0."""
+    if isinstance(given, (bool, str)) or not isinstance(given, (int, float, np.number)) or not 0 < given < np.inf:
+        raise ValueError(f"{what} is {given!r}: expected an amount above 0")
+    return float(given)
 
 
 def values_of(r: Measured, metric: str, region: str, s: float | None) -> dict[str, dict[int, list[float]]]:
@@ -111,9 +145,7 @@ def compared_at(
         shared = Counter(k for of in by_arm.values() for k in of)
         cost = float(n if n is not None else max(shared, key=lambda k: (shared[k], k)))
     else:
-        cost = float(budget_of(by_arm, costs) if budget is None else budget)
-        if not cost > 0:
-            raise ValueError(f"budget is {budget!r}: expected an amount above 0")
+        cost = float(budget_of(by_arm, costs) if budget is None else amount_of("budget", budget))
     found = {a: at for a in arms if a in by_arm and (at := at_cost(by_arm[a], a, costs, cost, metric, against == "n"))}
     if not found:
         raise KeyError(f"no arm has N = {cost:g}: expected one of {sorted({k for of in by_arm.values() for k in of})}")

@@ -228,7 +228,9 @@ class Experiment:
         return Experiment(core, self.samplers, source), [path_of(steps) for steps in removed]
 
     def _refuse_in_place_of_a_table(self, path: str, value: Any) -> None:
-        """ValueError for a number, a text or a list where there is a table."""
+        """ValueError for a number, a text or a list where there is a table, and for a sampler in Python."""
+        if steps_of(path)[0] == "samplers":
+            raise ValueError(f"{path}: samplers in Python are no keys: expected e.samplers[NAME] = sampler")
         try:
             there = found(self._tree(), path)[1]
         except KeyError:

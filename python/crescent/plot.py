@@ -26,7 +26,8 @@ from ._cost import Against, Costs
 from ._html import tone
 from ._intervals import differ, fitted_slope, half_width, t_of
 from ._metric_names import LARGEST_IS_BEST, NAMES, RADIANCE, UNITS
-from ._values import arms_of, compared_at, film_at, heavy_arms, only_region, values_of, with_interval
+from ._sampler import whole
+from ._values import arms_of, box_in, compared_at, film_at, heavy_arms, named_arms, only_region, values_of, with_interval
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -121,18 +122,20 @@ class _Look:
 def _look(
     r: Measured, arm: str, labels: Mapping[str, str] | None = None, colours: Mapping[str, str] | None = None
 ) -> _Look:
+    from matplotlib.colors import is_color_like
+
     known = arms_of(r, None)
-    for given, what in ((labels, "labels"), (colours, "colours")):
-        for name in given or {}:
-            if name not in known:
-                raise KeyError(f"{what} has {name!r}: there are {', '.join(known)}")
+    labels, colours = named_arms("labels", labels, known), named_arms("colours", colours, known)
+    for name, colour in colours.items():
+        if not is_color_like(colour):
+            raise ValueError(f"colours[{name!r}] is {colour!r}: expected a colour such as '#0072b2' or 'black'")
     k = known.index(arm)
     return _Look(
-        (colours or {}).get(arm, _COLOURS[k % len(_COLOURS)]),
+        colours.get(arm, _COLOURS[k % len(_COLOURS)]),
         _MARKERS[k % len(_MARKERS)],
         _DASHES[k % len(_DASHES)],
         _HATCHES[k % len(_HATCHES)],
-        (labels or {}).get(arm, arm),
+        labels.get(arm, arm),
     )
 
 
@@ -390,9 +393,7 @@ def _film(r: Measured, arm: str, n: int, s: float | None) -> Film:
 def _cut(plane: NDArray[Any], box: Sequence[int] | None) -> NDArray[Any]:
     """Rows top-down of the box [x0, y0, x1, y1) in pixels, y upwards as in the experiment file."""
     height, width = plane.shape[:2]
-    x0, y0, x1, y1 = box if box is not None else (0, 0, width, height)
-    if not (0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height):
-        raise ValueError(f"box is {[x0, y0, x1, y1]}: expected x0 < x1 <= {width} and y0 < y1 <= {height}")
+    x0, y0, x1, y1 = box_in("box", (0, 0, width, height) if box is None else box, width, height)
     return plane[y0:y1, x0:x1][::-1]
 
 
@@ -508,8 +509,9 @@ def _plane(film: Film, r: Measured, what: str) -> NDArray[Any]:
     return np.divide(error, reference, out=np.full(error.shape, np.nan, error.dtype), where=reference > 0)
 
 
-def _tiles(plane: NDArray[Any], tile: int) -> NDArray[Any]:
+def _tiles(plane: NDArray[Any], tile: int, least: int = 2) -> NDArray[Any]:
     """The pixels of each tile, [rows, columns, pixels]."""
+    tile = whole("tile", tile, least, 4096, f"expected {least} or more pixels")
     height, width = (size - size % tile for size in plane.shape)
     if height == 0 or width == 0:
         raise ValueError(f"tile is {tile}: expected at most the size of the picture, {min(plane.shape)}")
@@ -556,7 +558,8 @@ def where_noise_moved(
     variances of the pixels of a tile, with 5 % of false discoveries among the coloured tiles (Benjamini and Hochberg 1995).
     The scale ends at `top` doublings, at 6 at most where none is given.
     """
-    of_a, of_b = (_tiles(_cut(_film(r, arm, n, s).var.astype(float), box), tile) for arm in (a, b))
+    least = 2 if significant else 1
+    of_a, of_b = (_tiles(_cut(_film(r, arm, n, s).var.astype(float), box), tile, least) for arm in (a, b))
     mean_a, mean_b = of_a.mean(-1), of_b.mean(-1)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.where((mean_a > 0) & (mean_b > 0), np.log2(mean_b / mean_a), np.nan)
@@ -622,6 +625,8 @@ def crops(
     name = NAMES.get(metric, metric) + (f", region {region}" if region else "")
     count = len(films) + (reference is not None)
     with style():
+        height, width = next(iter(films.values())).y.shape
+        box = box_in("box", box, width, height)
         axes = _rows_of_pictures(count, (box[3] - box[1]) / (box[2] - box[0]), 0.6)
         if reference is not None:
             rgb = np.stack([reference[c] for c in "rgb"], -1)

@@ -282,6 +282,7 @@ def test_paths_are_read_as_they_are_written():
         (lambda e: e.with_({"arms": ["phong"]}), r"^arms is \['phong'\]: expected a table, such as \{'cosine': ..."),
         (lambda e: e.with_({"arms.phong": None}), r"^arms.phong is None: expected a table.*e\.remove\(path\) takes it out"),
         (lambda e: e.with_({"arms.phong": crescent.mis("cosine")}), r"e\.samplers\[NAME\] = sampler"),
+        (lambda e: e.with_(samplers={"x": len}), r"^samplers: .* expected e\.samplers\[NAME\] = sampler"),
         (lambda e: e.with_(title="\ud800"), "half of a surrogate pair"),
         (lambda e: e.with_({"arms": {}}), r"^--set arms=\{\}: arms: expected one or more tables"),
         (lambda e: e["arms"].clear(), r"^--set arms=\{\}: arms: expected one or more tables"),

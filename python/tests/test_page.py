@@ -122,7 +122,7 @@ def test_an_arm_without_such_samples_stays_in_the_bars(nine):
 def test_wrong_arguments_are_errors(nine):
     for wrong, said in (
         ({"insets": ["bal"]}, "insets has 'bal'"),
-        ({"insets": [(0, 0, 500, 4)]}, "expected x0 < x1 <= 48"),
+        ({"insets": [(0, 0, 500, 4)]}, r"insets is \[0, 0, 500, 4\]: expected .* x0 < x1 <= 48"),
         ({"labels": {"nobody": "x"}}, "labels has 'nobody'"),
         ({"columns": 3}, "expected 1 or 2"),
         ({"show": ["bar"]}, "show has 'bar'"),

@@ -1,5 +1,7 @@
 """Figures and tables of a result: what they show is what was measured."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -119,8 +121,44 @@ def test_unknown_names_are_errors_with_what_there_is(result):
         plot.ladder(result, metric="rsme")
     with pytest.raises(KeyError, match="no arm"):
         plot.bars(result, arms=["nobody"])
-    with pytest.raises(ValueError, match="expected x0 < x1"):
+    with pytest.raises(ValueError, match=r"box is \[0, 0, 0, 1\]: expected .* with x0 < x1"):
         plot.heat(result, *next((f.arm, f.n) for f in result.films.values()), box=[0, 0, 0, 1])
+
+
+@pytest.mark.parametrize(
+    ("use", "said"),
+    [
+        (lambda r: plot.ladder(r, arms="phong"), r"^arms is 'phong': expected a list of names, \['phong'\]"),
+        (lambda r: plot.ladder(r, labels={"phnog": "Ours"}), "labels has 'phnog'.*did you mean 'phong'"),
+        (lambda r: plot.ladder(r, labels=["Ours"]), r"^labels is \['Ours'\]: expected a dictionary by arm"),
+        (lambda r: plot.bars(r, colours={"phnog": "red"}), "colours has 'phnog'.*did you mean 'phong'"),
+        (lambda r: plot.bars(r, colours={"phong": "rde"}), r"^colours\['phong'\] is 'rde': expected a colour"),
+        (lambda r: plot.bars(r, against="time", budget="1"), "^budget is '1': expected an amount above 0"),
+        (lambda r: plot.heat(r, "phnog", 4), "did you mean 'phong'"),
+        (lambda r: plot.heat(r, "phong", 4, box=[3, 4]), r"^box is \[3, 4\]: expected a box \[x0, y0, x1, y1\]"),
+        (lambda r: plot.crops(r, 4, [3, 4]), r"^box is \[3, 4\]: expected a box"),
+        (lambda r: plot.significance(r, "cosine", "phong", 4, tile=1), "^tile is 1: expected 2 or more pixels"),
+        (lambda r: plot.where_noise_moved(r, "cosine", "phong", 4, tile=0), "^tile is 0: expected 1 or more pixels"),
+        (lambda r: plot.page(r, "ball"), r"^insets is 'ball': expected a list of regions and boxes, \['ball'\]"),
+        (lambda r: plot.page(r, ["bal"]), "insets has 'bal'.*did you mean 'ball'"),
+        (lambda r: plot.page(r, [[1, 2, 3]]), r"insets is \[1, 2, 3\]: expected a box"),
+        (lambda r: plot.page(r, show="grid"), "^show is 'grid': expected a list of picture"),
+        (lambda r: r.to_latex(labels={"phnog": "Ours"}), "labels has 'phnog'.*did you mean 'phong'"),
+        (lambda r: r.to_latex(budgets=[3]), "^budgets has 3: no arm has rmse at this N: N are"),
+        (lambda r: r.to_latex(against="time", budgets=[-3]), "^a budget of budgets is -3: expected an amount above 0"),
+        (lambda r: r.to_latex(digits=0), "^digits is 0: expected 1 to 17 digits"),
+    ],
+)
+def test_nothing_that_is_given_to_a_figure_is_ignored(result, use, said):
+    with pytest.raises((KeyError, ValueError, TypeError)) as raised:
+        use(result)
+    assert re.search(said, raised.value.args[0]), raised.value.args[0]
+
+
+def test_a_table_has_no_empty_column(result):
+    lines = result.to_latex("flip", against="rays").splitlines()
+    rows = [line.rstrip(" \\").split(" & ")[1:] for line in lines if line.startswith(("cosine &", "phong &"))]
+    assert rows and all(any(cell != "--" for cell in column) for column in zip(*rows, strict=True))
 
 
 def test_a_legend_covers_no_line(result):

@@ -203,7 +203,7 @@ TEST(ReportHtml, ShowsTheValueOfEveryLobeInTheScene) {
 // A name in a template that the model lacks is an error only where it is rendered.
 TEST(ReportHtml, HasTheValuesOfSectionsThatAreRare) {
     Sample s;
-    s.experiment.sky = SkyLight{"<sky>.exr", 30, 2, {}, {}, {}};
+    s.experiment.sky = SkyLight{.file = "<sky>.exr", .rotation = 30, .scale = 2};
     MeshObject mesh;
     mesh.name = "<mesh>";
     mesh.file = "<file>.mesh";

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .. import _crescent
 from .grid import UsageError, hint, short
 from .summary import Numbers, geometric
 
@@ -21,10 +22,10 @@ def axes_over(numbers: Numbers, over: Sequence[str] | None = None) -> list[Axis]
     several = [axis for axis in numbers.axes.items() if len(axis[1]) > 1]
     if over is None:
         return several
+    if isinstance(over, str):
+        raise UsageError(f"over is {over!r}: expected a list of one or two swept keys, [{over!r}]")
     for path in over:
         if path not in numbers.axes:
-            from .. import _crescent
-
             near = _crescent.nearest(path, list(numbers.axes))
             raise UsageError(f"over has {path!r}: expected one of {', '.join(numbers.axes)}" + hint(near))
     return [(path, numbers.axes[path]) for path in over]
@@ -32,11 +33,14 @@ def axes_over(numbers: Numbers, over: Sequence[str] | None = None) -> list[Axis]
 
 def figure_of(numbers: Numbers, metric: str, over: Sequence[str] | None, arms: Sequence[str] | None) -> Figure:
     """Curves over one axis, or heat maps over two."""
+    if isinstance(arms, str):
+        raise UsageError(f"arms is {arms!r}: expected a list of names, [{arms!r}]")
     name, region = numbers.chosen(metric)
     known = [arm for arm in numbers.arms() if numbers.counts(arm, name, region)]
     for arm in arms or ():
         if arm not in known:
-            raise KeyError(f"no arm {arm!r}: there are {', '.join(known)}")
+            near = _crescent.nearest(str(arm), known)
+            raise KeyError(f"no arm {arm!r}: there are {', '.join(known)}" + hint(near))
     axes = axes_over(numbers, over)
     if not axes:
         raise UsageError("the sweep has one point: expected several values of a key")

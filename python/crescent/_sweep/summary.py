@@ -31,6 +31,8 @@ class Numbers:
 
     def __init__(self, out: str | PathLike[str]) -> None:
         self.state = state_of(out)
+        if self.state.get("kind") == "check":
+            raise UsageError(f"{out}: a sweep of checks, which has no metrics: its map is in report.html")
         table = read(out)
         self.axes: dict[str, list[Any]] = {
             path: sorted(values, key=lambda v: (isinstance(v, str), v)) if all(
@@ -81,7 +83,7 @@ class Numbers:
         words = [f"{m}.{r}" if r else m for m, regions in self.metrics.items() for r in regions]
         if metric in self.metrics and (region in self.metrics[metric] or not region):
             return metric, region or self.metrics[metric][0]
-        near = _crescent.nearest(given, [*words, *self.metrics])
+        near = _crescent.nearest(given, [*self.metrics, *words])
         raise UsageError(f"--metric {given}: expected one of {', '.join(words)}" + hint(near))
 
     def points(self) -> list[dict[str, Any]]:
