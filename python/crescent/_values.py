@@ -81,6 +81,9 @@ def values_of(r: Measured, metric: str, region: str, s: float | None) -> dict[st
         if row["metric"] == metric and row["region"] == region and row["s"] == at and row["value"] is not None:
             out.setdefault(row["arm"], {}).setdefault(row["n"], []).append(row["value"])
     if not out:
+        exponents = sorted({row["s"] for row in rows})
+        if rows and at not in exponents:
+            raise KeyError(f"nothing at s = {at:g}: there are s = {', '.join(f'{k:g}' for k in exponents)}")
         there = listed(rows, metric, region)
         raise KeyError(f"no {metric} of {region or 'the frame'} at s = {at:g}: there are {there}")
     return out

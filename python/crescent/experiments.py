@@ -444,7 +444,7 @@ class Films(Mapping[tuple[str, int], Film]):
             arm = str(key[0] if isinstance(key, tuple) and key else key)
             near = "" if arm in arms else _crescent.nearest(arm, arms)
             hint = f"; did you mean '{near}'?" if near else ""
-            raise KeyError(f"no film {key!r}, expected (arm, n) or (arm, n, s): there are {told}{hint}")
+            raise KeyError(f"no film {key!r}, expected (arm, n) or (arm, n, s): there are {told or 'none'}{hint}")
         return self._films[at]
 
     def __iter__(self) -> Iterator[Any]:
@@ -572,7 +572,7 @@ class Measured:
     def provenance(self) -> str:
         """One line for an appendix: program, experiment, hash, seeds, compiler, samplers in Python."""
         p = self.metrics["provenance"]
-        seeds = sorted({row["seed"] for row in self.records()})
+        seeds = sorted({row["seed"] for row in self.records()} or {film.seed for film in self.films.values()})
         return (
             f"crescent {p['version']} ({p['commit']}, {p['compiler']}), experiment {p['experiment']['file']} "
             f"{p['experiment']['hash']}, {len(seeds)} seed{'s' * (len(seeds) != 1)} from {seeds[0]}"

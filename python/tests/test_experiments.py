@@ -410,9 +410,15 @@ def test_parts_of_another_sampler_are_not_joined(tmp_path):
         (lambda m: crescent.open(3), "^folder is 3: expected the path of a folder"),
         (lambda m: m.films["cosin", 4], r"did you mean 'cosine'\?$"),
         (lambda m: m.films["cosine", 5], r"n=16 s=32, phong n=4 s=32$"),
+        (lambda m: m.to_latex(s=5), "^nothing at s = 5: there are s = 32$"),
     ],
 )
 def test_wrong_arguments_are_named(measured, use, said):
     with pytest.raises((TypeError, ValueError, KeyError)) as raised:
         use(measured)
     assert re.search(said, raised.value.args[0]), raised.value.args[0]
+
+
+def test_films_alone_have_a_provenance():
+    films = crescent.run(crescent.parse(TINY), references=False)
+    assert films.records() == [] and "1 seed from 7" in films.provenance
