@@ -3,8 +3,10 @@
 import abc
 import collections
 import dataclasses
+import enum
 import functools
 import importlib
+import importlib.metadata
 import sys
 import threading
 import types
@@ -18,7 +20,7 @@ import crescent
 pytest.importorskip("cloudpickle")
 
 from crescent._sweep.identity import arms_of, python_sources, unhashable_of  # noqa: E402
-from crescent._sweep.state import state_of  # noqa: E402
+from crescent._sweep.state import library, state_of, versions_of  # noqa: E402
 
 
 def cosine(wo, u):
@@ -32,6 +34,11 @@ def scaling(factor):
     exec(f"def scaled(wo, u):\n    wi, pdf = cosine(wo, u)\n    return wi, {factor} * pdf", names)
     globals()["scaled"] = names["scaled"]
     return names["scaled"]
+
+
+class Kind(enum.Enum):
+    ONE = 1.0
+    OTHER = 1.5
 
 
 @dataclasses.dataclass
@@ -105,6 +112,12 @@ MAKERS = {
     "a read-only mapping": lambda f: calling(types.MappingProxyType({"a": scaling(f)}), lambda found: found["a"]),
     "a mapping of the user": mapping,
     "a mask": masked,
+    "a member of an enumeration": lambda f: (lambda member: lambda wo, u: cosine(wo, member.value * u))(
+        Kind.ONE if f == 1 else Kind.OTHER
+    ),
+    "a named tuple": lambda f: (lambda values: lambda wo, u: cosine(wo, values.factor * u))(
+        collections.namedtuple("Values", "factor")(f)
+    ),
     "a data class": lambda f: Data(f).sample,
     "an abstract class": lambda f: Concrete(f).sample,
     "a private slot": lambda f: Private(f).sample,
@@ -253,3 +266,18 @@ def test_a_sampler_that_cannot_be_sent_is_named():
 
 def test_the_state_of_a_random_generator_is_stable():
     assert state_of(np.random.default_rng(3)) == state_of(np.random.default_rng(3)) != state_of(np.random.default_rng(4))
+
+
+def test_installed_packages_are_not_all_read_for_an_identity(monkeypatch, folder):
+    def read():
+        raise AssertionError("takes seconds")
+
+    monkeypatch.setattr(importlib.metadata, "packages_distributions", read)
+    versions_of.cache_clear()
+    library.cache_clear()
+    at = folder("users_sampler.py", "import numpy, crescent\ndef sample(wo, u):\n    return wo, u[:, 0]\n")
+    e = crescent.parse(TINY)
+    e["arms.mine"] = {"python": at, "n": [4]}
+    e.samplers["other"] = lambda wo, u: cosine(wo, u)
+    assert e.hash
+    assert library("numpy") == ("numpy", f"numpy {np.__version__}") and library("users_sampler") is None

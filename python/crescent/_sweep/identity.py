@@ -28,7 +28,7 @@ from .._sampler import Sampler
 from ..combinations import Combination
 from ..experiments import Experiment
 from .grid import hint
-from .state import library, state_of, unhashable_in
+from .state import library, state_of, unhashable_in, versions_of
 
 NUMERICS = f"{_crescent.version} {_crescent.commit}"  #: version of the numerics: equal builds give equal bits
 NOT_OF_THE_SCENE = (
@@ -99,16 +99,15 @@ def _files_of(module: str, root: Path) -> dict[str, Path]:
     return {}
 
 
-def python_sources(file: Path) -> tuple[dict[str, bytes], dict[str, str]]:
+def python_sources(file: Path) -> tuple[dict[str, bytes], list[str]]:
     """A Python file and the files that it imports, in its folder, its package or elsewhere on sys.path, by their names
     below these folders; and the versions of the libraries that they import."""
     root = _root_of(file)
     files: dict[str, bytes] = {}
-    packages: dict[str, str] = {}
+    packages: set[str] = set()
     waiting = {file.resolve().relative_to(root).as_posix(): file}
     for name in _parents(next(iter(waiting))):
         waiting[name] = root / name
-    distributions = importlib.metadata.packages_distributions()
     while waiting:
         name, at = waiting.popitem()
         files[name] = at.read_bytes()
@@ -117,9 +116,9 @@ def python_sources(file: Path) -> tuple[dict[str, bytes], dict[str, str]]:
             top = module.partition(".")[0]
             found = _files_of(module, root)
             waiting |= {name: path for name, path in found.items() if name not in files}
-            if not found and top not in sys.stdlib_module_names:
-                packages |= {it: importlib.metadata.version(it) for it in distributions.get(top, ())}
-    return files, dict(sorted(packages.items()))
+            if not found and top != "crescent" and top not in sys.stdlib_module_names:
+                packages |= set(versions_of(top))
+    return files, sorted(packages)
 
 
 def _parents(name: str) -> list[str]:
@@ -136,9 +135,7 @@ def _of_python(where: str) -> tuple[Any, Code | None]:
     name, colon, inside = where.rpartition(":") if not where.endswith(".py") else (where, "", "")
     if not name.endswith(".py"):
         package = name.partition(".")[0]
-        versions = {}
-        for distribution in importlib.metadata.packages_distributions().get(package, []):
-            versions[distribution] = importlib.metadata.version(distribution)
+        versions = versions_of(package)
         return [where, versions, _hashes_of_module(package)], None
     path = Path(name)
     files, packages = python_sources(path)

@@ -63,15 +63,38 @@ def _distributions() -> Mapping[str, list[str]]:
 
 
 @functools.cache
+def versions_of(package: str) -> tuple[str, ...]:
+    """The distributions of a top-level module with their versions; none of a module of the user."""
+    try:
+        return (f"{package} {importlib.metadata.version(package)}",)
+    except importlib.metadata.PackageNotFoundError:  # of another name: the list of all takes seconds
+        return tuple(f"{d} {importlib.metadata.version(d)}" for d in sorted(set(_distributions().get(package, ()))))
+
+
+def _file_of(package: str) -> str:
+    """The file of a top-level module, whether it is imported or not; nothing if it has none."""
+    if package in sys.modules:
+        return getattr(sys.modules[package], "__file__", None) or ""
+    try:
+        spec = importlib.util.find_spec(package)
+    except (ImportError, ValueError):
+        spec = None
+    return (spec.origin or "") if spec else ""
+
+
+@functools.cache
 def library(module: str) -> tuple[Any, ...] | None:
     """The name of a library and its versions; of a user's compiled module the hash of its file; None for another module
     of the user."""
     package = module.partition(".")[0]
     if package in ("builtins", "crescent") or package in sys.stdlib_module_names:
-        return (package,) if package != "__main__" else None
-    file = getattr(sys.modules.get(package), "__file__", None) or ""
-    if package in _distributions() and ("site-packages" in file or "dist-packages" in file or not file.endswith(".py")):
-        return (package, *(f"{d} {importlib.metadata.version(d)}" for d in sorted(set(_distributions()[package]))))
+        return (package,)
+    if package in ("", "__main__"):
+        return None
+    file = _file_of(package)
+    installed = "site-packages" in file or "dist-packages" in file
+    if (installed or not file.endswith(".py")) and (versions := versions_of(package)):
+        return (package, *versions)
     own = getattr(sys.modules.get(module), "__file__", None) or ""
     return (module, _sha(Path(own).read_bytes())) if own.endswith(tuple(importlib.machinery.EXTENSION_SUFFIXES)) else None
 
