@@ -203,7 +203,7 @@ TEST(ReportHtml, ShowsTheValueOfEveryLobeInTheScene) {
 // A name in a template that the model lacks is an error only where it is rendered.
 TEST(ReportHtml, HasTheValuesOfSectionsThatAreRare) {
     Sample s;
-    s.experiment.sky = SkyLight{.file = "<sky>.exr", .rotation = 30, .scale = 2};
+    s.experiment.sky = SkyLight{.file = "<sky>.exr", .layer = "<layer>", .rotation = 30, .scale = 2};
     MeshObject mesh;
     mesh.name = "<mesh>";
     mesh.file = "<file>.mesh";
@@ -224,9 +224,10 @@ TEST(ReportHtml, HasTheValuesOfSectionsThatAreRare) {
         s.experiment.reference.kind = kind;
         const std::string html = s.html();
         EXPECT_EQ(xml_error(html), "");
-        for (const char* text : {"the image <code>&lt;sky&gt;.exr</code>", "&lt;file&gt;.mesh", "&lt;rho&gt;.exr",
-                 "<code>a=&lt;1&gt;</code>, <code>b=2</code>", "&lt;driver&gt;", "seeds 1 of 3",
-                 "not good enough in region H", "Monte Carlo reference against the quadrature", "<td class=\"n\">−1"})
+        for (const char* text :
+            {"the image <code>&lt;sky&gt;.exr</code>, layer <code>&lt;layer&gt;</code>", "&lt;file&gt;.mesh",
+                "&lt;rho&gt;.exr", "<code>a=&lt;1&gt;</code>, <code>b=2</code>", "&lt;driver&gt;", "seeds 1 of 3",
+                "not good enough in region H", "Monte Carlo reference against the quadrature", "<td class=\"n\">−1"})
             EXPECT_THAT(html, HasSubstr(text));
     }
     s.metrics.references[0].max_relative_rmse_change.reset();

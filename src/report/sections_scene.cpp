@@ -90,7 +90,7 @@ Json scene_section(Page& page) {
         lights.push_back({{"name", light.name}, {"kind", light.kind()}, {"where", parameters_of(light.form)},
             {"radiance", rgb(light.radiance)}});
     if (e.sky)
-        sky = {{"file", e.sky->layer ? fmt::format("{}, layer {}", e.sky->file, *e.sky->layer) : e.sky->file},
+        sky = {{"file", e.sky->file}, {"layer", e.sky->layer.value_or("")},
             {"content", e.sky->content.value_or("not read")}, {"rotation", shortest(e.sky->rotation)},
             {"scale", shortest(e.sky->scale)}};
     return {{"eye", vec(e.camera.eye)}, {"target", vec(e.camera.target)}, {"vfov", shortest(e.camera.vfov_deg)},
