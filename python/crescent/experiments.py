@@ -229,7 +229,7 @@ class Experiment:
 
     def _refuse_in_place_of_a_table(self, path: str, value: Any) -> None:
         """ValueError for a number, a text or a list where there is a table, and for a sampler in Python."""
-        if steps_of(path)[0] == "samplers":
+        if isinstance(path, str) and path.partition(".")[0] == "samplers":
             raise ValueError(f"{path}: samplers in Python are no keys: expected e.samplers[NAME] = sampler")
         try:
             there = found(self._tree(), path)[1]
