@@ -10,6 +10,7 @@ the file that say "measured by shaders.py" and "end of shaders.py".
 """
 import argparse
 import ctypes
+import fcntl
 import os
 import statistics
 import struct
@@ -24,7 +25,7 @@ import numpy as np
 from measured_part import write_between
 
 ROOT = Path(__file__).resolve().parent.parent
-ROWS, BLOCKS = 65536, 16
+ROWS, BLOCKS = 32768, 64  # as long as those of crescent
 ALPHA = 0.3
 PLUGIN = """
 #include <math.h>
@@ -79,10 +80,16 @@ class Shader:
     def __init__(self, device: str | None) -> None:
         self.words = [LOBES, *SNIPPETS, *(["--device", device] if device else [])]
         command = [sys.executable, "-m", "crescent_shader", *self.words]
-        self.process = subprocess.Popen(command, env=environment_of_shaders(), stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.process = subprocess.Popen(command, env=environment_of_shaders(), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                        bufsize=0)  # fmt: skip
+        for pipe in (self.process.stdin, self.process.stdout):
+            fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, 1 << 20)
         self.process.stdin.write(b"hello 2\n")
         self.process.stdin.flush()
-        handshake = self.process.stdout.readline().decode()
+        handshake = b""
+        while not handshake.endswith(b"\n"):
+            handshake += self.process.stdout.read(1) or sys.exit("no handshake")
+        handshake = handshake.decode()
         if not handshake.startswith("hello"):
             sys.exit(handshake)
 
@@ -91,12 +98,24 @@ class Shader:
         columns = 4 if kind == "sample" else 1
         rows = np.hstack([wo, given])
         request = {"sample": b"smpl", "pdf": b"pdf_"}[kind] + struct.pack("<I", len(rows)) + rows.tobytes()
-        for _ in range(BLOCKS):
-            self.process.stdin.write(request)
-            self.process.stdin.flush()
-            (count,) = struct.unpack("<I", self.process.stdout.read(4))
-            out = np.frombuffer(self.process.stdout.read(8 * count * columns)).reshape(-1, columns)
-        return out[:, -1]
+
+        def ask() -> None:  # as crescent does: the next block while the last one is evaluated
+            for _ in range(BLOCKS):
+                left = memoryview(request)
+                while left:
+                    left = left[self.process.stdin.write(left) :]
+
+        answer = np.empty((len(rows), columns))
+        with ThreadPoolExecutor(1) as pool:
+            asked = pool.submit(ask)
+            for _ in range(BLOCKS):
+                if struct.unpack("<I", self.process.stdout.read(4)) != (len(rows),):
+                    sys.exit("expected an answer to each row")
+                left = answer.data.cast("B")
+                while left:
+                    left = left[self.process.stdout.readinto(left) :]
+            asked.result()
+        return answer[:, -1]
 
 
 class Plugin:

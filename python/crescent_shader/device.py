@@ -6,6 +6,8 @@ import os
 import re
 import sys
 import tempfile
+from collections import deque
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,7 @@ from .languages import IN, OUT, ROWS_IN_GROUP, SET, Program
 from .request import Request
 
 MOST_ROWS = 1 << 16  # of a block of the protocol
+AT_ONCE = 2  # evaluations of a program
 
 Array = np.ndarray[Any, Any]
 
@@ -85,15 +88,30 @@ class Device:
         return Evaluator(self.device, request, program, code)
 
 
+class _Buffers:
+    """What one evaluation reads and writes; the rows of another one can be sent while it runs."""
+
+    def __init__(self, device: Any, layout: Any, program: Program) -> None:
+        usage = _wgpu().BufferUsage
+        sizes = 4 * MOST_ROWS * program.columns_in, 4 * MOST_ROWS * program.columns_out
+        self.rows = device.create_buffer(size=sizes[0], usage=usage.STORAGE | usage.COPY_DST)
+        self.out = device.create_buffer(size=sizes[1], usage=usage.STORAGE | usage.COPY_SRC)
+        self.read = device.create_buffer(size=sizes[1], usage=usage.MAP_READ | usage.COPY_DST)
+        self.group = device.create_bind_group(
+            layout=layout,
+            entries=[
+                {"binding": at, "resource": {"buffer": buffer, "offset": 0, "size": buffer.size}}
+                for at, buffer in ((IN, self.rows), (OUT, self.out))
+            ],
+        )
+
+
 class Evaluator:
-    """A program on a device: rows of doubles in, rows of doubles out, single precision between."""
+    """A program on a device: rows of numbers in, rows of numbers out, single precision between."""
 
     def __init__(self, device: Any, request: Request, program: Program, code: Code) -> None:
         wgpu = _wgpu()
-        usage = wgpu.BufferUsage
         self._device, self._out_columns = device, program.columns_out
-        self._in = device.create_buffer(size=4 * MOST_ROWS * program.columns_in, usage=usage.STORAGE | usage.COPY_DST)
-        self._out = device.create_buffer(size=4 * MOST_ROWS * program.columns_out, usage=usage.STORAGE | usage.COPY_SRC)
         kinds = {IN: "read-only-storage", OUT: "storage"}
         layout = device.create_bind_group_layout(
             entries=[
@@ -102,14 +120,8 @@ class Evaluator:
             ]
         )
         empty = device.create_bind_group_layout(entries=[])
-        self._group = device.create_bind_group(
-            layout=layout,
-            entries=[
-                {"binding": at, "resource": {"buffer": buffer, "offset": 0, "size": buffer.size}}
-                for at, buffer in ((IN, self._in), (OUT, self._out))
-            ],
-        )
         self._empty = device.create_bind_group(layout=empty, entries=[])
+        self._buffers = deque(_Buffers(device, layout, program) for _ in range(AT_ONCE))
         try:
             module = device.create_shader_module(code=code.code)
             self._pipeline = device.create_compute_pipeline(
@@ -119,21 +131,31 @@ class Evaluator:
         except wgpu.GPUError as error:
             raise _error_of(request, code, str(error)) from None
 
-    def __call__(self, rows: Array) -> Array:
-        n = len(rows)
+    def begin(self, rows: Array) -> Callable[[], Array]:
+        """Starts an evaluation and returns a function that waits for its end; at most AT_ONCE may be unfinished."""
+        self._buffers.rotate()
+        buffers, size = self._buffers[0], 4 * len(rows) * self._out_columns
         queue = self._device.queue
-        queue.write_buffer(self._in, 0, np.ascontiguousarray(rows, np.float32))
+        queue.write_buffer(buffers.rows, 0, np.ascontiguousarray(rows, np.float32))
         encoder = self._device.create_command_encoder()
         work = encoder.begin_compute_pass()
         work.set_pipeline(self._pipeline)
         for at in range(SET):
             work.set_bind_group(at, self._empty)
-        work.set_bind_group(SET, self._group)
-        work.dispatch_workgroups(-(-n // ROWS_IN_GROUP))
+        work.set_bind_group(SET, buffers.group)
+        work.dispatch_workgroups(-(-len(rows) // ROWS_IN_GROUP))
         work.end()
+        encoder.copy_buffer_to_buffer(buffers.out, 0, buffers.read, 0, size)
         queue.submit([encoder.finish()])
-        out = queue.read_buffer(self._out, 0, 4 * n * self._out_columns)
-        return np.frombuffer(out, np.float32).reshape(n, self._out_columns)
+
+        def end() -> Array:
+            buffers.read.map_sync("READ", 0, size)
+            try:
+                return np.frombuffer(buffers.read.read_mapped(0, size), np.float32).reshape(-1, self._out_columns)
+            finally:
+                buffers.read.unmap()
+
+        return end
 
 
 def _error_of(request: Request, code: Code, said: str) -> BadInput:

@@ -7,8 +7,11 @@ import signal
 import struct
 import sys
 import threading
+import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from queue import Queue
 from typing import Any, BinaryIO
 from urllib.parse import quote
 
@@ -16,35 +19,41 @@ import numpy as np
 
 from . import GREETING_OF_PYTHON, BadInput, MissingPart
 from .compilers import compiled
-from .device import Array, Device, adapters, driver_of, name_of, title_of
+from .device import AT_ONCE, Array, Device, adapters, driver_of, name_of, title_of
 from .languages import assigns, columns, program
 from .request import Request, read_request, wants_list
 
 BATCH_SECONDS = 8.0  # of one batch of at most 65536 rows: below the 10 s after which crescent ends a silent program
 LOOK_SECONDS = 30.0  # of the first batches, which include the driver's compilation
 
-Answer = Callable[[Array], Array]
+End = Callable[[], Array]
+Answer = Callable[[Array], End]  # begins an evaluation
 
 
 class Watchdog:
     """Ends the process where a batch takes too long: a driver cannot be interrupted."""
 
+    _LOOKS_A_SECOND = 8
+
     def __init__(self, report: Callable[[str], None]) -> None:
         self._report = report
+        self._running: tuple[float, str] | None = None  # until when, and what to say then
+        threading.Thread(target=self._look, daemon=True).start()
 
     def __call__(self, seconds: float, what: str, call: Callable[[], Array]) -> Array:
         text = f"{what} did not finish within {seconds:g} s: does a loop of the shader never end?"
-        timer = threading.Timer(seconds, self._end, [text])
-        timer.daemon = True
-        timer.start()
+        self._running = (time.monotonic() + seconds, text)
         try:
             return call()
         finally:
-            timer.cancel()
+            self._running = None
 
-    def _end(self, text: str) -> None:
-        self._report(text)
-        os._exit(3)
+    def _look(self) -> None:
+        while True:
+            time.sleep(1 / self._LOOKS_A_SECOND)
+            if (running := self._running) and time.monotonic() > running[0]:
+                self._report(running[1])
+                os._exit(3)
 
 
 @dataclass(frozen=True)
@@ -108,12 +117,11 @@ def opened(request: Request, watch: Watchdog) -> Shader:
 
     def made(operation: str, channels: int, weights: int) -> Answer:
         text = program(request, operation, channels, weights)
-        evaluate = device.evaluator(request, text, compiled(request, text))
-        return evaluate
+        return device.evaluator(request, text, compiled(request, text)).begin
 
     def look(operation: str, answer: Answer) -> Array:
         rows = _rows_to_look_with(columns(request, operation)[0])
-        return watch(LOOK_SECONDS, f"{operation} of {len(rows)} rows", lambda: answer(rows))
+        return watch(LOOK_SECONDS, f"{operation} of {len(rows)} rows", answer(rows))
 
     operations: dict[str, Answer] = {}
     channels = request.channels
@@ -157,39 +165,74 @@ def _answers(shader: Shader) -> dict[bytes, tuple[int, Answer]]:
     request = shader.request
     operations = shader.operations
 
-    def sample(rows: Array) -> Array:
-        out = operations["sample"](rows)
-        if request.random and (taken := out[:, -1].max(initial=0)) > request.numbers:
-            raise BadInput(f"a sample takes {taken:.0f} random numbers, and {request.numbers} are given: --numbers K")
-        return out[:, : (request.coordinates or 3) + 1 + shader.weights]
+    def sample(rows: Array) -> End:
+        end = operations["sample"](rows)
 
-    def pdf(rows: Array) -> Array:
-        return operations["pdf"](rows) if "pdf" in operations else np.ones((len(rows), 1))
+        def checked() -> Array:
+            out = end()
+            if request.random and (taken := out[:, -1].max(initial=0)) > request.numbers:
+                raise BadInput(f"a sample takes {taken:.0f} random numbers, and {request.numbers} are given: --numbers K")
+            return out[:, : (request.coordinates or 3) + 1 + shader.weights]
 
-    def f(rows: Array) -> Array:
+        return checked
+
+    def pdf(rows: Array) -> End:
+        return operations["pdf"](rows) if "pdf" in operations else lambda: np.ones((len(rows), 1))
+
+    def f(rows: Array) -> End:
         if "f" not in operations:
-            return np.full((len(rows), shader.channels), np.nan)
-        return operations["f"](rows)[:, : shader.channels]
+            return lambda: np.full((len(rows), shader.channels), np.nan)
+        end = operations["f"](rows)
+        return lambda: end()[:, : shader.channels]
 
     answers = {b"smpl": ("sample", sample), b"pdf_": ("pdf", pdf), b"f___": ("f", f)}
     return {letters: (columns(request, operation)[0], answer) for letters, (operation, answer) in answers.items()}
 
 
 def _serve(requests: BinaryIO, answers: BinaryIO, shader: Shader, watch: Watchdog) -> None:
+    """Reads the next block, sends it to the device and writes the last one while one is evaluated."""
     operations = _answers(shader)
-    while len(head := requests.read(8)) == 8:
-        columns, answer = operations[head[:4]]
-        count = struct.unpack("<I", head[4:])[0]
-        rows = np.frombuffer(requests.read(8 * count * columns), "<f8").reshape(count, columns)
-        what = f"{head[:4].decode().strip('_').replace('smpl', 'sample')} of {count} rows"
+    asked: Queue[tuple[bytes, Array] | None] = Queue(2)
+    answered: Queue[tuple[bytes, Array | None] | None] = Queue(2)
+
+    def read() -> None:
+        while len(head := requests.read(8)) == 8:
+            columns, _ = operations[head[:4]]
+            data = requests.read(8 * struct.unpack("<I", head[4:])[0] * columns)
+            asked.put((head[:4], np.frombuffer(data, "<f8").reshape(-1, columns).astype(np.float32)))
+        asked.put(None)
+
+    def write() -> None:
+        while block := answered.get():
+            head, rows = block
+            answers.write(head)
+            if rows is not None:
+                answers.write(np.ascontiguousarray(rows, "<f8").data)
+            answers.flush()
+
+    running: deque[tuple[str, int, End]] = deque()
+
+    def finish() -> None:
+        what, count, end = running.popleft()
         try:
-            out = np.ascontiguousarray(watch(BATCH_SECONDS, what, lambda: answer(rows)), "<f8")
+            answered.put((struct.pack("<I", count), watch(BATCH_SECONDS, what, end)))
         except Exception as error:  # noqa: BLE001: crescent reports every error of the device
-            answers.write(_error_block(str(error)))
+            answered.put((_error_block(str(error)), None))
+
+    reader, writer = threading.Thread(target=read, daemon=True), threading.Thread(target=write)
+    reader.start()
+    writer.start()
+    while True:
+        if running and (len(running) == AT_ONCE or asked.empty()):
+            finish()
+        elif block := asked.get():
+            letters, rows = block
+            what = f"{letters.decode().strip('_').replace('smpl', 'sample')} of {len(rows)} rows"
+            running.append((what, len(rows), operations[letters][1](rows)))
         else:
-            answers.write(struct.pack("<I", count))
-            answers.write(out.data)
-        answers.flush()
+            break
+    answered.put(None)
+    writer.join()
 
 
 def _error_block(text: str) -> bytes:
