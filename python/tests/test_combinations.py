@@ -168,6 +168,23 @@ def test_an_arm_is_checked_at_given_w_o_and_against_another_arm():
         crescent.check(e, sampler="mine", wo_deg=150)
 
 
+def test_an_arm_without_a_pdf_is_checked_by_the_weights_of_its_draws():
+    def twice(wo, u):
+        wi, p = cosine(wo, u)
+        return wi, 2 * p
+
+    e = with_samplers(mine=crescent.Sampler(cosine), twice=crescent.Sampler(twice))
+    right = crescent.check(e, sampler="mine", pixels=1, wo_deg=30)
+    assert right.state == "right", str(right)
+    assert right.of("mean")[0].state == "right"
+    assert right.of("density")[0].state == "skipped"
+    wrong = crescent.check(e, sampler="twice", pixels=1, wo_deg=30)
+    assert wrong.of("mean")[0].state == "wrong", str(wrong)
+    e.samplers["both"] = crescent.mis("mine", "light-area")
+    with pytest.raises(ValueError, match="'mine' has no pdf of a direction, which a combination needs"):
+        crescent.check(e, sampler="both", pixels=1)
+
+
 def test_check_names_the_arms_that_there_are():
     with pytest.raises(ValueError, match="did you mean 'cosine'"):
         crescent.check(with_samplers(), sampler="cosin", pixels=2)

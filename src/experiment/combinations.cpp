@@ -64,12 +64,12 @@ private:
             return technique;
         }
         if (arm && arm->is_external()) {
-            try {
-                return external_technique(samplers_.at(name));
-            } catch (const OutputError& error) {
-                const std::string path = fmt::format("arms.{}.{}", owner.name, key);
-                throw InputError(experiment_.place_of(path), fmt::format("{}: {}", path, error.what()));
-            }
+            std::shared_ptr<const Technique> technique = external_technique(samplers_.at(name));
+            if (technique->has_density()) return technique;
+            const std::string path = fmt::format("arms.{}.{}", owner.name, key);
+            throw InputError(experiment_.place_of(path),
+                fmt::format("{}: '{}' has no pdf of a direction, which a combination needs: expected a function pdf",
+                    path, samplers_.at(name)->name()));
         }
         return built_in_technique(arm ? arm->sampler : name);
     }

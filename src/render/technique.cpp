@@ -103,6 +103,7 @@ public:
         : sampler_(std::move(sampler)), declaration_(sampler_->declaration()) {}
     int numbers() const override { return declaration_.traits.own_numbers(); }
     EvaluationDevice device() const override { return declaration_.device; }
+    bool has_density() const override { return declaration_.traits.has_pdf; }
 
     void draw(const PointRows& point_rows, std::span<const double> u, std::span<PointDraw> out) const override {
         const auto count = static_cast<std::size_t>(numbers());
@@ -210,9 +211,6 @@ int most_numbers(const Techniques& parts) {
 }
 
 std::shared_ptr<const Technique> external_technique(std::shared_ptr<const SamplerAdapter> sampler) {
-    if (!sampler->traits().has_pdf)
-        throw OutputError(
-            "'" + sampler->name() + "' has no pdf of a direction, which a combination needs: expected a function pdf");
     return std::make_shared<ExternalTechnique>(std::move(sampler));
 }
 

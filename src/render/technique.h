@@ -45,6 +45,8 @@ public:
     virtual int numbers() const = 0;
     /// One draw a row; row i has u[i * numbers() ...], each in (0, 1). May be called by many threads.
     virtual void draw(const PointRows& rows, std::span<const double> u, std::span<PointDraw> out) const = 0;
+    /// Whether it can evaluate its density.
+    virtual bool has_density() const { return true; }
     /// Evaluates the density of each row's direction, 0 where it is never drawn.
     virtual void density(const PointRows& rows, std::span<const Vec3<float>> wi, std::span<double> out) const = 0;
     /// The index of the sampler in samplers/all.h; -1: another one.
@@ -61,7 +63,6 @@ EvaluationDevice device_of(const Techniques& parts);
 
 /// A sampler of samplers/all.h with one direction a sample, in scalar code.
 std::shared_ptr<const Technique> built_in_technique(std::string_view sampler);
-/// Throws OutputError if the sampler cannot evaluate its density.
 std::shared_ptr<const Technique> external_technique(std::shared_ptr<const SamplerAdapter> sampler);
 /// Writes the sampler's weights for each wi, [row][K], from the densities p, [row][K].
 void external_weights(const SamplerAdapter& sampler, const PointRows& rows, std::span<const Vec3<float>> wi,

@@ -97,17 +97,28 @@ private:
     bool limited_;
 };
 
-/// A sampler with one density.
+/// A sampler with one density; one that cannot evaluate it has the weight f cos / p of its draws.
 class OneTechnique : public AtPoint {
 public:
     OneTechnique(std::string name, Point point, bool limited, std::shared_ptr<const Technique> technique)
         : AtPoint(std::move(name), std::move(point), limited), technique_(std::move(technique)) {}
-    Traits traits() const override { return {.numbers = technique_->numbers()}; }
+    Traits traits() const override { return {.numbers = technique_->numbers(), .has_pdf = technique_->has_density()}; }
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         draw_with(*technique_, wo, u, out);
+        if (technique_->has_density()) return;
+        std::vector<Pair> pairs;
+        for (const Draw& draw : out) pairs.push_back({wo, draw.wi});
+        std::vector<double> value(pairs.size());
+        f(pairs, value);
+        for (std::size_t i = 0; i < out.size(); ++i)
+            if (const double p = out[i].pdf; p != 0) {
+                out[i].weight = value[i] * std::max(out[i].wi.z, 0.0) / p;
+                out[i].pdf = 1;
+            }
     }
     void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
-        density_of(*technique_, pairs, out);
+        if (technique_->has_density()) density_of(*technique_, pairs, out);
+        else std::ranges::fill(out, 0);
     }
 
 private:

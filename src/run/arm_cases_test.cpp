@@ -111,6 +111,44 @@ TEST(ArmCases, OfACombinationEndWithItsTime) {
     for (const CheckCase& c : arm_cases(e, "ris", outside, {.wo = {{30, 0}}})) EXPECT_NO_THROW(draw(c));
 }
 
+/// The cosine lobe without a function pdf.
+class DrawsAlone : public SamplerSource {
+public:
+    std::string name() const override { return "draws"; }
+    Traits traits() const override { return {.has_pdf = false}; }
+    void sample(int, Vec3d, std::span<const PrimarySample> u, std::span<Draw> out) const override {
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const double r = std::sqrt(u[i].x), z = std::sqrt(1 - u[i].x);
+            const math::SinCos phi = math::sincos(2 * pi * u[i].y);
+            out[i] = {{r * phi.cos, r * phi.sin, z}, z / pi};
+        }
+    }
+    void pdf(int, std::span<const Pair>, std::span<double>) const override { FAIL() << "there is none"; }
+};
+
+TEST(ArmCases, WithoutAPdfHaveTheWeightsOfTheirDraws) {
+    Experiment e = scene();
+    ArmPlan mine;
+    mine.name = "mine";
+    mine.exec = "./mine";
+    e.arms.push_back(mine);
+    const ExternalSamplers outside = {{"mine", std::make_shared<DrawsAlone>()}};
+    const PrimarySample u(0.25, 0.5);
+    for (const CheckCase& c : arm_cases(e, "mine", outside, {.wo = {{30, 0}}})) {
+        if (c.baseline) continue;
+        EXPECT_FALSE(c.adapter->traits().has_pdf);
+        Draw draw;
+        double f = 0, p = -1;
+        c.adapter->sample(0, c.wo, {&u, 1}, {&draw, 1});
+        const Pair pair{c.wo, draw.wi};
+        c.adapter->f({&pair, 1}, {&f, 1});
+        c.adapter->pdf(0, {&pair, 1}, {&p, 1});
+        EXPECT_EQ(draw.pdf, 1);
+        EXPECT_NEAR(draw.weight.value(), f * pi, 1e-6 * f);
+        EXPECT_EQ(p, 0);
+    }
+}
+
 TEST(ArmCases, KeepTheArmsThatAnArmCombines) {
     Experiment e = scene();
     ArmPlan both;
