@@ -144,8 +144,8 @@ SkyTable::SkyTable(const SkyLight& light) : image_(light.image), scale_(light.sc
         const std::span<float> shares = std::span(columns_).subspan(first, columns);
         for (std::size_t k = 0; k < columns; ++k)
             shares[k] = sums[row] > 0 ? static_cast<float>(up_to[k] / sums[row]) : 0.0f;
-        write_guides(std::span(column_guide_).subspan(row * guides_of_row_, guides_of_row_), shares,
-            [](double x) { return x; });
+        write_guides(
+            std::span(column_guide_).subspan(row * guides_of_row_, guides_of_row_), shares, [](double x) { return x; });
     });
     for (int row = 0; row < high; ++row)
         rows_.push_back(total_ += sums[static_cast<std::size_t>(row)] * solid_angle(row));
