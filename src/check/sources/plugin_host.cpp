@@ -249,6 +249,10 @@ void serve_plugin(const char* path) {
     static Pipes pipes;
     void* memory = ::mmap(nullptr, PluginRows::bytes, PROT_READ | PROT_WRITE, MAP_SHARED, 3, 0);
     if (memory == MAP_FAILED) ::_exit(1);
+#ifdef __linux__
+    // A child process that the plugin forks in a call, and that goes on in it, would write over later answers.
+    ::madvise(memory, PluginRows::bytes, MADV_DONTFORK);
+#endif
     ::close(3);
     const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
     ::dup2(nothing, 0);
