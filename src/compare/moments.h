@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "images/open_file.h"
+#include "compare/image_file.h"
 #include "experiment/experiment.h"
+#include "images/open_file.h"
 
 namespace crescent {
 

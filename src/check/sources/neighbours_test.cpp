@@ -4,6 +4,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "math/simd/math.h"
+
 namespace crescent {
 
 namespace {

@@ -18,6 +18,7 @@
 #include "base/errors.h"
 #include "base/process.h"
 #include "base/text.h"
+#include "check/sources/check_case.h"
 #include "check/sources/neighbours.h"
 #include "check/sources/pipe_io.h"
 #include "check/sources/random_numbers.h"
