@@ -96,6 +96,20 @@ TEST_P(AMistake, IsFoundWhereItStandsInWordsThatHelp) {
     }
 }
 
+TEST(Overrides, OfANameThatTwoTablesHaveAreAmbiguous) {
+    const std::string text =
+        std::string(good) + "[furnaces.cosine]\narm = \"cosine\"\nshape = \"ball\"\nn = 64\n";  // and an arm
+    EXPECT_NO_THROW((void)parse(text, "x.toml", {"furnaces.cosine.n=32"}));
+    try {
+        (void)parse(text, "x.toml", {"cosine.n=32"});
+        FAIL() << "one of two is changed";
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("'cosine.n' is ambiguous: expected"));
+        EXPECT_THAT(error.what(), HasSubstr("arms.cosine.n"));
+        EXPECT_THAT(error.what(), HasSubstr("furnaces.cosine.n"));
+    }
+}
+
 /// Appended to the file: their first line is 53.
 const Mistake combinations[] = {
     {"", "[arms.both]\nkind = \"mix\"\nof = [\"cosine\", \"phong\"]\n", 54, 8, "did you mean 'mis'?"},
