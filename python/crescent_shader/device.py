@@ -6,8 +6,6 @@ import os
 import re
 import sys
 import tempfile
-from collections import deque
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,7 +16,6 @@ from .languages import IN, OUT, ROWS_IN_GROUP, SET, Program
 from .request import Request
 
 MOST_ROWS = 1 << 16  # of a block of the protocol
-AT_ONCE = 2  # evaluations of a program
 
 Array = np.ndarray[Any, Any]
 
@@ -88,24 +85,6 @@ class Device:
         return Evaluator(self.device, request, program, code)
 
 
-class _Buffers:
-    """What one evaluation reads and writes; the rows of another one can be sent while it runs."""
-
-    def __init__(self, device: Any, layout: Any, program: Program) -> None:
-        usage = _wgpu().BufferUsage
-        sizes = 4 * MOST_ROWS * program.columns_in, 4 * MOST_ROWS * program.columns_out
-        self.rows = device.create_buffer(size=sizes[0], usage=usage.STORAGE | usage.COPY_DST)
-        self.out = device.create_buffer(size=sizes[1], usage=usage.STORAGE | usage.COPY_SRC)
-        self.read = device.create_buffer(size=sizes[1], usage=usage.MAP_READ | usage.COPY_DST)
-        self.group = device.create_bind_group(
-            layout=layout,
-            entries=[
-                {"binding": at, "resource": {"buffer": buffer, "offset": 0, "size": buffer.size}}
-                for at, buffer in ((IN, self.rows), (OUT, self.out))
-            ],
-        )
-
-
 class Evaluator:
     """A program on a device: rows of numbers in, rows of numbers out, single precision between."""
 
@@ -119,9 +98,20 @@ class Evaluator:
                 for at, kind in kinds.items()
             ]
         )
+        usage = wgpu.BufferUsage
+        sizes = 4 * MOST_ROWS * program.columns_in, 4 * MOST_ROWS * program.columns_out
+        self._rows = device.create_buffer(size=sizes[0], usage=usage.STORAGE | usage.COPY_DST)
+        self._out = device.create_buffer(size=sizes[1], usage=usage.STORAGE | usage.COPY_SRC)
+        self._staging = device.create_buffer(size=sizes[1], usage=usage.MAP_READ | usage.COPY_DST)
+        self._group = device.create_bind_group(
+            layout=layout,
+            entries=[
+                {"binding": at, "resource": {"buffer": buffer, "offset": 0, "size": buffer.size}}
+                for at, buffer in ((IN, self._rows), (OUT, self._out))
+            ],
+        )
         empty = device.create_bind_group_layout(entries=[])
         self._empty = device.create_bind_group(layout=empty, entries=[])
-        self._buffers = deque(_Buffers(device, layout, program) for _ in range(AT_ONCE))
         try:
             module = device.create_shader_module(code=code.code)
             self._pipeline = device.create_compute_pipeline(
@@ -131,31 +121,26 @@ class Evaluator:
         except wgpu.GPUError as error:
             raise _error_of(request, code, str(error)) from None
 
-    def begin(self, rows: Array) -> Callable[[], Array]:
-        """Starts an evaluation and returns a function that waits for its end; at most AT_ONCE may be unfinished."""
-        self._buffers.rotate()
-        buffers, size = self._buffers[0], 4 * len(rows) * self._out_columns
+    def __call__(self, rows: Array) -> Array:
+        """Evaluates at most MOST_ROWS rows."""
+        size = 4 * len(rows) * self._out_columns
         queue = self._device.queue
-        queue.write_buffer(buffers.rows, 0, np.ascontiguousarray(rows, np.float32))
+        queue.write_buffer(self._rows, 0, np.ascontiguousarray(rows, np.float32))
         encoder = self._device.create_command_encoder()
         work = encoder.begin_compute_pass()
         work.set_pipeline(self._pipeline)
         for at in range(SET):
             work.set_bind_group(at, self._empty)
-        work.set_bind_group(SET, buffers.group)
+        work.set_bind_group(SET, self._group)
         work.dispatch_workgroups(-(-len(rows) // ROWS_IN_GROUP))
         work.end()
-        encoder.copy_buffer_to_buffer(buffers.out, 0, buffers.read, 0, size)
+        encoder.copy_buffer_to_buffer(self._out, 0, self._staging, 0, size)
         queue.submit([encoder.finish()])
-
-        def end() -> Array:
-            buffers.read.map_sync("READ", 0, size)
-            try:
-                return np.frombuffer(buffers.read.read_mapped(0, size), np.float32).reshape(-1, self._out_columns)
-            finally:
-                buffers.read.unmap()
-
-        return end
+        self._staging.map_sync("READ", 0, size)
+        try:
+            return np.frombuffer(self._staging.read_mapped(0, size), np.float32).reshape(-1, self._out_columns)
+        finally:
+            self._staging.unmap()
 
 
 def _error_of(request: Request, code: Code, said: str) -> BadInput:

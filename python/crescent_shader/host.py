@@ -8,10 +8,9 @@ import struct
 import sys
 import threading
 import time
-from collections import deque
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from queue import Queue
 from typing import Any, BinaryIO
 from urllib.parse import quote
 
@@ -19,15 +18,14 @@ import numpy as np
 
 from . import GREETING_OF_PYTHON, BadInput, MissingPart
 from .compilers import compiled
-from .device import AT_ONCE, Array, Device, adapters, driver_of, name_of, title_of
+from .device import Array, Device, adapters, driver_of, name_of, title_of
 from .languages import assigns, columns, program
 from .request import Request, read_request, wants_list
 
 BATCH_SECONDS = 8.0  # of one batch of at most 65536 rows: below the 10 s after which crescent ends a silent program
 LOOK_SECONDS = 30.0  # of the first batches, which include the driver's compilation
 
-End = Callable[[], Array]
-Answer = Callable[[Array], End]  # begins an evaluation
+Answer = Callable[[Array], Array]  # from rows to rows
 
 
 class Watchdog:
@@ -117,11 +115,11 @@ def opened(request: Request, watch: Watchdog) -> Shader:
 
     def made(operation: str, channels: int, weights: int) -> Answer:
         text = program(request, operation, channels, weights)
-        return device.evaluator(request, text, compiled(request, text)).begin
+        return device.evaluator(request, text, compiled(request, text))
 
     def look(operation: str, answer: Answer) -> Array:
         rows = _rows_to_look_with(columns(request, operation)[0])
-        return watch(LOOK_SECONDS, f"{operation} of {len(rows)} rows", answer(rows))
+        return watch(LOOK_SECONDS, f"{operation} of {len(rows)} rows", lambda: answer(rows))
 
     operations: dict[str, Answer] = {}
     channels = request.channels
@@ -165,74 +163,57 @@ def _answers(shader: Shader) -> dict[bytes, tuple[int, Answer]]:
     request = shader.request
     operations = shader.operations
 
-    def sample(rows: Array) -> End:
-        end = operations["sample"](rows)
+    def sample(rows: Array) -> Array:
+        out = operations["sample"](rows)
+        if request.random and (taken := out[:, -1].max(initial=0)) > request.numbers:
+            raise BadInput(f"a sample takes {taken:.0f} random numbers, and {request.numbers} are given: --numbers K")
+        return out[:, : (request.coordinates or 3) + 1 + shader.weights]
 
-        def checked() -> Array:
-            out = end()
-            if request.random and (taken := out[:, -1].max(initial=0)) > request.numbers:
-                raise BadInput(f"a sample takes {taken:.0f} random numbers, and {request.numbers} are given: --numbers K")
-            return out[:, : (request.coordinates or 3) + 1 + shader.weights]
+    def pdf(rows: Array) -> Array:
+        return operations["pdf"](rows) if "pdf" in operations else np.ones((len(rows), 1))
 
-        return checked
-
-    def pdf(rows: Array) -> End:
-        return operations["pdf"](rows) if "pdf" in operations else lambda: np.ones((len(rows), 1))
-
-    def f(rows: Array) -> End:
+    def f(rows: Array) -> Array:
         if "f" not in operations:
-            return lambda: np.full((len(rows), shader.channels), np.nan)
-        end = operations["f"](rows)
-        return lambda: end()[:, : shader.channels]
+            return np.full((len(rows), shader.channels), np.nan)
+        return operations["f"](rows)[:, : shader.channels]
 
     answers = {b"smpl": ("sample", sample), b"pdf_": ("pdf", pdf), b"f___": ("f", f)}
     return {letters: (columns(request, operation)[0], answer) for letters, (operation, answer) in answers.items()}
 
 
 def _serve(requests: BinaryIO, answers: BinaryIO, shader: Shader, watch: Watchdog) -> None:
-    """Reads the next block, sends it to the device and writes the last one while one is evaluated."""
+    """Reads the next block and writes the last one while one is evaluated; raises where either fails."""
     operations = _answers(shader)
-    asked: Queue[tuple[bytes, Array] | None] = Queue(2)
-    answered: Queue[tuple[bytes, Array | None] | None] = Queue(2)
 
-    def read() -> None:
-        while len(head := requests.read(8)) == 8:
-            columns, _ = operations[head[:4]]
-            data = requests.read(8 * struct.unpack("<I", head[4:])[0] * columns)
-            asked.put((head[:4], np.frombuffer(data, "<f8").reshape(-1, columns).astype(np.float32)))
-        asked.put(None)
+    def read() -> tuple[str, Answer, Array] | None:
+        head = requests.read(8)
+        if len(head) < 8:
+            return None
+        letters, (count,) = head[:4], struct.unpack("<I", head[4:])
+        columns, answer = operations[letters]
+        rows = np.frombuffer(requests.read(8 * count * columns), "<f8").reshape(count, columns).astype(np.float32)
+        return f"{letters.decode().strip('_').replace('smpl', 'sample')} of {count} rows", answer, rows
 
-    def write() -> None:
-        while block := answered.get():
-            head, rows = block
-            answers.write(head)
-            if rows is not None:
-                answers.write(np.ascontiguousarray(rows, "<f8").data)
-            answers.flush()
-
-    running: deque[tuple[str, int, End]] = deque()
-
-    def finish() -> None:
-        what, count, end = running.popleft()
+    def evaluated(what: str, answer: Answer, rows: Array) -> tuple[bytes, Array | None]:
         try:
-            answered.put((struct.pack("<I", count), watch(BATCH_SECONDS, what, end)))
+            return struct.pack("<I", len(rows)), watch(BATCH_SECONDS, what, lambda: answer(rows))
         except Exception as error:  # noqa: BLE001: crescent reports every error of the device
-            answered.put((_error_block(str(error)), None))
+            return _error_block(str(error)), None
 
-    reader, writer = threading.Thread(target=read, daemon=True), threading.Thread(target=write)
-    reader.start()
-    writer.start()
-    while True:
-        if running and (len(running) == AT_ONCE or asked.empty()):
-            finish()
-        elif block := asked.get():
-            letters, rows = block
-            what = f"{letters.decode().strip('_').replace('smpl', 'sample')} of {len(rows)} rows"
-            running.append((what, len(rows), operations[letters][1](rows)))
-        else:
-            break
-    answered.put(None)
-    writer.join()
+    def write(head: bytes, rows: Array | None) -> None:
+        answers.write(head)
+        if rows is not None:
+            answers.write(np.ascontiguousarray(rows, "<f8").data)
+        answers.flush()
+
+    with ThreadPoolExecutor(1) as reader, ThreadPoolExecutor(1) as writer:
+        asked, written = reader.submit(read), writer.submit(lambda: None)
+        while block := asked.result():
+            asked = reader.submit(read)
+            answer = evaluated(*block)
+            written.result()
+            written = writer.submit(write, *answer)
+        written.result()
 
 
 def _error_block(text: str) -> bytes:

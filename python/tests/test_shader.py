@@ -1,14 +1,20 @@
 """Samplers in shaders: `crescent.shader`, and the text that is compiled. What evaluates needs wgpu and a driver."""
 
 import json
+import os
 import pickle
+import struct
+import threading
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import crescent
 from crescent_shader import BadInput, MissingPart
+from crescent_shader.host import _serve
 from crescent_shader.languages import mentions, program
 from crescent_shader.request import constant, read_request
 
@@ -87,3 +93,44 @@ def test_a_copy_of_it_starts_a_host_of_its_own(file: str) -> None:
 def test_a_mistake_has_its_place(file: str) -> None:
     with pytest.raises(ValueError, match="^--sample:1:6: "):
         made(file, sample="wi = drew(wo, u, alpha)")
+
+
+def served(file: str, sent: bytes, reads: bool) -> BaseException | None:
+    """How the host of a shader ends that is sent these bytes by a client that reads its answers, or has gone."""
+    shader = SimpleNamespace(
+        request=read_request([file, "--set=alpha=0.3"]),
+        operations={"pdf": lambda rows: np.ones((len(rows), 1))},
+        channels=1,
+        weights=0,
+    )
+    requests, answers = os.pipe(), os.pipe()
+    ended: list[BaseException | None] = []
+
+    def serve() -> None:
+        host: Any = shader
+        try:
+            with os.fdopen(requests[0], "rb") as read, os.fdopen(answers[1], "wb", 0) as write:
+                _serve(read, write, host, lambda seconds, what, call: call())  # type: ignore[arg-type]
+            ended.append(None)
+        except (OSError, ValueError) as error:
+            ended.append(error)
+
+    if not reads:
+        os.close(answers[0])
+    thread = threading.Thread(target=serve, daemon=True)
+    thread.start()
+    with os.fdopen(requests[1], "wb") as write:
+        write.write(sent)
+    if reads:
+        with os.fdopen(answers[0], "rb") as read:
+            read.read()
+    thread.join(30)
+    assert ended, "the host waits for ever"
+    return ended[0]
+
+
+def test_the_host_ends_with_its_client(file: str) -> None:
+    block = b"pdf_" + struct.pack("<I", 2) + bytes(8 * 2 * 6)
+    assert served(file, 3 * block, reads=True) is None
+    assert isinstance(served(file, block[:-8], reads=True), ValueError)
+    assert isinstance(served(file, 3 * block, reads=False), BrokenPipeError)
