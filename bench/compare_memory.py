@@ -17,7 +17,7 @@ import zlib
 
 import numpy as np
 
-from measured_part import write_between
+from measured_part import print_measured
 
 WIDTH, HEIGHT, LINES = 3840, 2160, 16
 
@@ -127,9 +127,7 @@ def main():
         for k in range(args.renders):
             write(f"{work}/renders/{'ab'[k % 2]}{k:02}.exr", render(noise, (0.2, 0.1)[k % 2], k + 1), args.zip)
         text = measured(args, f"{work}/renders", f"{work}/out")
-    print(text)
-    if args.write:
-        write_between(args.write, "compare_memory.py", text)
+    print_measured(text, args.write, "compare_memory.py")
 
 
 if __name__ == "__main__":

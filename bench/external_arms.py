@@ -18,7 +18,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from measured_part import write_between
+from measured_part import print_measured
 
 ROOT = Path(__file__).resolve().parent.parent
 ALONE = """
@@ -116,9 +116,7 @@ def main() -> None:
     parser.add_argument("--write", metavar="FILE")
     args = parser.parse_args()
     text = table(os.path.abspath(args.crescent), args.samples, args.repeats)
-    print(text)
-    if args.write:
-        write_between(args.write, "external_arms.py", text)
+    print_measured(text, args.write, "external_arms.py")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Replaces the part of a page that a program measures, between its two lines."""
+"""Prints what a program measures, and replaces that part of a page."""
 import re
 
 
@@ -13,3 +13,10 @@ def write_between(path, program, text):
         raise SystemExit(f"{path}: no lines 'measured by {program}' and 'end of {program}'")
     with open(path, "w", encoding="utf-8") as file:
         file.write(page)
+
+
+def print_measured(text, path, program):
+    """Prints what was measured; writes it into a page, too, if one is named."""
+    print(text)
+    if path:
+        write_between(path, program, text)

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 import crescent
-from measured_part import write_between
+from measured_part import print_measured
 
 ROOT = Path(__file__).resolve().parent.parent
 SAMPLES = 256
@@ -108,9 +108,7 @@ def main():
     parser.add_argument("--write", metavar="FILE")
     args = parser.parse_args()
     text = table(args.repeats)
-    print(text)
-    if args.write:
-        write_between(args.write, "python_arm.py", text)
+    print_measured(text, args.write, "python_arm.py")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import numpy as np
 
 import crescent
 from crescent import _check, _crescent
-from measured_part import write_between
+from measured_part import print_measured
 
 BATCHES = 64  # of 32768
 
@@ -113,9 +113,7 @@ def main():
     parser.add_argument("--write", metavar="FILE")
     args = parser.parse_args()
     text = table(args.repeats)
-    print(text)
-    if args.write:
-        write_between(args.write, "python_draws.py", text)
+    print_measured(text, args.write, "python_draws.py")
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from measured_part import write_between
+from measured_part import print_measured
 
 ROOT = Path(__file__).resolve().parent.parent
 ROWS, BLOCKS = 32768, 64  # as long as those of crescent
@@ -195,9 +195,7 @@ def main() -> None:
     parser.add_argument("--write", metavar="FILE")
     args = parser.parse_args()
     text = table(os.path.abspath(args.crescent), args.rounds, args.device)
-    print(text)
-    if args.write:
-        write_between(args.write, "shaders.py", text)
+    print_measured(text, args.write, "shaders.py")
 
 
 if __name__ == "__main__":

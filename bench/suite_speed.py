@@ -20,7 +20,7 @@ import zlib
 
 import numpy as np
 
-from measured_part import write_between
+from measured_part import print_measured
 
 WIDTH, HEIGHT, LINES, RENDERS = 1920, 1080, 16, 8
 
@@ -120,9 +120,7 @@ def main():
             *(f"| {name} | {m[0]:.1f} s | {m[1]:.1f} s | {m[2] / 1e9:.2f} GB |" for name, m in median.items()), "",
             f"`crescent compare` reaches {alone[1] / ours[1]:.2f} of the rate of OpenEXR alone in processor time and "
             f"{alone[0] / ours[0]:.2f} in time."])
-    print(text)
-    if args.write:
-        write_between(args.write, "suite_speed.py", text)
+    print_measured(text, args.write, "suite_speed.py")
 
 
 if __name__ == "__main__":
