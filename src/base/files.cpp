@@ -490,10 +490,10 @@ bool Staging::keep_aside(const Path& from, const Path& name) {
 }
 
 std::filesystem::path free_backup_name(const std::filesystem::path& file) {
-    fs::path backup;
-    for (int number = 1; number == 1 || is_there(backup); ++number)
-        backup = fmt::format("{}.~{}~", file.string(), number);
-    return backup;
+    for (int number = 1;; ++number) {
+        fs::path backup = fmt::format("{}.~{}~", file.string(), number);
+        if (!is_there(backup)) return backup;
+    }
 }
 
 }  // namespace crescent

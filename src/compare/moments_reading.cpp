@@ -8,10 +8,10 @@
 #include <span>
 
 #include "base/errors.h"
-#include "images/exr_file.h"
 #include "compare/moments.h"
 #include "compare/noise.h"
 #include "compare/renders.h"
+#include "images/exr_file.h"
 #include "output/format.h"
 
 namespace crescent {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <vector>
 
-#include "images/exr_file.h"
 #include "compare/renders.h"
+#include "images/exr_file.h"
 
 namespace crescent {
 

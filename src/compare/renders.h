@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "images/exr_file.h"
 #include "compare/image_file.h"
-#include "images/open_file.h"
 #include "compare/outliers.h"
 #include "compare/plan.h"
+#include "images/exr_file.h"
+#include "images/open_file.h"
 #include "metrics/metrics.h"
 
 namespace crescent {

@@ -158,7 +158,20 @@ namespace {
 struct ImageChannels {
     int part = 0;
     std::array<std::string, 3> names;
+    bool half = false;  // all of them
 };
+
+ImageChannels channels_in(const ExrPart& part, const std::string& path, const std::array<std::string, 3>& names) {
+    bool half = true;
+    for (const std::string& name : names) {
+        const ExrChannel* channel = part.channel(name);
+        if (!channel) throw InputError({path, 0, 0}, fmt::format("expected a channel '{}', found none", name));
+        if (channel->x_sampling != 1 || channel->y_sampling != 1)
+            throw InputError({path, 0, 0}, fmt::format("expected a sample of '{}' for every pixel", name));
+        half = half && channel->half;
+    }
+    return {part.index, names, half};
+}
 
 /// The channels of a layer, or, if none is named, R, G and B or Y of the first part.
 ImageChannels channels_of(const std::string& path, const std::string& layer) {
@@ -166,16 +179,16 @@ ImageChannels channels_of(const std::string& path, const std::string& layer) {
     const ExrFile exr(file);
     if (!layer.empty()) {
         const ExrLayer found = chosen_layer(exr, path, layer);
-        if (found.kind == ExrLayer::Kind::grey)
-            return {found.part, {found.channels[0], found.channels[0], found.channels[0]}};
-        if (found.kind == ExrLayer::Kind::rgb)
-            return {found.part, {found.channels[0], found.channels[1], found.channels[2]}};
+        const ExrPart& part = exr.parts()[static_cast<std::size_t>(found.part)];
+        const std::vector<std::string>& names = found.channels;
+        if (found.kind == ExrLayer::Kind::grey) return channels_in(part, path, {names[0], names[0], names[0]});
+        if (found.kind == ExrLayer::Kind::rgb) return channels_in(part, path, {names[0], names[1], names[2]});
         throw LayerError({path, 0, 0},
             fmt::format(
                 "expected a layer of R, G and B, or Y, found '{}' of {}", layer, fmt::join(found.channels, ", ")));
     }
     const ExrPart& part = exr.parts().front();
-    if (!part.channel("R") && part.channel("Y")) return {0, {"Y", "Y", "Y"}};
+    if (!part.channel("R") && part.channel("Y")) return channels_in(part, path, {"Y", "Y", "Y"});
     for (const char* name : {"R", "G", "B"}) {
         if (part.channel(name)) continue;
         const std::string layers = layers_found(exr);
@@ -183,16 +196,7 @@ ImageChannels channels_of(const std::string& path, const std::string& layer) {
             fmt::format("expected channels R, G and B, or Y, found no '{}' in the first part{}", name,
                 layers.empty() ? "" : "; a layer can be named: " + layers));
     }
-    return {0, {"R", "G", "B"}};
-}
-
-void check_sampling(const Imf::Header& header, const std::string& path, const std::array<std::string, 3>& names) {
-    for (const std::string& name : names) {
-        const Imf::Channel* channel = header.channels().findChannel(name);
-        if (!channel) throw InputError({path, 0, 0}, fmt::format("expected a channel '{}', found none", name));
-        if (channel->xSampling != 1 || channel->ySampling != 1)
-            throw InputError({path, 0, 0}, fmt::format("expected a sample of '{}' for every pixel", name));
-    }
+    return channels_in(part, path, {"R", "G", "B"});
 }
 
 /// Returns what an image of this size is not; "" if it may be read.
@@ -229,22 +233,18 @@ template <class Number> void read_rows(Imf::InputPart& part, const Imath::Box2i&
 }
 
 std::shared_ptr<const RgbImage> read_parts(const std::string& path, const std::string& layer, WhyNot why_not) {
-    const auto [index, names] = channels_of(path, layer);  // checks the sizes in the headers, too
+    const auto [index, names, half] = channels_of(path, layer);  // checks the sizes in the headers, too
     Imf::MultiPartInputFile file(path.c_str(), 0);
     const Imf::Header& header = file.header(index);
     if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
         throw InputError({path, 0, 0}, "expected a flat image, found a deep one");
     const Imath::Box2i window = header.dataWindow();
     const auto [width, height] = size_of(window, path, why_not);
-    check_sampling(header, path, names);
     Imf::InputPart part(file, index);
     auto out = std::make_shared<RgbImage>();
     out->width = width;
     out->height = height;
-    const auto is_half = [&](const std::string& name) {
-        return header.channels().findChannel(name)->type == Imf::HALF;
-    };
-    if (std::ranges::all_of(names, is_half)) read_rows(part, window, names, Imf::HALF, out->halves);
+    if (half) read_rows(part, window, names, Imf::HALF, out->halves);
     else read_rows(part, window, names, Imf::FLOAT, out->rgb);
     out->hash = hash_of_texels(*out);
     return out;

@@ -46,6 +46,19 @@ public:
 protected:
     static constexpr std::size_t most_rows = 8192;
 
+    /// Gives each of these draws the weight f cos times factor(i) over its pdf, which becomes 1.
+    template <class Factor> void set_weights(Vec3d wo, std::span<Draw> draws, Factor&& factor) const {
+        std::vector<Pair> pairs;
+        for (const Draw& draw : draws) pairs.push_back({wo, draw.wi});
+        std::vector<double> value(pairs.size());
+        f(pairs, value);
+        for (std::size_t i = 0; i < draws.size(); ++i)
+            if (const double p = draws[i].pdf; p != 0) {
+                draws[i].weight = value[i] * std::max(draws[i].wi.z, 0.0) * factor(i) / p;
+                draws[i].pdf = 1;
+            }
+    }
+
     const ShadingPoints& points() const { return *point_; }
 
     /// Calls work(rows, first, count) for consecutive parts of pairs, a run for each w_o.
@@ -105,16 +118,7 @@ public:
     Traits traits() const override { return {.numbers = technique_->numbers(), .has_pdf = technique_->has_density()}; }
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         draw_with(*technique_, wo, u, out);
-        if (technique_->has_density()) return;
-        std::vector<Pair> pairs;
-        for (const Draw& draw : out) pairs.push_back({wo, draw.wi});
-        std::vector<double> value(pairs.size());
-        f(pairs, value);
-        for (std::size_t i = 0; i < out.size(); ++i)
-            if (const double p = out[i].pdf; p != 0) {
-                out[i].weight = value[i] * std::max(out[i].wi.z, 0.0) / p;
-                out[i].pdf = 1;
-            }
+        if (!technique_->has_density()) set_weights(wo, out, [](std::size_t) { return 1.0; });
     }
     void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
         if (technique_->has_density()) density_of(*technique_, pairs, out);
@@ -180,26 +184,18 @@ public:
     void pdf(int, std::span<const Pair>, std::span<double> out) const override { std::ranges::fill(out, 0); }
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         std::vector<WeightedDirection> drawn;
-        std::vector<Pair> pairs;
-        std::vector<double> value;
         const std::size_t rows_a_batch = 512;
         for (std::size_t first = 0; first < u.size(); first += rows_a_batch) {
             const std::size_t rows = std::min(rows_a_batch, u.size() - first);
             drawn.assign(rows, {});
-            pairs.clear();
-            value.resize(rows);
             const PointRun run{0, as<float>(wo), rows};
             combination_->sample(
                 {points(), {&run, 1}},
                 [&](std::size_t, std::size_t row, std::uint32_t block) { return hashed(u[first + row], block); },
                 drawn);
-            for (const WeightedDirection& d : drawn) pairs.push_back({wo, widen(d.drawn.wi)});
-            f(pairs, value);
-            for (std::size_t i = 0; i < rows; ++i) {
-                const double p = double(drawn[i].drawn.pdf.v);
-                Draw& d = out[first + i] = {pairs[i].wi, p == 0 ? 0.0 : 1.0};
-                d.weight = p == 0 ? 0 : value[i] * std::max(d.wi.z, 0.0) * double(drawn[i].weight) / p;
-            }
+            const std::span<Draw> draws = out.subspan(first, rows);
+            for (std::size_t i = 0; i < rows; ++i) draws[i] = {widen(drawn[i].drawn.wi), double(drawn[i].drawn.pdf.v)};
+            set_weights(wo, draws, [&](std::size_t i) { return double(drawn[i].weight); });
         }
         if (limited()) count(u.size() * static_cast<std::size_t>(*combination_->plan().candidates));
     }

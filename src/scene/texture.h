@@ -44,7 +44,10 @@ struct RgbImage {
     /// Returns one of them.
     float operator[](std::size_t k) const { return halves.empty() ? rgb[k] : value_of_half(halves[k]); }
     /// Sets one of them to 0.
-    void set_zero(std::size_t k) { (halves.empty() ? rgb[k] = 0 : halves[k] = 0); }
+    void set_zero(std::size_t k) {
+        if (halves.empty()) rgb[k] = 0;
+        else halves[k] = 0;
+    }
 };
 
 /// A texture of a mesh's material.
