@@ -127,7 +127,7 @@ std::string header_text(const RenderStats& stats, const ArmStats& arm, bool cons
         {"quantities", arm.quantities.size()}, {"rounding", arm.film.rounding}, {"tile", stats.tiles.size},
         {"regions", Json::array()}};
     if (const Quantisation& steps = arm.film.steps; steps.levels > 0) {
-        out["levels"] = steps.levels;
+        out["levels"] = static_cast<std::uint64_t>(steps.levels);
         out["srgb"] = steps.srgb;
     }
     for (const PixelSet& set : stats.regions) {

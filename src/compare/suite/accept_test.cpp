@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fmt/format.h>
 #include <functional>
 #include <set>
 
@@ -275,6 +276,28 @@ TEST_F(Accepting, MomentsGiveTheNumbersOfTheirRenders) {
     EXPECT_EQ(without.count(ViewState::unreadable), 1u);
     EXPECT_THAT(without.views[1].sentence, HasSubstr("s.toml:6:"));
     EXPECT_THAT(without.views[1].sentence, HasSubstr("accept the view again"));
+}
+
+TEST_F(Accepting, MomentsOfWholeNumbersAreReadAgain) {
+    const auto pictures = [&](double bias, std::uint32_t seed) {  // PGM, which is known by its contents
+        fs::create_directories(path("out"));
+        for (std::uint32_t k = 0; k < 6; ++k) {
+            std::string text = fmt::format("P5\n{} {}\n255\n", side, side);
+            for (std::uint32_t i = 0; i < side * side; ++i)
+                text += static_cast<char>(
+                    std::min(255.0, std::round(60 * synthetic_pixel({Kind::gamma, 0.2, bias}, seed + k, i, side))));
+            write(fmt::format("out/v-{}.exr", k), text);
+        }
+    };
+    const std::string linear = "encoding = \"linear\"\n";
+    pictures(0, 100);
+    accept({}, "store = \"moments\"\n" + linear);
+    pictures(0, 200);
+    const SuiteResult same = compare(linear);
+    EXPECT_EQ(same.views[0].state, ViewState::same) << same.views[0].sentence;
+    EXPECT_TRUE(same.views[0].moments);
+    pictures(0.1, 300);
+    EXPECT_EQ(compare(linear).views[0].state, ViewState::changed);
 }
 
 TEST_F(Accepting, ADeterministicViewIsComparedExactlyWithItsMoments) {
