@@ -231,6 +231,12 @@ TEST(Clipping, IsStatedWithItsShare) {
     const RenderStats all = memory.read();
     EXPECT_THAT(all.warnings, ::testing::Contains(HasSubstr("25 % of the pixels are clipped in all renders")));
     EXPECT_THAT(all.warnings, ::testing::Contains(HasSubstr("pictures for display")));
+    for (const char* name : {"a0", "a1", "b0", "b1"}) {
+        Render& r = memory.put(name, static_cast<std::uint32_t>(name[0] * 2 + name[1]));
+        r.display_referred = true;
+        std::fill(r.r.begin(), r.r.end(), 1.0f);
+    }
+    EXPECT_THAT(memory.read().warnings, ::testing::Contains(::testing::StartsWith("100 % of the pixels are clipped")));
 }
 
 }  // namespace image_file_test

@@ -60,7 +60,11 @@ std::string figures_of(std::string_view metric, double x, bool paired) {
 
 std::string percent(double fraction, int digits) {
     if (!std::isfinite(fraction)) return shortest(fraction);
-    return fmt::format("{:.{}g} %", 100 * fraction, digits);
+    const double value = 100 * fraction;
+    const std::string text = fmt::format("{:.{}g}", value, digits);
+    constexpr double longest = 1e9;  // from here on a power of ten is easier to read
+    const bool is_whole = text.find("e+") != std::string::npos && std::fabs(value) < longest;
+    return (is_whole ? fmt::format("{:.0f}", value) : text) + " %";
 }
 
 std::string with_error(double value, double half) {
