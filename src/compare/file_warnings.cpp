@@ -40,10 +40,6 @@ namespace {
 
 constexpr std::size_t named_places = 3;  // pixels that are listed
 
-bool finite(const Render& r, std::size_t i) {
-    return std::isfinite(r.r[i]) && std::isfinite(r.g[i]) && std::isfinite(r.b[i]);
-}
-
 /// Counts connected components of pixels in ascending order: each joins its left neighbour and the three of the row
 /// before.
 class Groups {
@@ -197,7 +193,7 @@ std::vector<std::uint32_t> failed_groups(const Render& render, const RenderStats
     for (const PixelSet& set : stats.regions) {
         std::vector<std::uint32_t> bad;
         std::copy_if(set.left_out.begin(), set.left_out.end(), std::back_inserter(bad),
-            [&](std::uint32_t i) { return !finite(render, i); });
+            [&](std::uint32_t i) { return !render.is_finite(i); });
         out.push_back(touching_groups(bad, stats.width));
     }
     return out;

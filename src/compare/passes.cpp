@@ -121,7 +121,7 @@ void FirstPass::fit(const Render& render) {
 void FirstPass::check_pixels(const Render& render, ArmStats& to) {
     std::uint64_t bad = 0, negative = 0;
     for (std::size_t i = 0; i < render.size(); ++i) {
-        const bool finite = std::isfinite(render.r[i]) && std::isfinite(render.g[i]) && std::isfinite(render.b[i]);
+        const bool finite = render.is_finite(i);
         if (!finite) {
             if (to.not_finite.empty()) to.not_finite.assign(render.size(), 0);
             ++bad;

@@ -28,6 +28,11 @@ Render::Render(std::string path, int w, int h) : Render(std::move(path), w, h, e
     for (std::vector<float>* plane : {&r, &g, &b}) plane->resize(data.pixels());
 }
 
+bool Render::is_finite(std::size_t i) const {
+    return std::isfinite(r[i]) && std::isfinite(g[i]) && std::isfinite(b[i]) &&
+        (alpha.empty() || std::isfinite(alpha[i]));
+}
+
 float Render::y(std::size_t i) const {
     const double rgb[3] = {static_cast<double>(r[i]), static_cast<double>(g[i]), static_cast<double>(b[i])};
     return static_cast<float>(weights[0] * rgb[0] + weights[1] * rgb[1] + weights[2] * rgb[2]);

@@ -64,6 +64,8 @@ struct Render {
     Render(std::string path, int w, int h, Empty);
     std::size_t size() const { return r.size(); }
     float y(std::size_t i) const;
+    /// Whether each tested channel of a pixel is finite.
+    bool is_finite(std::size_t i) const;
 };
 
 /// Reads a render: the pixels of its data window. `layer` selects a part or layer of a file with several ("": the

@@ -48,7 +48,9 @@ void set_levels(std::vector<ViewResult*>& views, double alpha) {
 }
 
 /// Removes the places of a view in which no difference was decided.
-void forget_places(BiasResult& means) {
+void forget_places(ViewResult& view) {
+    view.pictures.significance.clear();
+    BiasResult& means = *view.means;
     for (MeanTest& t : means.regions) {
         t.differs = false;
         for (MeanTest& c : t.channels) c.differs = false;
@@ -107,24 +109,48 @@ std::string too_few_sentence(const ViewResult& view) {
     if (view.renders_needed && static_cast<double>(*view.renders_needed) >= renders_beyond)
         out += " More than a million renders of each side would be needed.";
     else if (view.renders_needed) out += fmt::format(" {} renders of each side would do.", *view.renders_needed);
+    if (view.baseline_renders == 1 && view.candidate_renders == 1)
+        out += " A view without noise needs one: state tolerance = \"0 ulp\", or a larger one.";
     return out;
+}
+
+/// "1 of them is finite on one side only"; "" if none is.
+std::string one_sided_text(const ExactDifference& e) {
+    return e.one_sided == 0
+        ? ""
+        : fmt::format("{} of them {} finite on one side only", e.one_sided, e.one_sided == 1 ? "is" : "are");
+}
+
+/// "5 of 255 steps", "1.00 ulp"
+std::string steps_text(const ExactDifference& e) {
+    return e.step_name.empty() ? fmt::format("{} ulp", figures(e.steps, 3))
+                               : fmt::format("{} of {} steps", e.steps, e.step_name);
 }
 
 std::string exact_sentence(const ViewResult& view) {
     const BiasResult& means = *view.means;
-    if (means.identical) return "Deterministic: all renders of both sides have the same pixels.";
+    if (means.identical) return "Deterministic: every render has the same value in every tested channel.";
     if (!view.exact_difference) return "Deterministic, and its pixels changed.";
     const ExactDifference& e = *view.exact_difference;
-    const std::string steps = e.step_name.empty() ? fmt::format("{} ulp", figures(e.steps, 3))
-                                                  : fmt::format("{} of {} steps", e.steps, e.step_name);
     std::string out = fmt::format(
         "Deterministic, and {} of {} pixels changed; the largest difference of a channel is {} at ({}, {}), {} of a "
         "value and {} at most.",
-        e.different, e.pixels, steps, e.x, e.y, std::isfinite(e.share) ? percent(e.share, 2) : "all",
+        e.different, e.pixels, steps_text(e), e.x, e.y, std::isfinite(e.share) ? percent(e.share, 2) : "all",
         figures(e.absolute, 3));
+    if (e.one_sided > 0) out += fmt::format(" {}.", one_sided_text(e));
     if (view.tolerated) out += " That is within the tolerance.";
     else if (e.beyond > 0) out += fmt::format(" Beyond the tolerance: {}.", plural(e.beyond, "pixel"));
     return out;
+}
+
+/// The same in the shortest form, of a view whose pixels differ.
+std::string exact_headline(const ViewResult& view) {
+    const ExactDifference& e = *view.exact_difference;
+    std::string out = fmt::format("{}: {} of {} pixels differ, by at most {}, at ({}, {})",
+        view.tolerated ? "Within the tolerance" : "Changed", e.different, e.pixels, steps_text(e), e.x, e.y);
+    if (e.one_sided > 0) out += "; " + one_sided_text(e);
+    if (e.beyond > 0) out += fmt::format("; {} beyond the tolerance", e.beyond);
+    return out + ".";
 }
 
 /// States that other channels differ; "" if none does.
@@ -193,12 +219,12 @@ void decide_compared(ViewResult& view) {
     const bool doubtful = !view.exact && (render || view.outlier_render.p <= named);
     if (doubtful) view.renders_needed.reset();
     const int variance = view.noise == NoiseDemand::ignore ? 0 : compare_variances(view);
-    if (!changed) forget_places(means);
+    if (!changed) forget_places(view);
     if (!view.non_finite.empty()) {
         view.state = ViewState::changed;
         view.sentence = view.non_finite + (changed && !view.exact ? " " + means.sentence : "");
     } else if (!view.untestable.empty()) {
-        forget_places(means);
+        forget_places(view);
         view.renders_needed.reset();
         view.state = ViewState::too_few;
         view.sentence = too_few_sentence(view);
@@ -276,7 +302,6 @@ std::string changed_means(const ViewResult& view) {
 
 std::string changed_headline(const ViewResult& view) {
     if (!view.non_finite.empty()) return view.non_finite;
-    if (view.exact) return exact_sentence(view);
     if (view.mean_p / share_of_means <= view.level) return fmt::format("Changed: {}.", changed_means(view));
     if (view.outliers.p <= view.outlier_level)
         return fmt::format("Changed: {} of the candidate, {} of the baseline (p = {:.1g}).",
@@ -302,10 +327,13 @@ std::string too_few_headline(const ViewResult& view) {
 
 /// The result of a view in one sentence of at most `longest_headline` characters.
 std::string headline_of(const ViewResult& view) {
-    std::string out = view.state == ViewState::changed ? changed_headline(view)
-        : view.state == ViewState::noisier             ? noisier_headline(view)
-        : view.state == ViewState::too_few             ? too_few_headline(view)
-                                                       : view.sentence;
+    const bool exact = view.exact_difference && view.non_finite.empty() &&
+        (view.state == ViewState::changed || view.state == ViewState::same);
+    std::string out = exact                ? exact_headline(view)
+        : view.state == ViewState::changed ? changed_headline(view)
+        : view.state == ViewState::noisier ? noisier_headline(view)
+        : view.state == ViewState::too_few ? too_few_headline(view)
+                                           : view.sentence;
     const std::string samples = samples_sentence(view);
     if (!samples.empty() && !out.starts_with(samples)) out = samples + " " + out;
     constexpr std::size_t dots = 3;  // that printable() puts behind what it cuts

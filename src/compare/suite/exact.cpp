@@ -54,6 +54,9 @@ private:
     Quantisation whole_;
 };
 
+/// Whether a pixel is not finite in some render of a side.
+bool fails(const ArmStats& arm, std::size_t pixel) { return !arm.not_finite.empty() && arm.not_finite[pixel] > 0; }
+
 }  // namespace
 
 std::optional<Tolerance> parse_tolerance(std::string_view text) {
@@ -81,8 +84,13 @@ ExactDifference exact_difference(const RenderStats& stats, const std::optional<T
     const std::size_t first = stats.quantities > 1 ? 1 : 0;  // Y follows from the channels
     constexpr double slack = 1 + 1e-9;                       // "2/255" of values that are themselves rounded
     for (std::size_t i = 0; i < stats.bad.size(); ++i) {
-        if (stats.bad[i]) continue;
         ++out.pixels;
+        if (stats.bad[i]) {
+            const bool one_sided = fails(stats.arms[0], i) != fails(stats.arms[1], i);
+            out.one_sided += one_sided;
+            out.different += one_sided;
+            continue;
+        }
         bool differs = false, beyond = false;
         for (std::size_t q = first; q < stats.quantities; ++q) {
             const double b = baseline.of(q).mean[i], c = candidate.of(q).mean[i], difference = std::fabs(c - b);

@@ -23,9 +23,10 @@ inline constexpr const char* tolerance_forms = "a tolerance such as \"1 ulp\", \
 /// an ulp of the less precise side (float, half, RGBE).
 struct ExactDifference {
     std::uint64_t pixels = 0, different = 0, beyond = 0;  // beyond: the tolerance
-    double steps = 0, share = 0, absolute = 0;            // the largest of a channel; share: of the baseline's value
-    int x = 0, y = 0;                                     // where steps are most
-    std::string step_name;                                // "255" for 8 bits; "" for floating point
+    std::uint64_t one_sided = 0;                // of `different`: finite on one side only, which no tolerance allows
+    double steps = 0, share = 0, absolute = 0;  // the largest of a channel; share: of the baseline's value
+    int x = 0, y = 0;                           // where steps are most
+    std::string step_name;                      // "255" for 8 bits; "" for floating point
 };
 /// Compares the first arm, the baseline, with the second; each is one render.
 ExactDifference exact_difference(const RenderStats& stats, const std::optional<Tolerance>& tolerance);

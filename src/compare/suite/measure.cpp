@@ -467,7 +467,8 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     if (out.exact) {
         const std::optional<Tolerance> tolerance = suite.tolerance(view);
         if (!out.means->identical) out.exact_difference = exact_difference(stats, tolerance);
-        out.tolerated = tolerance && out.exact_difference && out.exact_difference->beyond == 0;
+        out.tolerated = tolerance && out.exact_difference && out.exact_difference->beyond == 0 &&
+            out.exact_difference->one_sided == 0;
         out.mean_p = out.means->identical || out.tolerated ? 1 : 0;
     } else {
         if (view.tolerance)

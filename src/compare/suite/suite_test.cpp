@@ -276,6 +276,37 @@ TEST(Suites, PixelsThatAreNotFiniteOnOneSideChangeAView) {
         }
 }
 
+TEST(Suites, ATestedAlphaChannelThatIsNotFiniteChangesAView) {
+    for (const bool is_noisy : {true, false}) {
+        MemorySuite s;
+        s.suite.options.smallest = 0.05;
+        for (int k = 0; k < 6; ++k)
+            for (const char* which : {"baseline", "candidate"})
+                s.put("view", which, k, noise,
+                    is_noisy ? 2800 + 2 * static_cast<std::uint32_t>(k) + (*which == 'c' ? 1 : 0) : 2800);
+        for (auto& [path, render] : s.renders) render.alpha.assign(render.size(), 1);
+        EXPECT_EQ(s.compare().views[0].state, ViewState::same);
+        for (int k = 0; k < 6; ++k) s.renders[fmt::format("view/candidate/{}", k)].alpha[77] = std::nanf("");
+        const ViewResult view = s.compare().views[0];
+        EXPECT_EQ(view.state, ViewState::changed);
+        EXPECT_THAT(view.headline, HasSubstr("1 pixel is not finite"));
+    }
+}
+
+TEST(Suites, NoToleranceAllowsAPixelThatIsFiniteOnOneSideOnly) {
+    MemorySuite s;
+    for (int k = 0; k < 2; ++k)
+        for (const char* which : {"baseline", "candidate"}) s.put("view", which, k, noise, 2900);
+    s.suite.views[0].tolerance = parse_tolerance("50 %");
+    for (auto& [path, render] : s.renders) {
+        render.r[5] = HUGE_VALF;  // on both sides
+        if (path.starts_with("view/candidate")) render.r[77] = std::nanf("");
+    }
+    const ViewResult view = s.compare().views[0];
+    EXPECT_EQ(view.state, ViewState::changed);
+    EXPECT_THAT(view.sentence, HasSubstr("1 of them is finite on one side only"));
+}
+
 /// A suite of one view with these numbers of renders.
 ViewResult unbalanced(int baseline, int candidate, const SyntheticNoise& of_candidate, std::uint32_t seed) {
     MemorySuite s;
