@@ -445,7 +445,11 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
             "candidate is not tested, and outlier pixels are neither counted nor left out.");
     const bool constant_baseline = moments ? moments->constant : is_constant(view.baseline, baseline),
                constant_candidate = is_constant(view.candidate, candidate);
-    out.exact = out.baseline_renders == 1 && candidate.size() == 1 && (constant_baseline || constant_candidate);
+    const std::optional<Tolerance> tolerance = suite.tolerance(view);
+    // One file on each side shows no noise, but a tolerance states that there is none.
+    NoiseResult noise;
+    out.exact = out.baseline_renders == 1 && candidate.size() == 1 &&
+        (constant_baseline || constant_candidate || tolerance.has_value());
     const ComparePlan plan = plan_for(suite, view, baseline, candidate);
     ProgressMonitor quiet;
     const RenderStats stats = read_all(plan, quiet, files.reader());
@@ -465,15 +469,12 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     out.spp_candidate = stated_spp(stats.arms[1]);
     if (out.means->identical) out.other_channels = other_channels(suite, stats);
     if (out.exact) {
-        const std::optional<Tolerance> tolerance = suite.tolerance(view);
         if (!out.means->identical) out.exact_difference = exact_difference(stats, tolerance);
         out.tolerated = tolerance && out.exact_difference && out.exact_difference->beyond == 0 &&
             out.exact_difference->one_sided == 0;
         out.mean_p = out.means->identical || out.tolerated ? 1 : 0;
     } else {
-        if (view.tolerance)
-            out.notes.push_back(
-                "The tolerance is not used: it is for views without noise, with one render on each side.");
+        if (view.tolerance) out.notes.push_back("The tolerance is not used: it is for views without noise.");
         if (!out.means->identical && out.noise != NoiseDemand::ignore) {
             out.outliers = view_outliers(stats, suite.options.alpha);
             if (suite.outliers(view) == OutlierDemand::ignore) out.outliers.p = std::nan("");

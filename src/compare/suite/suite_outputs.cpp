@@ -76,7 +76,7 @@ Json view_json(const ViewResult& view) {
     if (!view.means) return out;
     const BiasResult& means = *view.means;
     for (const MeanTest& t : means.regions) out["means"][t.region] = mean_json(t);
-    out["identical"] = means.identical;
+    out["identical"] = means.identical && view.other_channels.empty();
     out["paired"] = means.paired;
     out["tiles"] = {{"tested", means.tiles.tested}, {"different", means.tiles.different},
         {"first", places_json(means.tiles_found)}};

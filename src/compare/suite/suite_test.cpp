@@ -463,6 +463,23 @@ TEST(Suites, AToleranceHoldsForViewsWithoutNoise) {
     EXPECT_EQ(state("2/255", 3, eight_bits, nullptr), ViewState::changed);
 }
 
+TEST(Suites, AToleranceComparesOneRenderOfEachSideExactly) {
+    MemorySuite s;
+    for (const char* which : {"baseline", "candidate"}) s.put("view", which, 0, noise, 900);
+    for (float& value : s.renders["view/candidate/0"].g) value *= 1.004f;
+    const ViewResult without = s.compare().views[0];
+    EXPECT_EQ(without.state, ViewState::too_few);
+    EXPECT_THAT(without.sentence, HasSubstr("A view without noise needs one: state tolerance"));
+    s.suite.views[0].tolerance = parse_tolerance("0.5 %");
+    const ViewResult within = s.compare().views[0];
+    EXPECT_EQ(within.state, ViewState::same);
+    EXPECT_THAT(within.headline, ::testing::StartsWith("Within the tolerance: 1024 of 1024 pixels differ"));
+    s.suite.views[0].tolerance = parse_tolerance("0.3 %");
+    const ViewResult beyond = s.compare().views[0];
+    EXPECT_EQ(beyond.state, ViewState::changed);
+    EXPECT_THAT(beyond.headline, ::testing::StartsWith("Changed: 1024 of 1024 pixels differ"));
+}
+
 TEST(Suites, AViewStatesWhatIsAskedOfItsNoise) {
     const auto state = [](NoiseDemand demand, const SyntheticNoise& before, const SyntheticNoise& after) {
         MemorySuite s;
