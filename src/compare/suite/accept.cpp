@@ -45,9 +45,10 @@ std::string path_in_baseline(
 
 std::vector<Accepted> files_to_accept(const Suite& suite, const SuiteView& view, const std::string& folder) {
     std::vector<Accepted> out;
+    const std::vector<std::vector<MatchedFile>> found = files_of_patterns(suite.candidate);
     for (std::size_t p = 0; p < suite.candidate.size(); ++p) {
         const FilePattern& target = suite.baseline[suite.baseline.size() == suite.candidate.size() ? p : 0];
-        for (const MatchedFile& file : suite.candidate[p].find()) {
+        for (const MatchedFile& file : found[p]) {
             if (file.view != view.name) continue;
             const std::string path = path_in_baseline(target, suite.candidate[p], file, out.size() + 1);
             out.push_back({file.path, name_in(folder, path), {}});

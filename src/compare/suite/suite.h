@@ -100,7 +100,7 @@ struct Suite {
 /// Flags that replace or complete the keys of a suite file.
 struct SuiteFlags {
     std::vector<CompareFlag> keys;    // of [suite]
-    std::string baseline, candidate;  // folders with VIEW/*.exr or VIEW-SEED.exr; "": the file's patterns
+    std::string baseline, candidate;  // folders with VIEW/*.exr, VIEW-SEED.exr or VIEW.exr; "": the file's patterns
     bool baseline_only = false;       // no renders of the candidate are needed
 };
 
@@ -109,6 +109,8 @@ bool is_suite(const std::string& file);
 /// Reads a suite file ("": none, the folders of the flags) and finds the renders of each view. Throws InputError.
 Suite read_suite(const std::string& file, const SuiteFlags& flags);
 /// Returns the table [suite] that flags alone make. Throws InputError.
+/// Returns the files of each pattern; a file that several match belongs to the first of them.
+std::vector<std::vector<MatchedFile>> files_of_patterns(const std::vector<FilePattern>& patterns);
 SuiteOptions read_suite_options(const std::vector<CompareFlag>& keys);
 /// Returns the manual of a suite file.
 std::string suite_schema_text();

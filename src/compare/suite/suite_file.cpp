@@ -181,12 +181,10 @@ std::map<std::string, std::vector<std::string>> files_by_view(const std::vector<
     for (const FilePattern& pattern : patterns) {
         if (!pattern.has_view())
             throw InputError(pattern.at(), fmt::format("expected {{view}} in the pattern '{}'", pattern.text()));
-        for (const MatchedFile& file : pattern.find()) out[file.view].push_back(file.path);
     }
-    for (auto& [view, paths] : out) {
-        std::sort(paths.begin(), paths.end());
-        paths.erase(std::unique(paths.begin(), paths.end()), paths.end());
-    }
+    for (const std::vector<MatchedFile>& files : files_of_patterns(patterns))
+        for (const MatchedFile& file : files) out[file.view].push_back(file.path);
+    for (auto& [view, paths] : out) std::sort(paths.begin(), paths.end());
     return out;
 }
 
@@ -243,13 +241,16 @@ void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baselin
     suite.views = std::move(views);
 }
 
-constexpr std::array image_endings = {".exr", ".pfm", ".hdr", ".png", ".jpg", ".jpeg", ".bmp", ".tga", ".ppm", ".npy"};
+constexpr std::array image_endings = {
+    ".exr", ".pfm", ".hdr", ".png", ".jpg", ".jpeg", ".bmp", ".tga", ".ppm", ".pgm", ".npy"};
 
-/// Returns the patterns of a folder with VIEW/*.exr or VIEW-SEED.exr, and those of other endings.
+/// Returns the patterns of a folder with VIEW/*.exr, VIEW-SEED.exr or VIEW.exr, and those of other endings. A seed ends
+/// with a digit, because names of views may have a '-'.
 std::vector<std::string> patterns_in(const std::string& folder, const std::vector<std::string>& endings) {
     std::vector<std::string> out;
     for (const std::string& ending : endings)
-        for (const char* file : {"{view}/*", "{view}-*"}) out.push_back(pattern_in(folder, file + ending));
+        for (const char* file : {"{view}/*", "{view}-*[0-9]", "{view}"})
+            out.push_back(pattern_in(folder, file + ending));
     return out;
 }
 
@@ -291,6 +292,16 @@ std::optional<std::string> common_folder(const std::vector<FilePattern>& pattern
 }
 
 }  // namespace
+
+std::vector<std::vector<MatchedFile>> files_of_patterns(const std::vector<FilePattern>& patterns) {
+    std::vector<std::vector<MatchedFile>> out;
+    std::set<std::string> known;
+    for (const FilePattern& pattern : patterns) {
+        std::vector<MatchedFile>& files = out.emplace_back(pattern.find());
+        std::erase_if(files, [&](const MatchedFile& file) { return !known.insert(file.path).second; });
+    }
+    return out;
+}
 
 std::string baseline_folder(const Suite& suite) {
     if (const std::optional<std::string> folder = common_folder(suite.baseline)) return *folder;
