@@ -220,6 +220,7 @@ void decide_compared(ViewResult& view) {
     if (doubtful) view.renders_needed.reset();
     const int variance = view.noise == NoiseDemand::ignore ? 0 : compare_variances(view);
     if (!changed) forget_places(view);
+    if (variance == 0) view.pictures.noise.clear();
     if (!view.non_finite.empty()) {
         view.state = ViewState::changed;
         view.sentence = view.non_finite + (changed && !view.exact ? " " + means.sentence : "");

@@ -191,8 +191,7 @@ std::optional<double> stated_spp(const ArmStats& arm) {
 
 /// Returns the tile in which the variance of the candidate is largest relative to that of the baseline, of those in
 /// which they differ significantly; "" if there is none.
-std::string noisiest_place(const ComparePlan& plan, const RenderStats& stats, double alpha) {
-    const NoiseResult noise = compare_noise(plan, stats, 1, 0, alpha);
+std::string noisiest_place(const RenderStats& stats, const NoiseResult& noise) {
     std::size_t found = stats.tiles.count();
     for (std::size_t t = 0; t < stats.tiles.count(); ++t)
         if (noise.distinguished[t] && noise.log2_ratio[t] > 0 &&
@@ -486,7 +485,10 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
         }
         test_variances(stats, measured, level.each / share_of_means, suite.look, out);
         if (out.noise == NoiseDemand::ignore) out.variance_p = std::nan("");
-        else { out.noisiest = noisiest_place(plan, stats, suite.options.alpha); }
+        else {
+            noise = compare_noise(plan, stats, 1, 0, suite.options.alpha);
+            out.noisiest = noisiest_place(stats, noise);
+        }
         if (!out.means->identical) {
             restate_power(stats, level.each, *out.means);
             state_power(stats, measured, level.each, out);
@@ -501,6 +503,7 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
         }
     }
     picture_both_sides(suite, stats, *out.means, out);
+    picture_noise(stats, noise, out);
     drop_places(*out.means);
     return out;
 }

@@ -21,6 +21,8 @@ constexpr int largest_width = 800, smallest_width = 48;
 /// The colours of the difference map end at this multiple of the difference that must be found, or at the value that 1
 /// % of the map exceeds.
 constexpr double ends_at = 5, beyond = 0.99;
+/// Of a tile whose noise differs: the binary logarithm of the ratio of the variances that has the full colour.
+constexpr double full_noise = 2;
 /// Of a tile that differs: p of the full colour, and the least share of it.
 constexpr double full_p = 1e-9, least_colour = 0.4;
 
@@ -169,6 +171,19 @@ void picture_both_sides(const Suite& suite, const RenderStats& stats, const Bias
         if (means.tiles.different > 0 || means.pixels_different > 0)
             to.significance = png_of(significance_block(stats, means, to.width, to.height));
     });
+}
+
+void picture_noise(const RenderStats& stats, const NoiseResult& noise, ViewResult& out) {
+    if (std::ranges::find(noise.distinguished, true) == noise.distinguished.end()) return;
+    ViewPictures& to = out.pictures;
+    std::vector<double> cells(static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height), std::nan(""));
+    for (std::size_t i = 0; i < stats.bad.size(); ++i) {
+        const auto across = static_cast<std::size_t>(stats.width);
+        const std::size_t t = stats.tiles.of(static_cast<int>(i % across), static_cast<int>(i / across));
+        if (!std::isnan(noise.log2_ratio[t]))
+            cells[cell_of(stats, i, to.width, to.height)] = noise.distinguished[t] ? noise.log2_ratio[t] : 0;
+    }
+    to.noise = png_of(difference_block(cells, to.width, to.height, full_noise));
 }
 
 }  // namespace crescent

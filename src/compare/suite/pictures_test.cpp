@@ -91,6 +91,27 @@ TEST(SuitePictures, SignificanceIsShownWhereNoiseDoesNotExplainIt) {
     EXPECT_EQ(red(2 * side), red(63));
 }
 
+TEST(SuitePictures, TheNoiseIsShownWhereItDiffers) {
+    auto [all, means] = a_ramp_and_a_brighter_one();
+    ViewResult out;
+    picture_both_sides({}, all, means, out);
+    NoiseResult noise;
+    const std::size_t count = all.tiles.count();
+    noise.log2_ratio.assign(count, 2);
+    noise.distinguished.assign(count, false);
+    picture_noise(all, noise, out);
+    EXPECT_TRUE(out.pictures.noise.empty());
+    noise.distinguished[0] = true;
+    noise.log2_ratio[1] = std::nan("");
+    picture_noise(all, noise, out);
+    const std::vector<unsigned char> image = pixels_of(out.pictures.noise);
+    const auto red = [&](int x) { return image[3 * static_cast<std::size_t>(x)]; };
+    const int side = all.tiles.size;
+    EXPECT_GT(red(0), red(2 * side));     // more noise there
+    EXPECT_NE(red(side), red(2 * side));  // no variance
+    EXPECT_EQ(red(2 * side), red(63));
+}
+
 TEST(SuitePictures, OfManyViewsAreSmaller) {
     MemoryRenders m;
     m.put("a", 1, 400);

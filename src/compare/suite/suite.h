@@ -159,7 +159,7 @@ struct ViewOutlierRender {
 /// PNG files of one view, all of the same size.
 struct ViewPictures {
     int width = 0, height = 0;
-    std::vector<unsigned char> baseline, candidate, difference, significance;  // empty: none
+    std::vector<unsigned char> baseline, candidate, difference, significance, noise;  // empty: none
     double scale = 0;  // relative difference at the ends of the colours of `difference`
 };
 
@@ -283,6 +283,9 @@ void picture_both_sides(const Suite& suite, const RenderStats& stats, const Bias
 
 // ---- The difference of means that a test finds with a probability of 90 %, and the renders that it needs.
 
+/// Adds the tiles in which the variance of the candidate differs from that of the baseline, if there are any. After the
+/// other pictures, whose size it has.
+void picture_noise(const RenderStats& stats, const NoiseResult& noise, ViewResult& out);
 /// Returns the difference that a repetition of the test finds with a probability of 90 % at this level, if the error of
 /// a mean is known only from an estimate with `estimate_df` degrees of freedom. The estimate may be too small by
 /// chance, and so may that of the repetition: the difference is larger than that of detectable() (by a fifth for 8

@@ -277,7 +277,7 @@ Json view_of(const ViewResult& view) {
         {"details", view.sentence == view.headline ? "" : view.sentence}, {"width", p.width}, {"height", p.height},
         {"thumbnail", base64(p.candidate.empty() ? p.baseline : p.candidate)},
         {"only", p.baseline.empty() ? "candidate" : "baseline"}, {"baseline", base64(p.baseline)},
-        {"difference", base64(p.difference)}, {"significance", base64(p.significance)},
+        {"difference", base64(p.difference)}, {"significance", base64(p.significance)}, {"noise", base64(p.noise)},
         {"places", p.significance.empty() ? "" : places_of(*view.means)},
         {"baseline_renders", plural(view.baseline_renders, "render")},
         {"candidate_renders", plural(view.candidate_renders, "render")}, {"frames", frames_of(view)},

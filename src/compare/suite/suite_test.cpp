@@ -507,6 +507,13 @@ TEST(Suites, ANoisierViewSaysWhereByHowMuchAndThatTheMeanHeld) {
     EXPECT_THAT(view.sentence, HasSubstr("The mean held."));
     EXPECT_THAT(view.headline, HasSubstr("Noisier: the variance is"));
     EXPECT_LE(view.headline.size(), longest_headline);
+    EXPECT_FALSE(view.pictures.noise.empty());
+    for (auto& [path, render] : s.renders)
+        if (path.find("candidate") != std::string::npos)
+            for (std::uint32_t i = 0; i < render.size(); ++i)
+                render.r[i] = render.g[i] = render.b[i] = static_cast<float>(
+                    synthetic_pixel(calmer, 9000 + static_cast<std::uint32_t>(path.back()), i, side));
+    EXPECT_TRUE(s.compare().views[0].pictures.noise.empty());
 }
 
 TEST(Suites, AChangedViewIsOneShortSentence) {
