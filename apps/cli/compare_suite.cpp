@@ -120,6 +120,7 @@ Suite suite_for(const CompareFlags& flags) {
     if (!flags.a.empty() || !flags.b.empty()) {
         SuiteOptions options = read_suite_options(suite_flags(flags).keys);
         options.noise = NoiseDemand::ignore;  // two algorithms have one mean, and each its own noise
+        options.title = "two programs: a is the baseline, b the candidate";
         return suite_of_two(flags, options);
     }
     return read_suite(flags.file, suite_flags(flags));

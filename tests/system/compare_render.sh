@@ -65,7 +65,9 @@ fails ignore "ignores the seed"
 fails slow "did not end within 0.5 s" --timeout 0.5
 [ -z "$(find . -name '.crescent-partial*')" ] || die "partial files stayed"
 rm -rf out
-expect 4 "$CRESCENT" compare suite.toml --render "$render 1 slow" --until decided --budget 1s --quiet --out report
+expect 4 "$CRESCENT" compare suite.toml --render "$render 1 slow" --until decided --budget 1s --out report
+grep -q 'The program was stopped after 1' printed || die "the slow program is not named: $(cat printed)"
+grep -q '^0 of 2 views decided; making 8 renders' said || die "no progress: $(cat said)"
 expect 2 "$CRESCENT" compare suite.toml --render 'python3 pt.py {view}'
 grep -q 'expected {out}' said || die "$(cat said)"
 expect 2 "$CRESCENT" compare suite.toml --budget 5min

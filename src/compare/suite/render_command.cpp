@@ -83,7 +83,11 @@ RenderEnd run_program(const RenderJob& job, const RenderLimits& limits, const Pr
             monitor.check();
             end = program.ended(patience);
             if (end) break;
-            if (Clock::now() >= limits.end) return clear(), out;  // the budget is over: nothing is said about it
+            if (Clock::now() >= limits.end) {
+                out.seconds = seconds();
+                out.stopped = true;
+                return clear(), out;
+            }
             if (seconds() > limits.timeout) {
                 out.failure = fmt::format("did not end within {} s", limits.timeout);
                 return clear(), out;

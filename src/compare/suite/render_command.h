@@ -36,6 +36,7 @@ struct RenderEnd {
     bool made = false;    // the file is there and was read
     std::string failure;  // what the program did instead; "" also if the time was over before it
     double seconds = 0;
+    bool stopped = false;  // the time was over before the program ended
 };
 
 struct RenderLimits {

@@ -60,6 +60,7 @@ struct Undecided {
     std::size_t made = 0;
     double seconds[2] = {0, 0};  // of the renders of each side that were made
     std::size_t count[2] = {0, 0};
+    double stopped = 0;  // the longest time of a program that did not end within the budget
     std::string failure;
     std::optional<ViewResult> measured;
 };
@@ -93,7 +94,9 @@ public:
             monitor_.advance(static_cast<double>(done - told));
             told = done;
             monitor_.check();
-            if (done == views_.size() || std::chrono::steady_clock::now() >= options_.end || !add_renders()) return out;
+            if (done < views_.size() && std::chrono::steady_clock::now() < options_.end && add_renders()) continue;
+            for (std::size_t k = 0; k < views_.size(); ++k) add_stop(views_[k], out.views[k]);
+            return out;
         }
     }
 
@@ -116,6 +119,15 @@ private:
         decide(suite_, out);
         for (std::size_t k = 0; k < views_.size(); ++k) finish(views_[k], out.views[k]);
         return out;
+    }
+
+    /// States that a program was stopped at the end of the budget.
+    static void add_stop(const Undecided& view, ViewResult& to) {
+        if (view.stopped == 0 || to.state != ViewState::too_few) return;
+        const std::string sentence =
+            fmt::format(" The program was stopped after {} s, at the end of the budget.", figures(view.stopped, 3));
+        to.sentence += sentence;
+        if (to.headline.size() + sentence.size() <= longest_headline) to.headline += sentence;
     }
 
     /// Whether renders of a side are still to be made for the first time.
@@ -273,12 +285,16 @@ private:
             if (!suite_.views[view.index].baseline.empty() || sides_.baseline) add_jobs(view, false, jobs, owners);
         }
         if (jobs.empty()) return false;
+        monitor_.log(fmt::format("{} of {} decided; making {}",
+            std::ranges::count_if(views_, [](const Undecided& v) { return v.decided; }), plural(views_.size(), "view"),
+            plural(jobs.size(), "render")));
         const std::vector<RenderEnd> ends = render_(jobs);
         bool any = false;
         for (std::size_t k = 0; k < jobs.size(); ++k) {
             const auto [view, baseline] = owners[k];
             const RenderEnd& end = ends[k];
             any |= end.made || !end.failure.empty();
+            if (end.stopped) view->stopped = std::max(view->stopped, end.seconds);
             if (!end.failure.empty() && view->failure.empty())
                 view->failure = fmt::format(
                     "The program {} for seed {}: {}", end.failure, jobs[k].seed, printable(jobs[k].command->text, 200));

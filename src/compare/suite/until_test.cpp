@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -31,6 +32,9 @@ struct Made {
     std::size_t most = 200;
     int width = side;
     std::string failure;
+    double stopped_after = 0;  // s, of programs beyond `most`
+    ProgressMonitor silent;
+    ProgressMonitor* monitor = &silent;
 
     Made() {
         suite.options.smallest = 0.02;
@@ -60,13 +64,15 @@ struct Made {
                 else if (made < most) {
                     out[k].made = true;
                     ++made;
+                } else {
+                    out[k].stopped = stopped_after > 0;
+                    out[k].seconds = stopped_after;
                 }
                 seeds.push_back(jobs[k].seed);
             }
             return out;
         };
-        ProgressMonitor monitor;
-        return decide_by_renders(suite, sides, render, source, {}, monitor);
+        return decide_by_renders(suite, sides, render, source, {}, *monitor);
     }
     std::size_t made = 0;
     std::vector<std::uint64_t> seeds;
@@ -91,6 +97,32 @@ TEST(Until, TheEndOfTheBudgetLeavesAViewUndecidedWithANumber) {
     const ViewResult view = few.decide().views[0];
     EXPECT_EQ(view.state, ViewState::too_few);
     EXPECT_THAT(view.headline, HasSubstr("more renders"));
+}
+
+TEST(Until, AProgramThatTheBudgetStopsIsNamed) {
+    for (const std::size_t most : {std::size_t{0}, std::size_t{5}}) {
+        Made slow;
+        slow.suite.options.smallest = 0.0005;
+        slow.most = most;
+        slow.stopped_after = 90;
+        const ViewResult view = slow.decide().views[0];
+        EXPECT_EQ(view.state, ViewState::too_few);
+        for (const std::string* text : {&view.headline, &view.sentence})
+            EXPECT_THAT(*text, HasSubstr("The program was stopped after 90.0 s, at the end of the budget."));
+        EXPECT_LE(view.headline.size(), longest_headline);
+    }
+}
+
+TEST(Until, EachRoundIsLogged) {
+    struct Log : ProgressMonitor {
+        void log(std::string_view line) override { lines.emplace_back(line); }
+        std::vector<std::string> lines;
+    } log;
+    Made made;
+    made.monitor = &log;
+    (void)made.decide();
+    ASSERT_GE(log.lines.size(), 2u);
+    EXPECT_EQ(log.lines[0], "0 of 1 view decided; making 4 renders");
 }
 
 TEST(Until, ASecondCallUsesTheRendersThatAreThere) {
@@ -236,10 +268,12 @@ TEST(Anytime, TheQuantileHasItsP) {
 
 class Programs : public ScratchFolder {
 protected:
-    RenderEnd make(const std::string& program, const std::string& view = "v", double timeout = 60) {
+    RenderEnd make(
+        const std::string& program, const std::string& view = "v", double timeout = 60, double budget = 600) {
         const RenderCommand command = parse_render_command(program, "--render");
         RenderLimits limits;
         limits.timeout = timeout;
+        limits.end = std::chrono::steady_clock::now() + std::chrono::milliseconds(std::lround(1000 * budget));
         ProgressMonitor monitor;
         return make_renders({{&command, view, path("out/" + view + "-1.pfm"), 7}}, limits, monitor)[0];
     }
@@ -263,6 +297,9 @@ TEST_F(Programs, ThatFailAreNamedAndLeaveNoFile) {
     EXPECT_THAT(make("sh -c 'printf \"Pf\\n9 9\\n-1\\n1234\" >\"$0\"' {out}").failure, HasSubstr("cannot be read"));
     EXPECT_THAT(make("sh -c 'sleep 60' {out}", "v", 0.2).failure, HasSubstr("did not end within 0.2 s"));
     EXPECT_THAT(make("./no-such-program {out}").failure, HasSubstr("no-such-program"));
+    const RenderEnd over = make("sh -c 'sleep 60' {out}", "v", 60, 0.2);
+    EXPECT_TRUE(over.stopped && !over.made && over.failure.empty());
+    EXPECT_GE(over.seconds, 0.2);
     EXPECT_TRUE(std::filesystem::is_empty(path("out")));
 }
 
