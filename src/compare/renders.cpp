@@ -82,7 +82,8 @@ Render kept(Render render, const ReadingOptions& options) {
 
 Render read_render(const std::string& path, const std::string& layer, const ReadingOptions& options) {
     const OpenFile file(path);
-    std::array<char, 16> first{};
+    constexpr std::string_view lfs_pointer = "version https://git-lfs";
+    std::array<char, lfs_pointer.size()> first{};
     const std::string_view head(first.data(), file.read_some(0, first));
     const auto with_state = [&](Render render) {
         file.expect_unchanged();
@@ -99,8 +100,10 @@ Render read_render(const std::string& path, const std::string& layer, const Read
     if (head.starts_with("PF") || head.starts_with("Pf")) return with_state(kept(read_pfm(file), options));
     if (head.starts_with("\x93NUMPY")) return with_state(kept(read_npy(file), options));
     if (is_image(file, head)) return with_state(kept(read_image(file, options), options));
-    file.fail(
-        fmt::format("expected {}, found {}", readable_formats, head.empty() ? "an empty file" : "something else"));
+    file.fail(fmt::format("expected {}, found {}", readable_formats,
+        head.empty()              ? "an empty file"
+            : head == lfs_pointer ? "a pointer of Git LFS: run git lfs pull"
+                                  : "something else"));
 }
 
 RenderSource files_read_with(const ReadingOptions& options) {
