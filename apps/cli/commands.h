@@ -143,8 +143,9 @@ int compare_suite(const CompareFlags& flags);
 SuiteResult make_renders_of(const CompareFlags& flags, Suite& suite, Progress& progress);
 /// The suite of --a and --b. Throws InputError.
 Suite suite_of_two(const CompareFlags& flags, const SuiteOptions& options);
-/// Writes a JUnit file that says that the call failed, in place of that of an earlier call.
-void report_failure(const std::string& path, const std::string& file, const std::string& message);
+/// Writes files that say that the call failed, in place of those of an earlier call ("": none).
+void report_failure(
+    const std::string& junit, const std::string& sarif, const std::string& file, const std::exception& error);
 
 struct ImportFlags {
     std::string file, out, material;  // "": all materials

@@ -179,7 +179,8 @@ int compare(const CompareFlags& flags) {
         return compare_arms(flags, out);
     } catch (const Interrupted&) { throw; } catch (const std::exception& e) {
         std::error_code ignored;  // that of an earlier call says nothing about this one
-        if (std::filesystem::is_regular_file(junit, ignored)) report_failure(junit, flags.file, e.what());
+        const bool is_stale = std::filesystem::is_regular_file(junit, ignored);
+        report_failure(is_stale ? junit : "", flags.sarif, flags.file, e);
         throw;
     }
 }

@@ -156,9 +156,11 @@ int test_suite(const CompareFlags& flags) {
 
 }  // namespace
 
-void report_failure(const std::string& path, const std::string& file, const std::string& message) {
+void report_failure(
+    const std::string& junit, const std::string& sarif, const std::string& file, const std::exception& error) {
     try {
-        write_whole(path, failure_junit(file.empty() ? "crescent compare" : file, message));
+        if (!junit.empty()) write_whole(junit, failure_junit(file.empty() ? "crescent compare" : file, error.what()));
+        if (!sarif.empty()) write_whole(sarif, failure_sarif(crescent::version(), file, error));
     } catch (const OutputError&) {  // the failure itself is reported
     }
 }
@@ -172,7 +174,7 @@ int compare_suite(const CompareFlags& flags) {
         const StopOnSignal stop(progress);
         return accept_suite(flags, progress);
     } catch (const Interrupted&) { throw; } catch (const std::exception& e) {
-        if (!flags.junit.empty()) report_failure(flags.junit, flags.file, e.what());
+        report_failure(flags.junit, flags.sarif, flags.file, e);
         throw;
     }
 }

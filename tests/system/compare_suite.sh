@@ -168,6 +168,20 @@ expect 3 "$CRESCENT" compare suite.toml --json absent/folder/x.json --out nothin
 hash_of() { cat "$1"/same-*.pfm | sha256sum; }
 new=$(hash_of out)
 for delay in 0.005 0.01 0.02 0.03 0.05; do
+# So does a SARIF file, which names the line; one of arms too.
+bad "did you mean 'alpha'?" wrong-key.toml --sarif stale.sarif --out nowhere
+expect 0 /usr/bin/python3 -c 'import json
+place = json.load(open("stale.sarif"))["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
+assert place == {"artifactLocation": {"uri": "wrong-key.toml"}, "region": {"startLine": 2}}, place'
+expect 2 "$CRESCENT" compare --arm 'a=absent*.pfm' --arm 'b=out/same-*.pfm' --sarif arms.sarif --out nowhere
+grep -q 'absent\*.pfm' arms.sarif || die "the failure is not in the SARIF file"
+
+# A pointer of Git LFS is named, also without a manifest.
+part same
+for file in part/base/*; do printf 'version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 1\n' >"$file"; done
+expect 2 "$CRESCENT" compare part/suite.toml --out nothing --quiet
+grep -q 'git lfs pull' printed || die "the pointer is not named: $(cat printed)"
+
     rm -rf part && mkdir -p part && cp -r base out part/
     sed '/^\[view/,$d' suite.toml >part/suite.toml
     old=$(hash_of part/base)

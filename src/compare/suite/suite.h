@@ -262,6 +262,8 @@ std::string suite_junit(const Suite& suite, const SuiteResult& result, bool new_
 /// One case: the call failed before there was a result.
 std::string failure_junit(const std::string& file, const std::string& message);
 /// A table of all views that are not the same, at most 60 kB.
+/// The same in SARIF, with the places of an InputError that are in `file`. `version`: of crescent.
+std::string failure_sarif(const std::string& version, const std::string& file, const std::exception& error);
 std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance);
 std::string suite_summary(const Suite& suite, const SuiteResult& result);
 /// One page that works offline.

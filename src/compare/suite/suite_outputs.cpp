@@ -175,6 +175,19 @@ std::string failure_junit(const std::string& file, const std::string& message) {
     return junit_text({"crescent compare", {}, {{file, "input", JunitCase::State::error, message, "", {}}}});
 }
 
+std::string failure_sarif(const std::string& version, const std::string& file, const std::exception& error) {
+    std::vector<Diagnostic> mistakes = {{{}, error.what()}};
+    if (const auto* input = dynamic_cast<const InputError*>(&error)) mistakes = input->diagnostics();
+    std::vector<SarifResult> results;
+    for (const Diagnostic& mistake : mistakes) {
+        const bool is_in_file = !file.empty() && mistake.at.file == file;
+        const std::string message =
+            is_in_file || mistake.at.file.empty() ? mistake.message : to_string(mistake.at) + ": " + mistake.message;
+        results.push_back({"input", "error", message, file, is_in_file ? mistake.at.line : 0u, "input: " + message});
+    }
+    return sarif_text(version, {"input"}, results);
+}
+
 std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance) {
     constexpr std::size_t limit = 60'000;
     std::string out = fmt::format("### {}\n\n{}\n", cell(suite.options.title), cell(result.sentence));

@@ -544,6 +544,18 @@ TEST(Suites, SarifNamesTheLineOfAViewInItsFile) {
     EXPECT_EQ(place["region"]["startLine"], 7);
 }
 
+TEST(Suites, SarifOfACallThatFailsNamesTheLinesOfItsMistakes) {
+    const InputError error({{{"a suite.toml", 3, 1}, "unknown key"}, {{"--tolerance 1 nit", 0, 0}, "no such unit"}});
+    const Json results = Json::parse(failure_sarif("1", "a suite.toml", error))["runs"][0]["results"];
+    ASSERT_EQ(results.size(), 2u);
+    EXPECT_EQ(results[0]["message"]["text"], "unknown key");
+    EXPECT_EQ(results[0]["locations"][0]["physicalLocation"]["region"]["startLine"], 3);
+    EXPECT_EQ(results[1]["message"]["text"], "--tolerance 1 nit: no such unit");
+    EXPECT_EQ(results[1]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"], "a%20suite.toml");
+    const Json other = Json::parse(failure_sarif("1", "", OutputError("no space")))["runs"][0]["results"];
+    EXPECT_EQ(other[0]["message"]["text"], "no space");
+}
+
 TEST(Hypotheses, SimesPIsTheLevelOfTheFirstDiscovery) {
     const std::vector<double> p{0.001, 0.004, 0.02, 0.5};
     for (const bool dependent : {false, true}) {
