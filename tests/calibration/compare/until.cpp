@@ -1,15 +1,19 @@
 // crescent_until --bounds FILE: reads lines "p df information" and prints |t| with this p, and p of this |t| again; for
 // anytime.py, which compares them with other implementations.
-// crescent_until [--suites 1000] [--pairs 200] [--seed S]: how often suites whose renders are made until they are
-// decided report a change that is not there, how many renders they make, and whether an 8-bit version of a render is
-// decided as its floating-point version. Prints a section of docs/error-rates.md.
+// crescent_until [--suites 1000] [--pairs 200] [--seed S] [--rows FILE]: how often suites whose renders are made until
+// they are decided report a change that is not there, how many renders they make, and whether an 8-bit version of a
+// render is decided as its floating-point version. Prints a section of docs/error-rates.md. FILE gets a line for each
+// suite when it is decided; suites that have one are not decided again.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <map>
+#include <sstream>
 #include <string>
+#include <utility>
 
 #include "base/parallel.h"
 #include "compare/anytime.h"
@@ -108,18 +112,73 @@ struct Outcome {
     bool alarm = false;
 };
 
-std::vector<Outcome> outcomes(std::uint32_t suites, double bias, std::uint32_t seed) {
-    std::vector<Outcome> out(suites);
-    parallel_for(std::uint32_t{0}, suites, [&](std::uint32_t s) {
-        MadeSuite made(seed_of(seed, s), bias);
-        const SuiteResult result = made.decide();
-        for (std::size_t v = 0; v < kinds.size(); ++v) {
-            out[s].states[v] = result.views[v].state;
-            out[s].renders[v] = made.renders[v];
-            const ViewState state = result.views[v].state;
-            out[s].alarm |= state == ViewState::changed || state == ViewState::noisier || state == ViewState::improved;
+/// The outcomes that are decided, by bias and seed of the suite. Each is a line of the file, if there is one.
+class Rows {
+public:
+    explicit Rows(const std::string& path) {
+        if (path.empty()) return;
+        std::ifstream before(path);
+        for (std::string line; std::getline(before, line) && !before.eof();) {  // the last line may be cut off
+            std::istringstream in(line);
+            Key key;
+            Outcome row;
+            in >> key.first >> key.second >> row.alarm;
+            for (std::size_t v = 0; v < kinds.size(); ++v) {
+                std::size_t state = 0;
+                in >> state >> row.renders[v];
+                row.states[v] = static_cast<ViewState>(state);
+            }
+            if (in) rows_[key] = row;
         }
+        file_.open(path, std::ios::app);
+        file_ << '\n';  // ends a line that was cut off
+    }
+    const Outcome* find(double bias, std::uint32_t seed) {
+        const Guard guard(lock_);
+        const auto found = rows_.find({bias, seed});
+        return found == rows_.end() ? nullptr : &found->second;
+    }
+    void add(double bias, std::uint32_t seed, const Outcome& row) {
+        const Guard guard(lock_);
+        rows_[{bias, seed}] = row;
+        if (!file_.is_open()) return;
+        file_ << fmt::format("{} {} {:d}", bias, seed, row.alarm);
+        for (std::size_t v = 0; v < kinds.size(); ++v)
+            file_ << fmt::format(" {} {}", static_cast<std::size_t>(row.states[v]), row.renders[v]);
+        file_ << std::endl;
+    }
+
+private:
+    using Key = std::pair<double, std::uint32_t>;
+    std::map<Key, Outcome> rows_;
+    std::ofstream file_;
+    Mutex lock_;
+};
+
+Outcome outcome(double bias, std::uint32_t seed) {
+    MadeSuite made(seed, bias);
+    const SuiteResult result = made.decide();
+    Outcome out;
+    out.renders = made.renders;
+    for (std::size_t v = 0; v < kinds.size(); ++v) {
+        const ViewState state = out.states[v] = result.views[v].state;
+        out.alarm |= state == ViewState::changed || state == ViewState::noisier || state == ViewState::improved;
+    }
+    return out;
+}
+
+std::vector<Outcome> outcomes(std::uint32_t suites, double bias, std::uint32_t seed, Rows& rows) {
+    std::vector<Outcome> out(suites);
+    std::uint32_t count = 0;
+    Mutex lock;
+    parallel_for(std::uint32_t{0}, suites, [&](std::uint32_t s) {
+        const std::uint32_t own = seed_of(seed, s);
+        if (const Outcome* before = rows.find(bias, own)) out[s] = *before;
+        else rows.add(bias, own, out[s] = outcome(bias, own));
+        const Guard guard(lock);
+        fmt::print(stderr, "\r{} of {} suites, {:g} % brighter", ++count, suites, 100 * bias);
     });
+    fmt::print(stderr, "\n");
     return out;
 }
 
@@ -165,6 +224,7 @@ void print_outcomes(const std::vector<Outcome>& all, double bias, std::uint32_t 
             of(ViewState::noisier) + of(ViewState::improved), of(ViewState::same), of(ViewState::too_few), renders,
             fixed[v] == most_renders ? fmt::format("{} or more", most_renders) : std::to_string(fixed[v]));
     }
+    std::fflush(stdout);
 }
 
 // ---- Renders and their 8-bit versions.
@@ -249,12 +309,14 @@ int main(int argc, char** argv) {
     app.add_option("--suites", suites, "unchanged suites; a tenth as many are changed")->capture_default_str();
     app.add_option("--pairs", pairs, "of a render and its 8-bit version")->capture_default_str();
     app.add_option("--seed", seed, "of all renders")->capture_default_str();
-    std::string bounds;
+    std::string bounds, file;
+    app.add_option("--rows", file, "gets a line for each suite; those that it has are not decided again");
     app.add_option("--bounds", bounds, "lines of p, df and information: prints bounds, and nothing else");
     CLI11_PARSE(app, argc, argv);
     if (!bounds.empty()) return print_bounds(bounds);
     if (suites > 0) {
-        const std::vector<Outcome> all = outcomes(suites, 0, seed);
+        Rows rows(file);
+        const std::vector<Outcome> all = outcomes(suites, 0, seed, rows);
         const auto alarms =
             static_cast<std::uint64_t>(std::count_if(all.begin(), all.end(), [](const Outcome& o) { return o.alarm; }));
         fmt::print(
@@ -262,9 +324,10 @@ int main(int argc, char** argv) {
             "candidate, smallest = {:g} %, alpha = {:g}: {} report a change.\n",
             suites, kinds.size(), side, side, baseline_renders, most_renders, 100 * smallest, alpha,
             rate_cell(alarms, suites));
+        std::fflush(stdout);
         print_outcomes(all, 0, seed_of(seed, 98), "unchanged views");
         for (const double bias : {0.03, 0.1})
-            print_outcomes(outcomes(std::max(20u, suites / 10), bias, seed_of(seed, 99)), bias, seed_of(seed, 97),
+            print_outcomes(outcomes(std::max(20u, suites / 10), bias, seed_of(seed, 99), rows), bias, seed_of(seed, 97),
                 fmt::format("{:g} % brighter", 100 * bias).c_str());
     }
     if (pairs > 0) print_pairs(pairs, seed);
