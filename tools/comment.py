@@ -2,7 +2,10 @@
 """Posts what crescent found as one comment on the pull request or merge request that a job belongs to, and updates that
 comment when it runs again. Python's standard library alone.
 
-    comment.py [--name NAME] [--report URL] FILE...      the files of `crescent compare --markdown`, one below the other
+    comment.py [--name NAME] [--report URL] [--plates FOLDER] FILE...
+
+FILE: of `crescent compare --markdown`, one below the other. FOLDER: plates/ next to the report; the pictures of its worst
+three views are shown from their places next to URL.
 
 GitHub: GITHUB_TOKEN, GITHUB_REPOSITORY, GITHUB_EVENT_PATH, and GITHUB_API_URL, GITHUB_SERVER_URL, GITHUB_RUN_ID.
 GitLab: CRESCENT_GITLAB_TOKEN (scope api), CI_API_V4_URL, CI_PROJECT_ID, CI_MERGE_REQUEST_IID, CI_PIPELINE_URL.
@@ -10,6 +13,7 @@ GitLab: CRESCENT_GITLAB_TOKEN (scope api), CI_API_V4_URL, CI_PROJECT_ID, CI_MERG
 Exit code 0 also if the token may not comment, as for a pull request of a fork: the job's summary has the same text.
 """
 import argparse
+import html
 import json
 import os
 import pathlib
@@ -20,6 +24,7 @@ import urllib.parse
 import urllib.request
 
 LONGEST = 65_000  # characters; GitHub takes 65,536
+SHOWN = 3  # views with pictures
 
 
 def call(method: str, url: str, headers: dict, body=None):
@@ -91,10 +96,26 @@ def post(to, mark: str, text: str):
     call("POST", to.comments, to.headers, {"body": text})
 
 
+def pictures(folder: pathlib.Path, report: str) -> str:
+    """A table of the pictures of the worst views, "1-VIEW-baseline.png" and so on, from where the report is published."""
+    rows = []
+    for number in range(1, SHOWN + 1):
+        cells = []
+        for kind in ("baseline", "candidate", "difference"):
+            for file in sorted(folder.glob(f"{number}-*-{kind}.png")):
+                address = urllib.parse.urljoin(report, f"{folder.name}/{urllib.parse.quote(file.name)}")
+                name = file.name.removesuffix(f"-{kind}.png").removeprefix(f"{number}-")
+                cells.append(f'{name}, {kind}<br><img width="260" alt="{kind}" src="{html.escape(address)}">')
+        if cells:
+            rows.append(f"<tr><td>{'</td><td>'.join(cells)}</td></tr>")
+    return f"<table>{''.join(rows)}</table>" if rows else ""
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description="Posts what crescent found as one comment.")
     parser.add_argument("--name", default="crescent", help="comments of other names are others")
     parser.add_argument("--report", default="", help="an address where the report opens")
+    parser.add_argument("--plates", type=pathlib.Path, help="the folder of pictures, which is published with the report")
     parser.add_argument("files", nargs="+")
     arguments = parser.parse_args()
     to = place()
@@ -106,7 +127,8 @@ def main() -> int:
     if not parts:
         parts = ["crescent ended before there was a result; the log of the run has the reason."]
     links = f"[Report]({arguments.report}), [run]({to.run()})" if arguments.report else f"[Run]({to.run()})"
-    end = f"\n\n{links}\n"
+    shown = pictures(arguments.plates, arguments.report) if arguments.plates and arguments.report else ""
+    end = f"\n\n{shown}\n\n{links}\n" if shown else f"\n\n{links}\n"
     text = mark + "\n" + "\n\n".join(parts)
     post(to, mark, text[:LONGEST - len(end)] + end)
     return 0

@@ -147,6 +147,7 @@ int test_suite(const CompareFlags& flags) {
     if (!flags.markdown.empty()) write_whole(flags.markdown, suite_markdown(suite, result, provenance));
     if (!flags.sarif.empty()) write_whole(flags.sarif, suite_sarif(suite, result, flags.new_baseline, provenance));
     staging.write("report.html", suite_html(suite, result, provenance));
+    for (const auto& [name, bytes] : suite_plates(result)) staging.write(name, bytes);
     staging.commit(progress);
     progress.clear();
     print(suite_summary(suite, result));

@@ -88,6 +88,23 @@ assert all(c[3] == "Bearer secret" for c in calls), calls
 PY
 GITHUB_API_URL=$url/forbidden expect 0 comment first.md
 grep -q '::warning::crescent: no comment was posted: 403' printed || die "not named: $(cat printed)"
+# With an address of the report, the pictures of its worst three views are shown from their places next to it.
+mkdir plates
+for name in 1-lamp-baseline 1-lamp-candidate 1-lamp-difference 1-lamp-noise 2-b--i--baseline 4-wall-difference; do
+    : >"plates/$name.png"
+done
+expect 0 comment --name plates --report 'https://example.org/r/report.html?a=1&b' --plates plates first.md
+expect 0 comment --name plates --plates plates first.md
+expect 0 python3 - <<'PY'
+import json
+calls = [json.loads(line) for line in open("calls")]
+shown, plain = [c[2]["body"] for c in calls if c[2]][-2:]
+for kind in ("baseline", "candidate", "difference"):
+    assert f'src="https://example.org/r/plates/1-lamp-{kind}.png"' in shown, shown
+assert "2-b--i--baseline" in shown and "4-wall" not in shown and "noise" not in shown, shown
+assert shown.index("| changed | lamp |") < shown.index("<table>") < shown.index("[Report]("), shown
+assert "<img" not in plain, plain
+PY
 python3 -c 'print("x" * 100000)' >long.md
 expect 0 comment --name long long.md
 expect 0 python3 -c 'import json; last = [json.loads(line) for line in open("calls")][-1]

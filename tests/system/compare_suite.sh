@@ -111,6 +111,25 @@ expect 0 "$CRESCENT" compare part/suite.toml --baseline part/bucket --accept cha
 expect 0 "$CRESCENT" compare part/suite.toml --baseline part/bucket --out nothing --quiet
 expect 1 "$CRESCENT" compare part/suite.toml --out nothing --quiet
 
+# Pictures of the views that failed, for a comment; none of those that did not.
+ls one/plates | grep -q '^1-changed-significance.png$' || die "no pictures: $(ls one one/plates)"
+! ls one/plates | grep -qE 'same|improved|fixed' || die "pictures of views that are the same: $(ls one/plates)"
+
+# Folders without a file: one image for each view, whose names may have a '-', besides several of a view.
+mkdir -p flat/a flat/b
+for side in a b; do
+    for view in lamp glass-ball glass-cup; do cp out/fixed-0.pfm "flat/$side/$view.pfm"; done
+    for seed in 1 2; do cp "out/same-$seed.pfm" "flat/$side/wall-$seed.pfm"; done
+done
+expect 0 "$CRESCENT" compare --baseline flat/a --candidate flat/b --json flat.json --out nothing --quiet
+expect 0 "$CRESCENT" compare --baseline flat/a --candidate flat/b --accept --because all --quiet
+expect 0 "$CRESCENT" compare --baseline flat/a --candidate flat/b --out nothing --quiet
+[ "$(ls flat/a)" = "$(printf '%s\n' baseline.json glass-ball.pfm glass-cup.pfm lamp.pfm wall-1.pfm wall-2.pfm)" ] ||
+    die "accepted otherwise: $(ls flat/a)"
+expect 0 /usr/bin/python3 -c 'import json
+views = {v["view"]: v["renders"]["candidate"] for v in json.load(open("flat.json"))["views"]}
+assert views == {"lamp": 1, "glass-ball": 1, "glass-cup": 1, "wall": 2}, views'
+
 # Folders without a file.
 mkdir -p folders/a/crown folders/b/crown
 bad() {
@@ -149,6 +168,20 @@ cp all.xml stale.xml
 bad "did you mean 'alpha'?" wrong-key.toml --junit stale.xml --out nowhere
 grep -q '<error' stale.xml && ! grep -q 'name="same"' stale.xml || die "the JUnit file of an earlier call stayed"
 
+# So does a SARIF file, which names the line; one of arms too.
+bad "did you mean 'alpha'?" wrong-key.toml --sarif stale.sarif --out nowhere
+expect 0 /usr/bin/python3 -c 'import json
+place = json.load(open("stale.sarif"))["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
+assert place == {"artifactLocation": {"uri": "wrong-key.toml"}, "region": {"startLine": 2}}, place'
+expect 2 "$CRESCENT" compare --arm 'a=absent*.pfm' --arm 'b=out/same-*.pfm' --sarif arms.sarif --out nowhere
+grep -q 'absent\*.pfm' arms.sarif || die "the failure is not in the SARIF file"
+
+# A pointer of Git LFS is named, also without a manifest.
+part same
+for file in part/base/*; do printf 'version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 1\n' >"$file"; done
+expect 2 "$CRESCENT" compare part/suite.toml --out nothing --quiet
+grep -q 'git lfs pull' printed || die "the pointer is not named: $(cat printed)"
+
 # A baseline that differs from its manifest is named; so is a missing one.
 part same changed
 expect 0 "$CRESCENT" compare part/suite.toml --accept --quiet
@@ -168,20 +201,6 @@ expect 3 "$CRESCENT" compare suite.toml --json absent/folder/x.json --out nothin
 hash_of() { cat "$1"/same-*.pfm | sha256sum; }
 new=$(hash_of out)
 for delay in 0.005 0.01 0.02 0.03 0.05; do
-# So does a SARIF file, which names the line; one of arms too.
-bad "did you mean 'alpha'?" wrong-key.toml --sarif stale.sarif --out nowhere
-expect 0 /usr/bin/python3 -c 'import json
-place = json.load(open("stale.sarif"))["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
-assert place == {"artifactLocation": {"uri": "wrong-key.toml"}, "region": {"startLine": 2}}, place'
-expect 2 "$CRESCENT" compare --arm 'a=absent*.pfm' --arm 'b=out/same-*.pfm' --sarif arms.sarif --out nowhere
-grep -q 'absent\*.pfm' arms.sarif || die "the failure is not in the SARIF file"
-
-# A pointer of Git LFS is named, also without a manifest.
-part same
-for file in part/base/*; do printf 'version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 1\n' >"$file"; done
-expect 2 "$CRESCENT" compare part/suite.toml --out nothing --quiet
-grep -q 'git lfs pull' printed || die "the pointer is not named: $(cat printed)"
-
     rm -rf part && mkdir -p part && cp -r base out part/
     sed '/^\[view/,$d' suite.toml >part/suite.toml
     old=$(hash_of part/base)

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compare/compare.h"
@@ -108,9 +109,9 @@ struct SuiteFlags {
 bool is_suite(const std::string& file);
 /// Reads a suite file ("": none, the folders of the flags) and finds the renders of each view. Throws InputError.
 Suite read_suite(const std::string& file, const SuiteFlags& flags);
-/// Returns the table [suite] that flags alone make. Throws InputError.
 /// Returns the files of each pattern; a file that several match belongs to the first of them.
 std::vector<std::vector<MatchedFile>> files_of_patterns(const std::vector<FilePattern>& patterns);
+/// Returns the table [suite] that flags alone make. Throws InputError.
 SuiteOptions read_suite_options(const std::vector<CompareFlag>& keys);
 /// Returns the manual of a suite file.
 std::string suite_schema_text();
@@ -261,15 +262,18 @@ std::string suite_sarif(const Suite& suite, const SuiteResult& result, bool new_
 std::string suite_junit(const Suite& suite, const SuiteResult& result, bool new_baseline);
 /// One case: the call failed before there was a result.
 std::string failure_junit(const std::string& file, const std::string& message);
-/// A table of all views that are not the same, at most 60 kB.
 /// The same in SARIF, with the places of an InputError that are in `file`. `version`: of crescent.
 std::string failure_sarif(const std::string& version, const std::string& file, const std::exception& error);
+/// A table of all views that are not the same, at most 60 kB.
 std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance);
 std::string suite_summary(const Suite& suite, const SuiteResult& result);
 /// One page that works offline.
 std::string suite_html(const Suite& suite, const SuiteResult& result, const Provenance& provenance);
 
-/// Views in the order of their states, changed first, then by name.
+/// The pictures of the views that are not the same or improved, as "plates/1-VIEW-difference.png", worst views first.
+std::vector<std::pair<std::string, std::vector<unsigned char>>> suite_plates(const SuiteResult& result);
+
+/// Views in the order of their states, changed first, then by the size of what changed, then by name.
 std::vector<const ViewResult*> by_state(const SuiteResult& result);
 
 // ---- The pictures of a view in the report: photographs of the means of both sides and a map of their relative
@@ -279,15 +283,15 @@ std::vector<const ViewResult*> by_state(const SuiteResult& result);
 void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSource& source, ViewResult& out);
 /// For a view with both. The size follows from the number of views, larger if the view may have changed.
 void picture_both_sides(const Suite& suite, const RenderStats& stats, const BiasResult& means, ViewResult& out);
+/// Adds the tiles in which the variance of the candidate differs from that of the baseline, if there are any. After the
+/// other pictures, whose size it has.
+void picture_noise(const RenderStats& stats, const NoiseResult& noise, ViewResult& out);
 
 // ---- --plan: how many renders of each side, with how many samples, a view needs, from the variance of the baseline
 // only.
 
 // ---- The difference of means that a test finds with a probability of 90 %, and the renders that it needs.
 
-/// Adds the tiles in which the variance of the candidate differs from that of the baseline, if there are any. After the
-/// other pictures, whose size it has.
-void picture_noise(const RenderStats& stats, const NoiseResult& noise, ViewResult& out);
 /// Returns the difference that a repetition of the test finds with a probability of 90 % at this level, if the error of
 /// a mean is known only from an estimate with `estimate_df` degrees of freedom. The estimate may be too small by
 /// chance, and so may that of the repetition: the difference is larger than that of detectable() (by a fifth for 8

@@ -1,5 +1,6 @@
 // A suite's result as JSON, JUnit, Markdown and a summary for the terminal.
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "base/text.h"
@@ -110,6 +111,29 @@ std::string cell(const std::string& text) {
     return out;
 }
 
+double relative_size(double candidate, double baseline) {
+    if (candidate == baseline) return 0;
+    return baseline == 0 ? 1 : std::fabs(candidate / baseline - 1);
+}
+
+/// The largest relative change of what differs in a view: a region, a tile, a pixel of a view without noise, or the
+/// variance; infinite if values are not finite.
+double size_of_change(const ViewResult& view) {
+    if (!view.non_finite.empty()) return HUGE_VAL;
+    double out = 0;
+    for (const VarianceTest& t : view.variances)
+        if (t.different) out = std::max(out, relative_size(t.candidate, t.baseline));
+    if (view.exact_difference) out = std::max(out, std::min(1.0, view.exact_difference->share));
+    if (!view.means) return out;
+    for (const MeanTest& t : view.means->regions) {
+        if (t.differs) out = std::max(out, relative_size(t.a, t.b));
+        for (const MeanTest& c : t.channels)
+            if (c.differs) out = std::max(out, relative_size(c.a, c.b));
+    }
+    for (const Found& f : view.means->tiles_found) out = std::max(out, relative_size(f.a, f.b));
+    return out;
+}
+
 const char* mark_of(ViewState state) {
     switch (state) {
         case ViewState::unreadable:
@@ -128,7 +152,9 @@ std::vector<const ViewResult*> by_state(const SuiteResult& result) {
     std::vector<const ViewResult*> out;
     for (const ViewResult& view : result.views) out.push_back(&view);
     std::sort(out.begin(), out.end(), [](const ViewResult* a, const ViewResult* b) {
-        return a->state != b->state ? a->state < b->state : a->name < b->name;
+        if (a->state != b->state) return a->state < b->state;
+        const double x = size_of_change(*a), y = size_of_change(*b);
+        return x != y ? x > y : a->name < b->name;
     });
     return out;
 }
@@ -298,6 +324,26 @@ Json view_of(const ViewResult& view) {
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::vector<unsigned char>>> suite_plates(const SuiteResult& result) {
+    std::vector<std::pair<std::string, std::vector<unsigned char>>> out;
+    std::size_t number = 0;
+    for (const ViewResult* view : by_state(result)) {
+        if (is_good(view->state)) continue;
+        std::string name = view->name;  // a build server refuses some characters in the names of files
+        for (char& c : name)
+            if (!std::isalnum(static_cast<unsigned char>(c)) &&
+                std::string_view("._-").find(c) == std::string_view::npos)
+                c = '-';
+        ++number;
+        const ViewPictures& p = view->pictures;
+        for (const auto& [kind, bytes] : {std::pair{"baseline", &p.baseline}, std::pair{"candidate", &p.candidate},
+                 std::pair{"difference", &p.difference}, std::pair{"significance", &p.significance},
+                 std::pair{"noise", &p.noise}})
+            if (!bytes->empty()) out.emplace_back(fmt::format("plates/{}-{}-{}.png", number, name, kind), *bytes);
+    }
+    return out;
+}
 
 std::string suite_html(const Suite& suite, const SuiteResult& result, const Provenance& provenance) {
     Json states = Json::array(), views = Json::array();

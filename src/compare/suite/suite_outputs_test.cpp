@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <utility>
+
 #include "compare/suite/suite.h"
 
 namespace crescent {
@@ -29,6 +31,49 @@ TEST(SuiteOutputs, ListTheMostSevereViewsFirst) {
     EXPECT_EQ(names,
         (std::vector<std::string>{
             "unreadable", "a", "changed", "noisier", "missing", "new", "too few renders", "improved", "same"}));
+}
+
+TEST(SuiteOutputs, ListTheLargestChangesFirst) {
+    SuiteResult result;
+    for (const auto& [name, change] : {std::pair{"a", 1.02}, std::pair{"b", 1.3}, std::pair{"c", 0.5}}) {
+        ViewResult& view = result.views.emplace_back();
+        view.name = name;
+        view.state = ViewState::changed;
+        MeanTest& test = view.means.emplace().regions.emplace_back();
+        test.b = 1;
+        test.a = change;
+        test.differs = true;
+    }
+    result.views[0].means->tiles_found.push_back({.a = 1.4, .b = 1});
+    ViewResult& failing = result.views.emplace_back();
+    failing.name = "d";
+    failing.state = ViewState::changed;
+    failing.non_finite = "1 pixel is not finite";
+    std::vector<std::string> names;
+    for (const ViewResult* view : by_state(result)) names.push_back(view->name);
+    EXPECT_EQ(names, (std::vector<std::string>{"d", "c", "a", "b"}));
+}
+
+TEST(SuiteOutputs, PlatesHaveNamesThatABuildServerTakes) {
+    SuiteResult result = every_state();
+    for (ViewResult& view : result.views) view.pictures.baseline = view.pictures.difference = {1};
+    result.views[1].name = "a:b/\"<c>\n";             // improved
+    result.views.back().name = "$(x) \xc3\xa9?*|\r";  // unreadable: the first
+    const auto plates = suite_plates(result);
+    ASSERT_EQ(plates.size(), 12u);  // two of each view, not of the same and the improved one
+    EXPECT_EQ(plates[0].first, "plates/1---x---------baseline.png");
+    EXPECT_EQ(plates[3].first, "plates/2-changed-difference.png");
+    for (const auto& [name, bytes] : plates)
+        EXPECT_EQ(name.find_first_of("\":<>|*?\r\n\\ "), std::string::npos) << name;
+}
+
+TEST(SuiteOutputs, JsonNamesNoViewIdenticalWhoseOtherChannelsDiffer) {
+    SuiteResult result;
+    ViewResult& view = result.views.emplace_back();
+    view.means.emplace().identical = true;
+    EXPECT_EQ(nlohmann::json::parse(suite_json({}, result, false, {}))["views"][0]["identical"], true);
+    view.other_channels = "A in 1 pixel";
+    EXPECT_EQ(nlohmann::json::parse(suite_json({}, result, false, {}))["views"][0]["identical"], false);
 }
 
 TEST(SuiteOutputs, JunitFailsErrsAndSkips) {
