@@ -38,7 +38,29 @@ import yaml
 steps = yaml.safe_load(open("action.yml"))["runs"]["steps"]
 open("run.sh", "w").write(next(s for s in steps if s.get("id") == "run")["run"])
 PY
-mkdir bin && ln -s "$CRESCENT" bin/crescent
+mkdir bin
+# The script that accepts: a name of any kind reaches crescent as one word, and is no flag. The tools are recorded.
+python3 - <<'PY'
+import yaml
+steps = yaml.safe_load(open(".github/workflows/accept.yml"))["jobs"]["accept"]["steps"]
+open("accept.sh", "w").write(next(s for s in steps if "COMMENT" in s.get("env", {}))["run"])
+PY
+for tool in crescent python3 gh git; do
+    printf '#!/bin/bash\nprintf "%%s\\n" "${0##*/}" "$@" >>recorded\n' >"bin/$tool" && chmod +x "bin/$tool"
+done
+accepts() { # COMMENT
+    rm -f recorded
+    COMMENT=$1 AUTHOR='$(touch ran)' NUMBER=7 PACKAGE=package PATH="$PWD/bin:$PATH" \
+        bash --noprofile --norc -eo pipefail accept.sh
+}
+for view in lamp 'a b' '-rf' '$(touch ran);x' "q'uote" 'é*'; do
+    expect 0 accepts "/crescent accept $view"$' \r\nthanks'
+    grep -qxF -- "--accept=$view" recorded || die "'$view' is not accepted: $(cat recorded)"
+    grep -qxF -- 'accepted by $(touch ran) in #7' recorded || die "no reason: $(cat recorded)"
+done
+expect 2 accepts $'/crescent accept  \r\nlamp'
+[ ! -e ran ] && [ ! -e recorded ] || die "a comment was run, or an empty name accepted: $(cat recorded)"
+rm bin/* && ln -s "$CRESCENT" bin/crescent
 action() { # SUITE CHECK
     rm -rf summary outputs reports
     SUITE=$1 CHECK=$2 OUT=${3:-reports} ALLOW_INCONCLUSIVE=${4:-false} RENDER=${5:-} BUDGET=1min GITHUB_STEP_SUMMARY=$PWD/summary GITHUB_OUTPUT=$PWD/outputs PATH="$PWD/bin:$PATH" \
