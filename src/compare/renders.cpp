@@ -82,7 +82,6 @@ Render kept(Render render, const ReadingOptions& options) {
 
 Render read_render(const std::string& path, const std::string& layer, const ReadingOptions& options) {
     const OpenFile file(path);
-    constexpr std::string_view lfs_pointer = "version https://git-lfs";
     std::array<char, lfs_pointer.size()> first{};
     const std::string_view head(first.data(), file.read_some(0, first));
     const auto with_state = [&](Render render) {

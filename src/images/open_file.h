@@ -38,6 +38,9 @@ struct FileState {
     bool operator==(const FileState&) const = default;
 };
 
+/// What a file begins with that Git LFS has not pulled.
+inline constexpr std::string_view lfs_pointer = "version https://git-lfs";
+
 class OpenFile {
 public:
     /// Throws InputError if it is not a regular file (a folder, pipe, socket or device), without waiting for it.

@@ -30,8 +30,7 @@ public:
     Reader(const std::string& text, const std::string& file) : text_(text), file_(file) {}
 
     Manifest read() {
-        if (text_.starts_with("version https://git-lfs"))
-            fail("expected a manifest, found a pointer of Git LFS: run git lfs pull");
+        if (text_.starts_with(lfs_pointer)) fail("expected a manifest, found a pointer of Git LFS: run git lfs pull");
         for (const char* marker : {"<<<<<<<", "=======", ">>>>>>>"})
             if (const std::size_t found = text_.find(marker);
                 found != std::string::npos && (found == 0 || text_[found - 1] == '\n'))
@@ -116,9 +115,8 @@ private:
 
 bool is_lfs_pointer(const std::string& path) {
     const OpenFile file(path);
-    constexpr std::string_view begin = "version https://git-lfs";
-    std::string first(begin.size(), '\0');
-    return file.read_some(0, first) == begin.size() && first == begin;
+    std::string first(lfs_pointer.size(), '\0');
+    return file.read_some(0, first) == lfs_pointer.size() && first == lfs_pointer;
 }
 
 /// Returns how a file that is listed differs; "" if it does not.
