@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,10 @@ namespace crescent {
 
 inline constexpr const char* readable_formats =
     "a render (OpenEXR, PFM, NPY, Radiance HDR, PNG, JPEG, BMP, TGA, PGM or PPM)";
+
+/// How the names of such files end.
+inline constexpr std::array image_endings = {
+    ".exr", ".pfm", ".hdr", ".png", ".jpg", ".jpeg", ".bmp", ".tga", ".ppm", ".pgm", ".npy"};
 
 /// A render and what its file states about it.
 struct Render {

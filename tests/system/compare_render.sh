@@ -79,6 +79,11 @@ grep -q 'expected a time above 0' said || die "$(cat said)"
 a="python3 pt.py {view} {seed} {out}"
 expect 0 "$CRESCENT" compare --a "$a" --b "$a" --views lamp,wall --smallest 8% --budget 5min --jobs 2 --quiet --out two
 [ -d two-renders/a ] && grep -q 'At equal time b has' printed || die "$(cat printed)"
+# A command states the format, for a program that goes by the end of the name.
+expect 0 "$CRESCENT" compare --a "python3 pt.py {view} {seed} {out}.png" --b "$a" --views lamp --smallest 8% --quiet --out png
+ls png-renders/a | grep -q '^lamp-[0-9]*.png$' && ls png-renders/b | grep -q '^lamp-[0-9]*.exr$' || die "$(ls png-renders/*)"
+expect 2 "$CRESCENT" compare suite.toml --render "python3 pt.py {view} {seed} {out}.exr" --quiet --out report
+grep -q 'with the ending of the pattern' said || die "$(cat said)"
 expect 1 "$CRESCENT" compare --a "$a" --b "$a 1.2" --views other --smallest 8% --budget 5min --quiet --out three
 expect 2 "$CRESCENT" compare --a "$a" --b "$a" --quiet
 grep -q 'expected the views' said || die "$(cat said)"

@@ -45,6 +45,18 @@ std::string with_values(
     return result;
 }
 
+/// Removes the ending of a picture from "{out}.png" in a word, and returns it without the dot; "" if there is none.
+std::string take_extension(std::string& word) {
+    constexpr std::string_view out = "{out}";
+    const std::size_t found = word.find(out);
+    if (found == std::string::npos) return "";
+    const std::size_t end = found + out.size();
+    const auto ending = std::ranges::find(image_endings, std::string_view(word).substr(end));
+    if (ending == image_endings.end()) return "";
+    word.erase(end);
+    return *ending + 1;
+}
+
 /// The last line that a program wrote to its standard error; "" if there is none.
 std::string last_line(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
@@ -126,7 +138,7 @@ std::vector<std::string> RenderCommand::for_render(
 }
 
 RenderCommand parse_render_command(const std::string& text, const std::string& flag) {
-    RenderCommand out{text, {}};
+    RenderCommand out{text, {}, {}};
     const auto fail = [&](const std::string& message) { throw InputError({flag, 0, 0}, message); };
     std::string word;
     bool begun = false;
@@ -156,6 +168,13 @@ RenderCommand parse_render_command(const std::string& text, const std::string& f
     if (begun) out.words.push_back(std::move(word));
     if (out.words.empty()) fail("expected a command");
     if (!contains(out.words, "{out}")) fail("expected {out}, the file to write, in the command");
+    for (std::string& each : out.words) {
+        const std::string extension = take_extension(each);
+        if (extension.empty()) continue;
+        if (!out.extension.empty() && out.extension != extension)
+            fail(fmt::format("expected one ending of {{out}}, found .{} and .{}", out.extension, extension));
+        out.extension = extension;
+    }
     return out;
 }
 

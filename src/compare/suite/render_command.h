@@ -16,14 +16,15 @@ namespace crescent {
 /// A command as words. No shell reads them, so names of views cannot be code.
 struct RenderCommand {
     std::string text;
-    std::vector<std::string> words;
+    std::vector<std::string> words;  // {out} includes the ending
+    std::string extension;           // "png" of {out}.png; "": not stated
     bool has_view() const;
     bool has_seed() const;
     /// Returns the words with {view}, {seed} and {out} replaced.
     std::vector<std::string> for_render(const std::string& view, std::uint64_t seed, const std::string& out) const;
 };
 /// Splits a command at blanks, which quotes and backslashes may group. Throws InputError with `flag` if a quote is
-/// open, or {out} is missing.
+/// open, {out} is missing, or has two endings.
 RenderCommand parse_render_command(const std::string& text, const std::string& flag);
 
 /// One render to make.

@@ -241,9 +241,6 @@ void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baselin
     suite.views = std::move(views);
 }
 
-constexpr std::array image_endings = {
-    ".exr", ".pfm", ".hdr", ".png", ".jpg", ".jpeg", ".bmp", ".tga", ".ppm", ".pgm", ".npy"};
-
 /// Returns the patterns of a folder with VIEW/*.exr, VIEW-SEED.exr or VIEW.exr, and those of other endings. A seed ends
 /// with a digit, because names of views may have a '-'.
 std::vector<std::string> patterns_in(const std::string& folder, const std::vector<std::string>& endings) {

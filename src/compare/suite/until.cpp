@@ -270,7 +270,13 @@ private:
         const std::size_t wanted = next_count(view, side.size());
         std::uint64_t& seed = baseline ? view.next_baseline_seed : view.next_seed;
         for (std::size_t k = side.size(); k < wanted; ++k, ++seed) {
-            jobs.push_back({&command, files.name, path_of_render(patterns, files.name, seed, sides_.extension), seed});
+            const std::string& extension = sides_.extension_of(command);
+            const std::string path = path_of_render(patterns, files.name, seed, extension);
+            if (!command.extension.empty() && !path.ends_with("." + extension))
+                throw InputError({"--render", 0, 0},
+                    fmt::format("expected {{out}} with the ending of the pattern, as in {}, found {{out}}.{}", path,
+                        extension));
+            jobs.push_back({&command, files.name, path, seed});
             owners.emplace_back(&view, baseline);
         }
     }
@@ -336,7 +342,8 @@ Suite suite_of_commands(const RenderSides& sides, const std::vector<std::string>
     Suite out;
     out.options = options;
     for (const char* side : {"a", "b"}) {
-        const std::string pattern = escape_pattern(folder) + "/" + side + "/{view}-*." + sides.extension;
+        const RenderCommand& command = *side == 'a' ? *sides.baseline : sides.candidate;
+        const std::string pattern = escape_pattern(folder) + "/" + side + "/{view}-*." + sides.extension_of(command);
         const SourceLocation place{fmt::format("--{}", side), 0, 0};
         (*side == 'a' ? out.options.baseline : out.options.candidate) = {pattern};
         (*side == 'a' ? out.baseline : out.candidate).emplace_back(pattern, place, true);

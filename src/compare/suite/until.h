@@ -22,7 +22,10 @@ struct RenderSides {
     std::optional<RenderCommand> baseline;  // none: its renders are there
     RenderCommand candidate;
     bool same_seeds = false;        // both sides have the same
-    std::string extension = "exr";  // of files whose pattern leaves it open
+    std::string extension = "exr";  // of files whose pattern and command leave it open
+    const std::string& extension_of(const RenderCommand& command) const {
+        return command.extension.empty() ? extension : command.extension;
+    }
 };
 
 /// When to stop, and how many renderers run at a time.

@@ -283,7 +283,10 @@ TEST_F(Programs, AreGivenTheirValuesAsWordsThatNoShellReads) {
     const RenderCommand command = parse_render_command("pt '{view}' -s {seed} \"a b\" c\\ d -o={out}", "--render");
     EXPECT_THAT(command.for_render("$(touch x); {out}", 7, "/o"),
         ::testing::ElementsAre("pt", "$(touch x); {out}", "-s", "7", "a b", "c d", "-o=/o"));
-    for (const char* bad : {"", "pt", "pt 'x {out}", "pt {out} \\"})
+    const RenderCommand png = parse_render_command("pt -o={out}.png {out}.log", "--render");
+    EXPECT_EQ(png.extension, "png");
+    EXPECT_THAT(png.for_render("v", 7, "/o.png"), ::testing::ElementsAre("pt", "-o=/o.png", "/o.png.log"));
+    for (const char* bad : {"", "pt", "pt 'x {out}", "pt {out} \\", "pt {out}.png {out}.exr"})
         EXPECT_NE(refusal([&] { return parse_render_command(bad, "--render"); }), "") << bad;
 }
 
