@@ -122,9 +122,12 @@ struct CompareFlags {
     std::string until, budget, timeout;   // "decided"; times such as 10min
     std::vector<std::string> made_views;  // of a and b
     int jobs = 1;
-    bool makes_renders() const { return !render.empty() || !a.empty() || !b.empty(); }
+    bool makes_both_sides() const { return !a.empty() || !b.empty(); }
+    bool makes_renders() const { return !render.empty() || makes_both_sides(); }
 };
 int compare(const CompareFlags& flags);
+/// Splits "NAME=VALUE" of a flag; `what` is used in the error message.
+std::pair<std::string, std::string> name_and_value(const std::string& flag, const std::string& text, const char* what);
 /// "0.04" of "4 %", as TOML; another text as it is.
 inline std::string number_of_share(std::string text) {
     if (!text.ends_with('%')) return text;
@@ -142,7 +145,7 @@ int compare_suite(const CompareFlags& flags);
 /// Makes the renders of a suite, or those of two commands, and decides; `staging` and outputs are those of a suite.
 SuiteResult make_renders_of(const CompareFlags& flags, Suite& suite, Progress& progress);
 /// The suite of --a and --b. Throws InputError.
-Suite suite_of_two(const CompareFlags& flags, const SuiteOptions& options);
+Suite suite_of_two(const CompareFlags& flags, std::vector<CompareFlag> keys);
 /// Writes files that say that the call failed, in place of those of an earlier call ("": none).
 void report_failure(
     const std::string& junit, const std::string& sarif, const std::string& file, const std::exception& error);

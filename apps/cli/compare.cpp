@@ -11,14 +11,6 @@ namespace crescent::cli {
 
 namespace {
 
-/// Splits "NAME=VALUE" of a flag; `what` is used in the error message.
-std::pair<std::string, std::string> cut(const std::string& flag, const std::string& text, const char* what) {
-    const std::size_t equals = text.find('=');
-    if (equals == 0 || equals == std::string::npos)
-        throw InputError({flag + " " + text, 0, 0}, std::string("expected ") + what);
-    return {text.substr(0, equals), text.substr(equals + 1)};
-}
-
 /// Returns the arms of the flags and of the file.
 std::vector<std::string> arms_of(const CompareFlags& flags) {
     std::vector<std::string> out;
@@ -39,7 +31,7 @@ void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std
     const std::vector<std::string> arms = arms_of(flags);
     for (const std::string& text : all) {
         if (text.find('=') == std::string::npos) continue;
-        const auto [arm, value] = cut(flag, text, "NAME=NUMBER");
+        const auto [arm, value] = name_and_value(flag, text, "NAME=NUMBER");
         if (std::find(arms.begin(), arms.end(), arm) == arms.end())
             throw InputError(
                 {flag + " " + text, 0, 0}, fmt::format("no arm '{}': expected one of {}", arm, fmt::join(arms, ", ")));
@@ -71,16 +63,16 @@ void layers_of(std::vector<CompareFlag>& out, const CompareFlags& flags) {
 std::vector<CompareFlag> flags_of(const CompareFlags& f) {
     std::vector<CompareFlag> out;
     for (const std::string& text : f.arms) {
-        const auto [name, files] = cut("--arm", text, "NAME=FILES");
+        const auto [name, files] = name_and_value("--arm", text, "NAME=FILES");
         out.push_back({{"arms", name, "files"}, files, false, "--arm " + text});
     }
     for (const std::string& text : f.reference) out.push_back({{"reference"}, text, false, "--reference " + text});
     for (const std::string& text : f.regions) {
-        const auto [name, box] = cut("--region", text, "NAME=x0,y0,x1,y1");
+        const auto [name, box] = name_and_value("--region", text, "NAME=x0,y0,x1,y1");
         out.push_back({{"regions", name, "box"}, "[" + box + "]", true, "--region " + text});
     }
     for (const std::string& text : f.masks) {
-        const auto [name, file] = cut("--mask", text, "NAME=FILE");
+        const auto [name, file] = name_and_value("--mask", text, "NAME=FILE");
         out.push_back({{"masks", name, "file"}, file, false, "--mask " + text});
     }
     layers_of(out, f);
@@ -164,6 +156,13 @@ int compare_arms(const CompareFlags& flags, const std::string& out) {
 }
 
 }  // namespace
+
+std::pair<std::string, std::string> name_and_value(const std::string& flag, const std::string& text, const char* what) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos)
+        throw InputError({flag + " " + text, 0, 0}, std::string("expected ") + what);
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
 
 int compare(const CompareFlags& flags) {
     if (flags.schema)

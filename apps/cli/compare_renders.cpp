@@ -44,11 +44,21 @@ RenderSides sides_of(const CompareFlags& flags) {
 
 }  // namespace
 
-Suite suite_of_two(const CompareFlags& flags, const SuiteOptions& options) {
+Suite suite_of_two(const CompareFlags& flags, std::vector<CompareFlag> keys) {
     if (flags.a.empty() || flags.b.empty() || !flags.render.empty() || !flags.file.empty())
         throw InputError({flags.a.empty() ? "--a" : "--b", 0, 0}, "expected both --a and --b, and no suite file");
     const std::string out = flags.out.empty() ? "out/compare" : flags.out;
-    return suite_of_commands(sides_of(flags), flags.made_views, out + "-renders", options);
+    const RenderSides sides = sides_of(flags);
+    const std::vector<std::string> views = views_of_commands(sides, flags.made_views);
+    for (const std::string& view : views)
+        for (const std::string& region : flags.regions) {
+            const auto [name, box] = name_and_value("--region", region, "NAME=x0,y0,x1,y1");
+            keys.push_back({{"view", view, "regions", name, "box"}, "[" + box + "]", true, "--region " + region});
+        }
+    Suite stated = read_suite_flags(keys);
+    stated.options.noise = NoiseDemand::ignore;  // two algorithms have one mean, and each its own noise
+    stated.options.title = "two programs: a is the baseline, b the candidate";
+    return suite_of_commands(sides, views, out + "-renders", stated);
 }
 
 SuiteResult make_renders_of(const CompareFlags& flags, Suite& suite, Progress& progress) {

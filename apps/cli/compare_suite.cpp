@@ -12,15 +12,20 @@ namespace crescent::cli {
 
 namespace {
 
+/// The path of a folder, which may be an address that begins with file://.
+std::string folder_of(const char* flag, const std::string& text) {
+    constexpr std::string_view local = "file://";
+    if (text.starts_with("file:///")) return text.substr(local.size());
+    if (text.find("://") == std::string::npos) return text;
+    throw InputError({fmt::format("{} {}", flag, text), 0, 0},
+        "expected a folder, found an address: mount it, and give the folder where it is mounted");
+}
+
 /// The keys of [suite] that the flags replace.
 SuiteFlags suite_flags(const CompareFlags& f) {
-    for (const auto& [flag, folder] : {std::pair{"--baseline", f.baseline}, std::pair{"--candidate", f.candidate}})
-        if (folder.find("://") != std::string::npos)
-            throw InputError({fmt::format("{} {}", flag, folder), 0, 0},
-                "expected a folder, found an address: mount it, and give the folder where it is mounted");
     SuiteFlags out;
-    out.baseline = f.baseline;
-    out.candidate = f.candidate;
+    out.baseline = folder_of("--baseline", f.baseline);
+    out.candidate = folder_of("--candidate", f.candidate);
     out.baseline_only = f.plan || (f.accept && !f.views.empty()) || !f.render.empty();
     const auto add = [&](const char* key, const std::string& text, bool toml) {
         if (!text.empty()) out.keys.push_back({{"suite", key}, text, toml, fmt::format("--{} {}", key, text)});
@@ -40,10 +45,10 @@ SuiteFlags suite_flags(const CompareFlags& f) {
 /// InputError if a flag is given that a suite does not have.
 void forbid_other_flags(const CompareFlags& f) {
     const std::pair<const char*, bool> others[] = {{"--arm", !f.arms.empty()}, {"--reference", !f.reference.empty()},
-        {"--region", !f.regions.empty()}, {"--mask", !f.masks.empty()}, {"--spp", !f.spp.empty()},
-        {"--seconds", !f.seconds.empty()}, {"--assert", !f.assertions.empty()}, {"--align", !f.align.empty()},
-        {"--expect", !f.expect.empty()}, {"--trim", !f.trim.empty()}, {"--theme", !f.theme.empty()}, {"--crop", f.crop},
-        {"--pair", f.pair && !f.makes_renders()}};
+        {"--region", !f.regions.empty() && !f.makes_both_sides()}, {"--mask", !f.masks.empty()},
+        {"--spp", !f.spp.empty()}, {"--seconds", !f.seconds.empty()}, {"--assert", !f.assertions.empty()},
+        {"--align", !f.align.empty()}, {"--expect", !f.expect.empty()}, {"--trim", !f.trim.empty()},
+        {"--theme", !f.theme.empty()}, {"--crop", f.crop}, {"--pair", f.pair && !f.makes_renders()}};
     for (const auto& [flag, given] : others)
         if (given) throw InputError({flag, 0, 0}, "expected no such flag: a suite compares a baseline and a candidate");
     if (!f.because.empty() && !f.accept) throw InputError({"--because", 0, 0}, "expected --accept with it");
@@ -71,6 +76,7 @@ std::string suite_command(const CompareFlags& f) {
     for (const auto& [flag, value] : {std::pair{"--render", f.render}, std::pair{"--a", f.a}, std::pair{"--b", f.b},
              std::pair{"--until", f.until}, std::pair{"--budget", f.budget}, std::pair{"--timeout", f.timeout}})
         if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
+    for (const std::string& region : f.regions) out += " --region " + shell_word(region);
     if (!f.made_views.empty()) out += " --views " + shell_word(fmt::format("{}", fmt::join(f.made_views, ",")));
     if (f.pair) out += " --pair";
     if (f.jobs != 1) out += fmt::format(" --jobs {}", f.jobs);
@@ -117,12 +123,7 @@ int plan_suite(const CompareFlags& flags, const Suite& suite, Progress& progress
 
 /// The suite of a file, of folders, or of two commands.
 Suite suite_for(const CompareFlags& flags) {
-    if (!flags.a.empty() || !flags.b.empty()) {
-        SuiteOptions options = read_suite_options(suite_flags(flags).keys);
-        options.noise = NoiseDemand::ignore;  // two algorithms have one mean, and each its own noise
-        options.title = "two programs: a is the baseline, b the candidate";
-        return suite_of_two(flags, options);
-    }
+    if (flags.makes_both_sides()) return suite_of_two(flags, suite_flags(flags).keys);
     return read_suite(flags.file, suite_flags(flags));
 }
 

@@ -79,6 +79,17 @@ grep -q 'expected a time above 0' said || die "$(cat said)"
 a="python3 pt.py {view} {seed} {out}"
 expect 0 "$CRESCENT" compare --a "$a" --b "$a" --views lamp,wall --smallest 8% --budget 5min --jobs 2 --quiet --out two
 [ -d two-renders/a ] && grep -q 'At equal time b has' printed || die "$(cat printed)"
+# A region is tested in each view.
+expect 1 "$CRESCENT" compare --a "$a" --b "$a 1.2" --views lamp,wall --region corner=0,0,7,7 --quiet --json region.json --out regions
+expect 0 /usr/bin/python3 -c 'import json
+views = json.load(open("region.json"))["views"]
+assert [sorted(v["means"]) for v in views] == [["corner", "frame"]] * 2, views
+assert views[0]["means"]["corner"]["smallest"] > views[0]["means"]["frame"]["smallest"], views'
+for bad in frame=0,0,7,7 corner=0,0,7 corner; do
+    expect 2 "$CRESCENT" compare --a "$a" --b "$a" --views lamp --region "$bad" --quiet --out regions
+    grep -qF -- "--region $bad" said || die "the region is not named: $(cat said)"
+done
+expect 2 "$CRESCENT" compare suite.toml --render "$render" --region corner=0,0,7,7 --quiet --out report
 # A command states the format, for a program that goes by the end of the name.
 expect 0 "$CRESCENT" compare --a "python3 pt.py {view} {seed} {out}.png" --b "$a" --views lamp --smallest 8% --quiet --out png
 ls png-renders/a | grep -q '^lamp-[0-9]*.png$' && ls png-renders/b | grep -q '^lamp-[0-9]*.exr$' || die "$(ls png-renders/*)"

@@ -211,5 +211,6 @@ for delay in 0.005 0.01 0.02 0.03 0.05; do
     now=$(hash_of part/base)
     [ "$now" = "$old" ] || [ "$now" = "$new" ] || die "a killed --accept left a mixed baseline"
 done
+expect 0 "$CRESCENT" compare --baseline "file://$PWD/flat/a" --candidate flat/b --out nothing --quiet
 expect 2 "$CRESCENT" compare --baseline s3://bucket/base --candidate out
 grep -q 'mount it' said || die "an address is not refused: $(cat said)"

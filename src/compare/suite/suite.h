@@ -111,8 +111,8 @@ bool is_suite(const std::string& file);
 Suite read_suite(const std::string& file, const SuiteFlags& flags);
 /// Returns the files of each pattern; a file that several match belongs to the first of them.
 std::vector<std::vector<MatchedFile>> files_of_patterns(const std::vector<FilePattern>& patterns);
-/// Returns the table [suite] that flags alone make. Throws InputError.
-SuiteOptions read_suite_options(const std::vector<CompareFlag>& keys);
+/// Returns the tables [suite] and [view.NAME] that flags alone make, without renders. Throws InputError.
+Suite read_suite_flags(const std::vector<CompareFlag>& keys);
 /// Returns the manual of a suite file.
 std::string suite_schema_text();
 

@@ -205,6 +205,13 @@ void check_sides(const Suite& suite, const SourceLocation& place) {
     }
 }
 
+void check_region_names(const Suite& suite, std::vector<Diagnostic>& diagnostics) {
+    for (const SuiteView& view : suite.views)
+        for (const Region& region : view.regions)
+            if (region.name == whole_frame)
+                diagnostics.push_back({region.at, "the name 'frame' stands for all pixels: expected another"});
+}
+
 void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baseline_only) {
     auto baseline = files_by_view(suite.baseline), candidate = files_by_view(suite.candidate);
     if (candidate.empty() && !baseline_only)
@@ -219,10 +226,7 @@ void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baselin
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
     std::vector<Diagnostic> unknown;
-    for (const SuiteView& view : suite.views)
-        for (const Region& region : view.regions)
-            if (region.name == whole_frame)
-                unknown.push_back({region.at, "the name 'frame' stands for all pixels: expected another"});
+    check_region_names(suite, unknown);
     for (const SuiteView& view : suite.views)
         if (!std::binary_search(names.begin(), names.end(), view.name))
             unknown.push_back({view.at,
@@ -355,7 +359,7 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     return suite;
 }
 
-SuiteOptions read_suite_options(const std::vector<CompareFlag>& keys) {
+Suite read_suite_flags(const std::vector<CompareFlag>& keys) {
     ParseContext context;
     context.e.file = "crescent compare";
     Node root;
@@ -364,8 +368,9 @@ SuiteOptions read_suite_options(const std::vector<CompareFlag>& keys) {
     Suite suite;
     read_tree(context, suite_schema(), root, &suite);
     read_tolerance(suite.options, place_of(root, "tolerance", context.e.file), context.diagnostics);
+    check_region_names(suite, context.diagnostics);
     throw_if_any(std::move(context.diagnostics));
-    return suite.options;
+    return suite;
 }
 
 std::string suite_schema_text() { return manual_of(suite_schema()); }

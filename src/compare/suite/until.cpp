@@ -331,16 +331,24 @@ SuiteResult decide_by_renders(Suite& suite, const RenderSides& sides, const Rend
     return Rounds(suite, sides, render, source, options, monitor).result();
 }
 
-Suite suite_of_commands(const RenderSides& sides, const std::vector<std::string>& views, const std::string& folder,
-    const SuiteOptions& options) {
+std::vector<std::string> views_of_commands(const RenderSides& sides, const std::vector<std::string>& views) {
     ensure(sides.baseline.has_value(), "two commands");
     const bool has_view = sides.baseline->has_view() || sides.candidate.has_view();
     if (has_view == views.empty())
         throw InputError({"--views", 0, 0},
             has_view ? "expected the views, such as --views a,b: the command has {view}"
                      : "expected {view} in --a or --b");
+    for (const std::string& name : views)
+        if (name.empty() || name.find('/') != std::string::npos || name.front() == '.')
+            throw InputError({"--views", 0, 0},
+                fmt::format("expected names of views without '/', that do not begin with '.', found '{}'", name));
+    return views.empty() ? std::vector<std::string>{"render"} : views;
+}
+
+Suite suite_of_commands(
+    const RenderSides& sides, const std::vector<std::string>& views, const std::string& folder, const Suite& stated) {
     Suite out;
-    out.options = options;
+    out.options = stated.options;
     for (const char* side : {"a", "b"}) {
         const RenderCommand& command = *side == 'a' ? *sides.baseline : sides.candidate;
         const std::string pattern = escape_pattern(folder) + "/" + side + "/{view}-*." + sides.extension_of(command);
@@ -348,11 +356,10 @@ Suite suite_of_commands(const RenderSides& sides, const std::vector<std::string>
         (*side == 'a' ? out.options.baseline : out.options.candidate) = {pattern};
         (*side == 'a' ? out.baseline : out.candidate).emplace_back(pattern, place, true);
     }
-    for (const std::string& name : views.empty() ? std::vector<std::string>{"render"} : views) {
-        if (name.empty() || name.find('/') != std::string::npos || name.front() == '.')
-            throw InputError({"--views", 0, 0},
-                fmt::format("expected names of views without '/', that do not begin with '.', found '{}'", name));
-        out.views.emplace_back().name = name;
+    for (const std::string& name : views) {
+        const auto found = std::ranges::find(stated.views, name, &SuiteView::name);
+        SuiteView& view = out.views.emplace_back(found == stated.views.end() ? SuiteView{} : *found);
+        view.name = name;
     }
     for (const bool baseline : {true, false})
         for (const FilePattern& pattern : baseline ? out.baseline : out.candidate)

@@ -43,9 +43,11 @@ inline constexpr std::size_t first_renders = 4;
 SuiteResult decide_by_renders(Suite& suite, const RenderSides& sides, const Renderer& render,
     const RenderSource& source, const UntilOptions& options, ProgressMonitor& monitor);
 
-/// Returns the suite of two commands: renders of `views` (or of one called "render") below `folder`, those of the first
-/// command as the baseline. Throws InputError.
-Suite suite_of_commands(const RenderSides& sides, const std::vector<std::string>& views, const std::string& folder,
-    const SuiteOptions& options);
+/// Returns the views that two commands render: `views`, or one called "render". Throws InputError.
+std::vector<std::string> views_of_commands(const RenderSides& sides, const std::vector<std::string>& views);
+/// Returns the suite of two commands, as `stated` besides its views: renders of `views` below `folder`, those of the
+/// first command as the baseline. What `stated` says about a view holds for it.
+Suite suite_of_commands(
+    const RenderSides& sides, const std::vector<std::string>& views, const std::string& folder, const Suite& stated);
 
 }  // namespace crescent

@@ -154,11 +154,11 @@ ViewResult decide_two(const std::string& command,
     sides.baseline = parse_render_command(command, "--a");
     sides.candidate = parse_render_command(command, "--b");
     sides.same_seeds = pair;
-    SuiteOptions options;
-    options.noise = NoiseDemand::ignore;
-    options.smallest = 0.05;
-    if (tolerance) options.tolerance = parse_tolerance(tolerance);
-    Suite suite = suite_of_commands(sides, {"v9"}, "no-such-folder", options);
+    Suite stated;
+    stated.options.noise = NoiseDemand::ignore;
+    stated.options.smallest = 0.05;
+    if (tolerance) stated.options.tolerance = parse_tolerance(tolerance);
+    Suite suite = suite_of_commands(sides, views_of_commands(sides, {"v9"}), "no-such-folder", stated);
     RenderSource source;
     source.read = [&](const std::string& path, const std::string&) {
         const bool is_b = path.find("/b/") != std::string::npos;
