@@ -63,6 +63,12 @@ fails crash "ended with signal 6 (SIGABRT): no memory left for seed 13"
 fails half "wrote a file that cannot be read"
 fails ignore "ignores the seed"
 fails slow "did not end within 0.5 s" --timeout 0.5
+rm -rf out && : >out
+expect 3 rendered "$render"
+grep -q 'cannot make the folder out: ' said || die "the folder is not named: $(cat said)"
+rm out && mkdir -p out/lamp-13.png
+expect 2 rendered "$render"
+grep -q 'wrote a file that cannot become out/lamp-13.png' printed || die "the name is not named: $(cat printed)"
 [ -z "$(find . -name '.crescent-partial*')" ] || die "partial files stayed"
 rm -rf out
 expect 4 "$CRESCENT" compare suite.toml --render "$render 1 slow" --until decided --budget 1s --out report

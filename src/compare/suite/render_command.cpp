@@ -72,7 +72,10 @@ RenderEnd run_program(const RenderJob& job, const RenderLimits& limits, const Pr
     RenderEnd out;
     if (Clock::now() >= limits.end) return out;
     const fs::path target(job.out);
-    fs::create_directories(target.parent_path().empty() ? "." : target.parent_path());
+    std::error_code error;
+    const fs::path folder = target.parent_path().empty() ? "." : target.parent_path();
+    fs::create_directories(folder, error);
+    if (error) throw OutputError(fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
     // A pattern matches no name that begins with a dot; the extension stays, because programs look at it.
     const fs::path partial = target.parent_path() / (".crescent-partial-" + target.filename().string());
     const std::string log = partial.string() + ".log";
@@ -112,12 +115,14 @@ RenderEnd run_program(const RenderJob& job, const RenderLimits& limits, const Pr
         } else if (!fs::exists(partial)) out.failure = "wrote no file";
         else {
             (void)read_render(partial.string(), limits.layer, limits.reading);
-            fs::rename(partial, target);
-            out.made = true;
+            fs::rename(partial, target, error);
+            out.made = !error;
+            if (error)
+                out.failure = fmt::format("wrote a file that cannot become {}: {}", target.string(), error.message());
         }
-    } catch (const InputError& error) {
-        out.failure = "wrote a file that cannot be read: " + std::string(error.diagnostics().front().message);
-    } catch (const OutputError& error) { out.failure = error.what(); } catch (...) {
+    } catch (const InputError& mistake) {
+        out.failure = "wrote a file that cannot be read: " + std::string(mistake.diagnostics().front().message);
+    } catch (const OutputError& failure) { out.failure = failure.what(); } catch (...) {
         clear();
         throw;
     }
