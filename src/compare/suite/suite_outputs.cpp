@@ -103,6 +103,7 @@ std::string cell(const std::string& text) {
     std::string out;
     for (const char c : printable(text)) {
         if (c == '<') out += "&lt;";
+        else if (c == '@') out += "@&#8203;";  // a name of a view mentions nobody
         else if (std::string_view("|\\`*_[]").find(c) != std::string_view::npos) {
             out += '\\';
             out += c;

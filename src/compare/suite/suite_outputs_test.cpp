@@ -115,13 +115,13 @@ TEST(SuiteOutputs, MarkdownStaysBelowSixtyKilobytesAndEscapesNames) {
     SuiteResult result;
     for (int k = 0; k < 3000; ++k) {
         ViewResult& view = result.views.emplace_back();
-        view.name = "a|b<i>" + std::to_string(k);
+        view.name = "a|b<i>@all" + std::to_string(k);
         view.state = ViewState::changed;
         view.sentence = std::string(300, 'x');
     }
     const std::string text = suite_markdown({}, result, {});
     EXPECT_LT(text.size(), 60'000u);
-    EXPECT_THAT(text, HasSubstr("a\\|b&lt;i>"));
+    EXPECT_THAT(text, HasSubstr("a\\|b&lt;i>@&#8203;all"));
     EXPECT_THAT(text, HasSubstr("more; the report has them"));
 }
 
