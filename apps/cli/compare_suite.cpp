@@ -57,6 +57,8 @@ void forbid_other_flags(const CompareFlags& f) {
         {"--timeout", !f.timeout.empty()}, {"--views", !f.made_views.empty()}};
     for (const auto& [flag, given] : of_renders)
         if (given && !f.makes_renders()) throw InputError({flag, 0, 0}, "expected --render, or --a and --b, with it");
+    if (!f.made_views.empty() && !f.render.empty())
+        throw InputError({"--views", 0, 0}, "expected --a and --b with it: --render makes those of the suite");
     if (f.makes_renders() && (f.accept || f.plan))
         throw InputError({"--render", 0, 0}, "expected no --accept and no --plan with it");
     if (f.plan && f.accept) throw InputError({"--plan", 0, 0}, "expected no --accept with it");

@@ -78,6 +78,8 @@ expect 2 "$CRESCENT" compare suite.toml --render 'python3 pt.py {view}'
 grep -q 'expected {out}' said || die "$(cat said)"
 expect 2 "$CRESCENT" compare suite.toml --budget 5min
 grep -q 'expected --render' said || die "$(cat said)"
+expect 2 "$CRESCENT" compare suite.toml --render "$render" --views lamp
+grep -q 'expected --a and --b with it' said || die "$(cat said)"
 expect 2 "$CRESCENT" compare suite.toml --render "$render" --budget soon
 grep -q 'expected a time above 0' said || die "$(cat said)"
 

@@ -121,9 +121,11 @@ private:
         return out;
     }
 
-    /// States that a program was stopped at the end of the budget.
+    /// States that a program was stopped at the end of the budget, if it ran for longer than others of the view.
     static void add_stop(const Undecided& view, ViewResult& to) {
-        if (view.stopped == 0 || to.state != ViewState::too_few) return;
+        constexpr double usual = 2;  // times the mean of the others
+        const double mean = view.made == 0 ? 0 : (view.seconds[0] + view.seconds[1]) / static_cast<double>(view.made);
+        if (view.stopped <= usual * mean || to.state != ViewState::too_few) return;
         const std::string sentence =
             fmt::format(" The program was stopped after {} s, at the end of the budget.", figures(view.stopped, 3));
         to.sentence += sentence;

@@ -32,7 +32,7 @@ struct Made {
     std::size_t most = 200;
     int width = side;
     std::string failure;
-    double stopped_after = 0;  // s, of programs beyond `most`
+    double seconds = 0, stopped_after = 0;  // of a program, and of those beyond `most`
     ProgressMonitor silent;
     ProgressMonitor* monitor = &silent;
 
@@ -63,6 +63,7 @@ struct Made {
                 if (!failure.empty()) out[k].failure = failure;
                 else if (made < most) {
                     out[k].made = true;
+                    out[k].seconds = seconds;
                     ++made;
                 } else {
                     out[k].stopped = stopped_after > 0;
@@ -111,6 +112,15 @@ TEST(Until, AProgramThatTheBudgetStopsIsNamed) {
             EXPECT_THAT(*text, HasSubstr("The program was stopped after 90.0 s, at the end of the budget."));
         EXPECT_LE(view.headline.size(), longest_headline);
     }
+}
+
+TEST(Until, AProgramThatIsStoppedAfterItsUsualTimeIsNotNamed) {
+    Made slow;
+    slow.suite.options.smallest = 0.0005;
+    slow.most = 5;
+    slow.seconds = 60;
+    slow.stopped_after = 90;
+    EXPECT_THAT(slow.decide().views[0].sentence, ::testing::Not(HasSubstr("stopped")));
 }
 
 TEST(Until, EachRoundIsLogged) {
