@@ -74,13 +74,6 @@ std::vector<std::uint64_t> numbers_in(const std::string& path) {
     return out;
 }
 
-bool all_equal(const Render& render) {
-    const auto same = [](const std::vector<float>& p) {
-        return std::all_of(p.begin(), p.end(), [&](float v) { return v == p[0]; });
-    };
-    return same(render.r) && same(render.g) && same(render.b);
-}
-
 }  // namespace
 
 void FirstPass::arm(ArmStats& to, const std::vector<std::string>& files, const std::string& layer,
@@ -133,7 +126,7 @@ void FirstPass::check_pixels(const Render& render, ArmStats& to) {
     for (const std::string& note : render.notes) warnings_.add(render.file, note);
     if (bad) warnings_.add(render.file, "not finite: left out of every metric", bad);
     if (negative) warnings_.add(render.file, "with a negative channel", negative);
-    if (render.size() > 1 && bad < render.size() && all_equal(render))
+    if (render.size() > 1 && bad < render.size() && render.is_uniform())
         warnings_.add(render.file, "all pixels are equal");
 }
 

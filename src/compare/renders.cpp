@@ -28,6 +28,13 @@ Render::Render(std::string path, int w, int h) : Render(std::move(path), w, h, e
     for (std::vector<float>* plane : {&r, &g, &b}) plane->resize(data.pixels());
 }
 
+bool Render::is_uniform() const {
+    const auto same = [](const std::vector<float>& plane) {
+        return std::all_of(plane.begin(), plane.end(), [&](float value) { return value == plane[0]; });
+    };
+    return same(r) && same(g) && same(b);
+}
+
 bool Render::is_finite(std::size_t i) const {
     return std::isfinite(r[i]) && std::isfinite(g[i]) && std::isfinite(b[i]) &&
         (alpha.empty() || std::isfinite(alpha[i]));

@@ -69,6 +69,8 @@ struct Render {
     Render(std::string path, int w, int h, Empty);
     std::size_t size() const { return r.size(); }
     float y(std::size_t i) const;
+    /// Whether all pixels have one colour.
+    bool is_uniform() const;
     /// Whether each tested channel of a pixel is finite.
     bool is_finite(std::size_t i) const;
 };

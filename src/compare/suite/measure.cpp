@@ -33,6 +33,7 @@ public:
             monitor.check();
             Render render = source.read(paths[k], layer);
             files[k].hash = pixel_hash(render);
+            files[k].is_uniform = render.is_uniform();
             const std::size_t bytes = 4 * sizeof(float) * render.size();
             const Guard guard(lock_);
             if (kept_ + bytes <= most_kept) {
@@ -44,6 +45,7 @@ public:
     }
 
     std::uint64_t hash(const std::string& path) const { return files_.at(path).hash; }
+    bool is_uniform(const std::string& path) const { return files_.at(path).is_uniform; }
     /// Returns the paths of one side whose pixels differ from those of all paths before; the others are listed in
     /// `notes`.
     std::vector<std::string> different(
@@ -85,6 +87,7 @@ public:
 private:
     struct File {
         std::uint64_t hash = 0;
+        bool is_uniform = false;
         Render render;  // without pixels if it is not kept
         int given = 0;
     };
@@ -444,6 +447,8 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
             "candidate is not tested, and outlier pixels are neither counted nor left out.");
     const bool constant_baseline = moments ? moments->constant : is_constant(view.baseline, baseline),
                constant_candidate = is_constant(view.candidate, candidate);
+    out.uniform = (constant_baseline && files.is_uniform(baseline.front())) ||
+        (constant_candidate && files.is_uniform(candidate.front()));
     const std::optional<Tolerance> tolerance = suite.tolerance(view);
     // One file on each side shows no noise, but a tolerance states that there is none.
     NoiseResult noise;

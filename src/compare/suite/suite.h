@@ -194,6 +194,7 @@ struct ViewResult {
     std::string untestable;  // why no number of such renders can show anything; "" if one can
     std::string remedy;      // what to do then, sentences
     std::vector<std::uint64_t> baseline_hashes, candidate_hashes;  // of the pixels of each file, as in the view
+    bool uniform = false;                       // all renders of a side are equal, and their pixels have one colour
     std::string non_finite;                     // the pixels that are not finite on one side only; "" if there are none
     std::optional<std::size_t> renders_needed;  // of each side
     ViewPictures pictures;

@@ -162,6 +162,7 @@ private:
         ViewResult& measured = *view.measured;
         const bool a = is_constant(measured.baseline_hashes), b = is_constant(measured.candidate_hashes);
         if (a != b) {
+            if (measured.uniform) return;  // such as black: a change, whatever the seeds are
             const RenderCommand* command = b ? &sides_.candidate : sides_.baseline ? &*sides_.baseline : nullptr;
             const std::vector<std::string>& other = b ? files.baseline : files.candidate;
             if (!command || other.size() < 2) return;

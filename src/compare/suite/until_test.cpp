@@ -156,6 +156,14 @@ TEST(Until, ProgramsThatFailOrIgnoreTheSeedAreNamed) {
     EXPECT_THAT(ignoring.decide().views[0].sentence, HasSubstr("ignores the seed"));
 }
 
+TEST(Until, BlackRendersAreAChangeAndNotASeedThatIsIgnored) {
+    Made black;
+    black.after.bias = -1;
+    const ViewResult view = black.decide().views[0];
+    EXPECT_EQ(view.state, ViewState::changed) << view.sentence;
+    EXPECT_EQ(black.made, 4u);
+}
+
 /// Two commands whose renders are made in memory; `noise_of` returns the number of the noise of a side for a seed.
 ViewResult decide_two(const std::string& command,
     const std::function<std::uint64_t(bool is_b, std::uint64_t)>& noise_of, bool pair = false,
