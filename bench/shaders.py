@@ -96,7 +96,7 @@ class Shader:
     def answer(self, kind: str, wo: np.ndarray, given: np.ndarray) -> np.ndarray:
         """The densities of all rows, of draws by `given` numbers or of `given` directions."""
         columns = 4 if kind == "sample" else 1
-        rows = np.hstack([wo, given])
+        rows = np.hstack([wo, given]).astype(np.float32)
         request = {"sample": b"smpl", "pdf": b"pdf_"}[kind] + struct.pack("<I", len(rows)) + rows.tobytes()
 
         def ask() -> None:  # as crescent does: the next block while the last one is evaluated
@@ -105,7 +105,7 @@ class Shader:
                 while left:
                     left = left[self.process.stdin.write(left) :]
 
-        answer = np.empty((len(rows), columns))
+        answer = np.empty((len(rows), columns), np.float32)
         with ThreadPoolExecutor(1) as pool:
             asked = pool.submit(ask)
             for _ in range(BLOCKS):

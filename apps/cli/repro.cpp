@@ -438,7 +438,7 @@ Reach reach_program(const std::string& program) {
     Reach out{.hemisphere = hello.hemisphere, .lines = {}};
     out.is_reservoir = hello.traits.reciprocal_weight;
     out.lines = ask_lines(hello, program, 4 + (hello.weight && !out.is_reservoir ? 1 : 0));
-    const auto verb = [&](const char* line, const char* block) { return hello.blocks ? block : line; };
+    const auto verb = [&](const char* line, const char* block) { return hello.blocks() ? block : line; };
     out.lines += fmt::format(
         "\n\ndef sample(wo, u): a = ask('{}', wo, u); return a[:, :3], a[:, 3]\n"
         "def pdf(wo, wi): return ask('{}', wo, wi)[:, 0]\n"

@@ -477,7 +477,7 @@ std::string reach_lines(const CheckFlags& flags, const Traits& traits, std::size
                 "def f({0}x): return np.reshape(sampler.f({0}x{1}), (len(x), -1))[:, 0]\n",
                 given, coordinates == 1 ? "[:, 0]" : "");
     const Handshake hello = handshake_with(flags.exec);
-    const auto verb = [&](const char* line, const char* block) { return hello.blocks ? block : line; };
+    const auto verb = [&](const char* line, const char* block) { return hello.blocks() ? block : line; };
     return ask_lines(hello, flags.exec, coordinates + 1) +
         fmt::format(
             "\n\ndef sample({0}u): a = ask('{1}', {0}u); return a[:, :{2}], a[:, {2}]\n"
@@ -517,7 +517,7 @@ std::optional<std::string> script_of_number(
     else {
         const Handshake hello = handshake_with(flags.exec);
         reach = ask_lines(hello, flags.exec, channels) +
-            fmt::format("\n\ndef sample(u): return ask('{}', u)\n", hello.blocks ? "smpl" : "sample");
+            fmt::format("\n\ndef sample(u): return ask('{}', u)\n", hello.blocks() ? "smpl" : "sample");
     }
     const std::string draws = fmt::format("rng = np.random.default_rng(1)\nvalues = sample(rng.random(({{}}, {}){}))\n",
         traits.numbers, traits.u_bits == 53 ? "" : ", np.float32).astype(float");

@@ -30,14 +30,17 @@ Handshake handshake_with(const std::string& program) {
 
 std::string ask_lines(const Handshake& hello, const std::string& program, std::size_t columns) {
     std::string out = "import subprocess, sys\nimport numpy as np\n\n\ndef ask(verb, *columns):  # the protocol of " +
-        std::string(hello.blocks ? "blocks" : "lines") + "\n    rows = np.hstack(columns)\n";
-    if (hello.blocks)
-        return out +
-            "    block = verb.encode() + np.uint32(len(rows)).tobytes() + rows.astype('<f8').tobytes()\n"
+        std::string(hello.blocks() ? "blocks" : "lines") + "\n    rows = np.hstack(columns)\n";
+    if (hello.blocks()) {
+        const std::string type = hello.block_number == sizeof(float) ? "'<f4'" : "'<f8'";
+        return out + "    block = verb.encode() + np.uint32(len(rows)).tobytes() + rows.astype(" + type +
+            ").tobytes()\n"
             "    said = subprocess.run(" +
             python_text(program) +
             ", shell=True, input=b'hello 2\\n' + block, stdout=-1).stdout\n"
-            "    return np.frombuffer(said.split(b'\\n', 1)[1][4:], '<f8').reshape(len(rows), -1)\n";
+            "    return np.frombuffer(said.split(b'\\n', 1)[1][4:], " +
+            type + ").reshape(len(rows), -1).astype(float)\n";
+    }
     return out +
         "    lines = ['hello 2', *(' '.join([verb, *map(str, row)]) for row in rows.tolist())]\n"
         "    said = subprocess.run(" +

@@ -83,7 +83,7 @@ class Host:
             self.start()
             out = np.empty((len(rows), columns))
             for at in range(0, len(rows), MOST_ROWS):
-                part = np.ascontiguousarray(rows[at : at + MOST_ROWS], "<f8")
+                part = np.ascontiguousarray(rows[at : at + MOST_ROWS], "<f4")
                 out[at : at + len(part)] = self._block(operation, part, columns)
             return out
 
@@ -95,7 +95,7 @@ class Host:
             self._ask(process).flush()
             head = self._answer(process).read(4)
             if len(head) == 4 and head != b"\0\0\0\0":
-                return np.frombuffer(self._answer(process).read(8 * len(rows) * columns), "<f8").reshape(-1, columns)
+                return np.frombuffer(self._answer(process).read(4 * len(rows) * columns), "<f4").reshape(-1, columns)
             text = self._answer(process).read(struct.unpack("<I", self._answer(process).read(4))[0]) if head else b""
         except (BrokenPipeError, struct.error):
             text = b""

@@ -73,7 +73,7 @@ class Shader:
             "domain": request.domain,
             "wo": request.sides,
             "channels": str(self.channels),
-            "block": "f64",
+            "block": "f32",
             "real": "f32",
             "device": quote(name_of(self.adapter)),
             "driver": quote(driver_of(self.adapter)),
@@ -191,7 +191,7 @@ def _serve(requests: BinaryIO, answers: BinaryIO, shader: Shader, watch: Watchdo
             return None
         letters, (count,) = head[:4], struct.unpack("<I", head[4:])
         columns, answer = operations[letters]
-        rows = np.frombuffer(requests.read(8 * count * columns), "<f8").reshape(count, columns).astype(np.float32)
+        rows = np.frombuffer(requests.read(4 * count * columns), "<f4").reshape(count, columns)
         return f"{letters.decode().strip('_').replace('smpl', 'sample')} of {count} rows", answer, rows
 
     def evaluated(what: str, answer: Answer, rows: Array) -> tuple[bytes, Array | None]:
@@ -203,7 +203,7 @@ def _serve(requests: BinaryIO, answers: BinaryIO, shader: Shader, watch: Watchdo
     def write(head: bytes, rows: Array | None) -> None:
         answers.write(head)
         if rows is not None:
-            answers.write(np.ascontiguousarray(rows, "<f8").data)
+            answers.write(np.ascontiguousarray(rows, "<f4").data)
         answers.flush()
 
     with ThreadPoolExecutor(1) as reader, ThreadPoolExecutor(1) as writer:

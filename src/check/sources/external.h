@@ -15,7 +15,7 @@
 namespace crescent {
 
 // ---- A program. The handshake starts with `hello 2`, and the program answers with its declaration. Requests are text
-// lines, or blocks of doubles if the program declares them; docs/samplers.md has the grammar. The program ends at the
+// lines, or blocks of numbers if the program declares them; docs/samplers.md has the grammar. The program ends at the
 // end of its input.
 
 /// Time limits of a program behind a pipe or of a plugin.
@@ -54,10 +54,12 @@ struct Handshake {
     bool states_wo = false;          // the key wo is given
     std::optional<Domain> domain{};  // other than directions
     bool f_cos = false;              // f includes |cos|
-    bool weight = false, delta = false, blocks = false;
+    bool weight = false, delta = false;
+    std::size_t block_number = 0;   // bytes of a number in blocks; 0: lines
     bool merge = false;             // a draw merges the reservoirs of neighbours
     std::vector<std::string> uses;  // of context_names()
     EvaluationDevice device{};
+    bool blocks() const { return block_number > 0; }
     bool uses_lights() const { return std::ranges::find(uses, "lights") != uses.end(); }
 };
 

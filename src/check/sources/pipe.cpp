@@ -104,7 +104,8 @@ private:
     std::vector<double> example_;  // the columns of the context in a check
     bool has_f_ = false;
     mutable std::mutex lock_;
-    mutable std::vector<double> request_, answers_;  // of samples; guarded by lock_
+    mutable std::vector<double> request_, answers_;               // of samples; guarded by lock_
+    mutable std::vector<float> single_request_, single_answers_;  // of a block in single precision; guarded by lock_
 
     /// Calls work(w_o, rows, context) for the runs of a query: those of a scene, or all rows at the example.
     template <class Work> void for_each_run(const SamplerQuery& query, const Work& work) const {
@@ -236,14 +237,14 @@ private:
     void query_samples(std::span<const double> in, std::size_t lights, std::size_t count, const Take& take) const {
         const std::size_t given = columns_of_sample(lights), got = columns_of_draw();
         const std::span<double> answers = first_of(answers_, count * got);
-        std::vector<bool> delta(hello_.blocks ? 0 : count);
-        if (hello_.blocks) query_block("smpl", "sample", count, given, got, in, answers, lights);
+        std::vector<bool> delta(hello_.blocks() ? 0 : count);
+        if (hello_.blocks()) query_block("smpl", "sample", count, given, got, in, answers, lights);
         else
             connection_.lines(
                 count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
                     return read_sample(s, answers.subspan(i * got, got), delta, i);
                 });
-        for (std::size_t i = 0; i < count; ++i) take(i, answers.subspan(i * got, got), !hello_.blocks && delta[i]);
+        for (std::size_t i = 0; i < count; ++i) take(i, answers.subspan(i * got, got), !hello_.blocks() && delta[i]);
     }
     void query_block(const char* operation, const char* verb, std::size_t count, std::size_t given, std::size_t got,
         std::span<const double> in, std::span<double> out, std::size_t lights) const {
@@ -255,12 +256,16 @@ private:
         if (hello_.uses_lights()) add_count(lights);
         if (hello_.merge && std::string_view(verb) == "sample") add_count(static_cast<std::size_t>(neighbours_));
         const PipeConnection::Write write = writer(verb, given, in);
+        const bool single = hello_.block_number == sizeof(float);
+        if (single) {
+            single_request_.assign(in.begin(), in.end());
+            single_answers_.resize(out.size());
+        }
         connection_.blocks({.operation = operation,
             .count = count,
-            .given = given,
-            .got = got,
-            .in = in,
-            .out = out,
+            .in = single ? std::as_bytes(std::span(single_request_)) : std::as_bytes(in),
+            .out = single ? std::as_writable_bytes(std::span(single_answers_)) : std::as_writable_bytes(out),
+            .expected = fmt::format("a block of {} {} a row", got, single ? "floats" : "doubles"),
             .describe =
                 [&](std::size_t i) {
                     std::string line;
@@ -268,6 +273,7 @@ private:
                     return line;
                 },
             .header = std::move(header)});
+        if (single) std::ranges::copy(single_answers_, out.begin());
     }
 
     bool read_sample(std::string_view s, std::span<double> to, std::vector<bool>& delta, std::size_t i) const {
@@ -295,7 +301,7 @@ private:
             return reservoir;
         }
         Draw d{{a[0], a[1], a[2]}, a[3]};
-        if (hello_.blocks && hello_.delta && d.pdf < 0) {
+        if (hello_.blocks() && hello_.delta && d.pdf < 0) {
             delta = true;
             d.pdf = -d.pdf;
         }
@@ -352,7 +358,7 @@ private:
         });
         const std::size_t count = in.size() / given;
         std::vector<double> answers(count * columns);
-        if (hello_.blocks) query_block(operation, verb, count, given, columns, in, answers, lights);
+        if (hello_.blocks()) query_block(operation, verb, count, given, columns, in, answers, lights);
         else if (count > 0)
             connection_.lines(count, expected, writer(verb, given, in), [&](std::size_t i, std::string_view s) {
                 if (operation[0] == 'f' && s == "-") {
@@ -431,7 +437,7 @@ private:
             const double x = k & 1 ? -1 : 1, y = k & 2 ? -1 : 1, z = k & 4 ? -1 : 1;
             oblique.push_back({tilt(35 + k, 17 + 40 * k), normalize(Vec3d{0.48 * x, 0.36 * y, 0.8 * z})});
         }
-        has_f_ = answers_f({{{0, 0, 1}, {0, 0, 1}}}) || (hello_.blocks && answers_f(oblique));
+        has_f_ = answers_f({{{0, 0, 1}, {0, 0, 1}}}) || (hello_.blocks() && answers_f(oblique));
     }
     /// Whether f is a number at one of these pairs.
     bool answers_f(const std::vector<Pair>& pairs) {
@@ -445,7 +451,7 @@ private:
         const std::size_t given = in.size() / pairs.size();
         std::vector<double> answer(pairs.size() * columns);
         bool any = false;
-        if (hello_.blocks) {
+        if (hello_.blocks()) {
             query_block("f___", "f", pairs.size(), given, columns, in, answer, example_lights);
             for (std::size_t i = 0; i < pairs.size(); ++i) any = any || !std::isnan(answer[i * columns]);
             return any;
@@ -591,7 +597,11 @@ const std::array<HandshakeKey, 19>& keys() {
             }},
         {"device", text_of_word, [](S v, Handshake& g) { return decode_word(v, g.device.name); }},
         {"driver", text_of_word, [](S v, Handshake& g) { return decode_word(v, g.device.driver); }},
-        {"block", "f64", [](S v, Handshake& g) { return (g.blocks = v == "f64"); }},
+        {"block", "f32 or f64",
+            [](S v, Handshake& g) {
+                g.block_number = v == "f32" ? sizeof(float) : sizeof(double);
+                return v == "f32" || v == "f64";
+            }},
         {"uses", "names from s, alpha, rho_d, rho_s, side, eta and lights, separated by commas",
             [](S v, Handshake& g) { return take_context_names(v, g.uses); }},
     }};
@@ -694,6 +704,8 @@ HandshakeError read_handshake(std::string_view answer, Handshake& out) {
     out.name = printable(name, 60);
     if (out.delta && !out.weight)
         return {"weight=yes with delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
+    if (out.block_number == sizeof(float) && out.traits.u_bits > 24)
+        return {"u_bits=24 with block=f32, whose numbers have 24 bits", "got u_bits=53"};
     out.traits.delta = out.delta;
     return settle_domain(out);
 }

@@ -158,8 +158,8 @@ void PipeConnection::take_lines(Exchange& x, const Read& read) {
 void PipeConnection::blocks(const Rows& rows) {
     constexpr std::size_t most_rows =
         1 << 15;  // 65536 are allowed; smaller blocks let both sides work at the same time
-    const std::string expected = fmt::format("a block of {} doubles a row", rows.got);
-    Exchange x{.count = rows.count, .expected = expected, .describe = rows.describe, .produce = {}, .take = {}};
+    const std::size_t row_size = rows.in.size() / rows.count;
+    Exchange x{.count = rows.count, .expected = rows.expected, .describe = rows.describe, .produce = {}, .take = {}};
     check_open();
     const auto rows_from = [&](std::size_t row) { return std::min(rows.count - row, most_rows); };
     const auto head_of = [&](std::size_t row) {
@@ -174,8 +174,8 @@ void PipeConnection::blocks(const Rows& rows) {
     while (x.answered < x.count) {
         const Process::Ready ready = program_.wait_ready(x.written < x.count, true, 50);
         if (ready.input) {
-            const std::size_t bytes = rows_from(x.written) * rows.given * sizeof(double);
-            const auto* payload = reinterpret_cast<const char*>(rows.in.data() + x.written * rows.given);
+            const std::size_t bytes = rows_from(x.written) * row_size;
+            const auto* payload = reinterpret_cast<const char*>(rows.in.data() + x.written * row_size);
             if (head_sent < head.size()) head_sent += send(x, std::string_view(head).substr(head_sent), ready.output);
             if (head_sent == head.size())
                 payload_sent += send(x, {payload + payload_sent, bytes - payload_sent}, ready.output);
@@ -236,8 +236,8 @@ bool PipeConnection::take_block(
         fault(x, x.answered, "got an error: " + shown(std::string_view(head).substr(8, length)));
     }
     if (number(0) != n) fault(x, x.answered, fmt::format("got a block of {} rows for one of {}", number(0), n));
-    const std::size_t bytes = n * rows.got * sizeof(double);
-    auto* to = reinterpret_cast<char*>(rows.out.data() + x.answered * rows.got);
+    const std::size_t row_size = rows.out.size() / rows.count, bytes = n * row_size;
+    auto* to = reinterpret_cast<char*>(rows.out.data() + x.answered * row_size);
     std::size_t got = 0;
     open = read(to + payload_read, bytes - payload_read, got);
     payload_read += got;

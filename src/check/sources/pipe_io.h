@@ -76,7 +76,7 @@ inline void append(std::string& to, double v) {
     to.append(buffer, end);
 }
 
-// ---- Requests to a program and its answers, as text lines or blocks of doubles. Requests are sent far ahead of the
+// ---- Requests to a program and its answers, as text lines or blocks of numbers. Requests are sent far ahead of the
 // answers, without blocking, so that neither side waits for the other.
 
 class PipeConnection {
@@ -91,12 +91,13 @@ public:
     using Read = std::function<bool(std::size_t, std::string_view)>;
     /// Sends and receives one line `count` times; `read` returns whether an answer is valid.
     void lines(std::size_t count, std::string_view expected, const Write& write, const Read& read);
-    /// Rows of doubles in both directions; `describe` formats a request for a message.
+    /// Rows of equal size in both directions; `describe` formats a request for a message.
     struct Rows {
         const char* operation;  // four letters
-        std::size_t count, given, got;
-        std::span<const double> in;
-        std::span<double> out;
+        std::size_t count;
+        std::span<const std::byte> in;
+        std::span<std::byte> out;
+        std::string expected;  // an answer, for a message
         std::function<std::string(std::size_t)> describe;
         std::string header{};  // bytes between the count and the rows
     };

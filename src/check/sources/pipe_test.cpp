@@ -72,7 +72,7 @@ TEST(Greetings, SayWhatAProgramIs) {
     EXPECT_EQ(g.name, "my glass");
     EXPECT_EQ(g.traits.numbers, 3);
     EXPECT_EQ(g.traits.channels, 3);
-    EXPECT_TRUE(g.traits.delta && g.weight && g.f_cos && g.blocks && g.traits.importance && g.traits.own_random);
+    EXPECT_TRUE(g.traits.delta && g.weight && g.f_cos && g.blocks() && g.traits.importance && g.traits.own_random);
     EXPECT_FALSE(g.traits.reciprocal || g.hemisphere);
     EXPECT_EQ(g.traits.wo, Traits::WoDomain::both);
     EXPECT_DOUBLE_EQ(g.traits.eta->z, 1.52);
@@ -106,6 +106,8 @@ TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     for (const char* text : {"", "%2", "%2x", "a%"})
         EXPECT_NE(fault((std::string("hello 2 x device=") + text).c_str()).find("%20 is a space"), std::string::npos);
     EXPECT_NE(fault("hello 2 x delta=yes").find("weight=yes"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x block=f32 u_bits=53").find("expected u_bits=24"), std::string::npos);
+    EXPECT_NE(fault("hello 2 x block=f16").find("expected f32 or f64 for block, got 'f16'"), std::string::npos);
     EXPECT_NE(fault("hello 2 x merge=yes").find("expected weight=reciprocal"), std::string::npos)
         << fault("hello 2 x merge=yes");
     EXPECT_NE(fault("hello 2 x weight=reciprocal merge=yes uses=alpha").find("no uses="), std::string::npos);
@@ -131,6 +133,24 @@ TEST(Greetings, BlocksThatSayAnErrorAreTold) {
     EXPECT_NE(fault_of(start + "head -c 408 >/dev/null; printf '\\003\\000\\000\\000'; sleep 3", 2, 10)
                   .find("got a block of 3 rows for one of 10"),
         std::string::npos);
+}
+
+/// The responses to f are as above. The program returns its numbers as x and y of a direction, and 2 as the pdf.
+TEST(Greetings, BlocksHaveTheDeclaredPrecision) {
+    const std::string nan = "printf '\\000\\000\\300\\177'; ";
+    const auto pipe =
+        start_pipe("read hello; echo hello 2 x block=f32; head -c 32 >/dev/null; printf '\\001\\000\\000\\000'; " +
+            nan + "head -c 200 >/dev/null; printf '\\010\\000\\000\\000'; for k in 1 2 3 4 5 6 7 8; do " + nan +
+            "done; head -c 20 >/dev/null; printf '\\001\\000\\000\\000'; head -c 8; "
+            "printf '\\000\\000\\200\\077\\000\\000\\000\\100'; sleep 1");
+    EXPECT_FALSE(pipe->has_f());
+    const PrimarySample u(0x123457p-24, 0.75);
+    Draw out;
+    pipe->sample(0, {0, 0, 1}, {&u, 1}, {&out, 1});
+    EXPECT_EQ(out.wi.x, u.x);
+    EXPECT_EQ(out.wi.y, u.y);
+    EXPECT_EQ(out.wi.z, 1);
+    EXPECT_EQ(out.pdf, 2);
 }
 
 /// The program returns its number as x of a direction.
