@@ -45,22 +45,20 @@ function wasi(memory: () => WebAssembly.Memory): Record<string, Call> {
   return new Proxy(known, { get: (all, name) => all[String(name)] ?? nothing, has: () => true });
 }
 
-/** What the module calls of the user's sampler, apps/web/user_sampler.cpp. `suspends`: the calls answer later, and the
+/** What the module calls of the user's sampler, apps/web/user_sampler.cpp and user_points.cpp. `suspends`: the calls answer later, and the
  *  module waits for them (JSPI). */
-export type UserCalls = ((memory: () => WebAssembly.Memory) => { user_sample: Call; user_pdf: Call }) & { suspends?: boolean };
+export type UserCalls = ((memory: () => WebAssembly.Memory) => typeof noCalls) & { suspends?: boolean };
 /** What TypeScript's library does not have. */
 const suspension = WebAssembly as unknown as { Suspending: new (call: Call) => Call; promising(call: Export): (...numbers: number[]) => Promise<number> };
-const noUser: UserCalls = () => {
-  const none: Call = () => { throw new EngineError("bug", "there is no sampler of the user here"); };
-  return { user_sample: none, user_pdf: none };
-};
+const none: Call = () => { throw new EngineError("bug", "there is no sampler of the user here"); };
+export const noCalls = { user_sample: none, user_pdf: none, point_drawn: none, point_value: none };
 
 export class Api {
   private readonly calls: Record<string, Export>;
   private readonly suspends: boolean;
   private readonly memory: WebAssembly.Memory;
 
-  constructor(module: WebAssembly.Module, user: UserCalls = noUser) {
+  constructor(module: WebAssembly.Module, user: UserCalls = () => noCalls) {
     const memory = (): WebAssembly.Memory => this.memory;
     const failed = (kind: number, kindSize: number, at: number, size: number): never => {
       throw new EngineError(this.words(kind, kindSize), this.words(at, size));

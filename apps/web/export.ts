@@ -1,5 +1,6 @@
 // The user's sampler elsewhere: a program for `crescent check --exec`, which runs the same code with the f of the surface
 // that it was checked on, unless the code has its own; and what is to be filled in to write it in C++ or Python.
+import { directions, domainOf } from "./domains";
 import { Ground, grounds } from "./templates";
 import { isShader } from "./wgsl";
 
@@ -27,16 +28,29 @@ function withBrdf(code: string, ground: string): string {
   return !on || on.light !== "fill" || /\b(function|const|let)\s+f\b/.test(code) ? code : `${code.trimEnd()}\n\n${brdf(on)}`;
 }
 
-function program(code: string): string {
+/** The code with the answers to its requests. */
+function program(code: string, about: string, answers: string): string {
   return `// sampler.mjs, for
 //   crescent check --exec 'node sampler.mjs'
-// Local frame, n = +z; w_o is given, w_i is drawn; pdf in 1/sr.
+// ${about}
 
 ${code.trimEnd()}
 
 // ---- Answers of crescent's protocol, docs/samplers.md.
 {
-const functions = [sample, pdf, ...(typeof f === "function" ? [f] : [])], count = typeof numbers === "number" ? numbers : 2;
+const count = typeof numbers === "number" ? numbers : 2;
+${answers}
+let rest = "";
+process.stdin.setEncoding("utf8").on("data", (text) => {
+  const lines = (rest + text).split("\\n");
+  rest = lines.pop();
+  if (lines.length > 0) process.stdout.write(lines.map(answer).join("\\n") + "\\n");
+});
+}
+`;
+}
+
+const answersOfDirections = `const functions = [sample, pdf, ...(typeof f === "function" ? [f] : [])];
 const uses = functions.some((one) => one.length > 2) ? " uses=s,alpha,rho_d,rho_s,lights" : "";
 
 function contextOf(v) {
@@ -61,16 +75,27 @@ function answer(line) {
   const [wo, wi] = [v.slice(0, 3), v.slice(3, 6)];
   if (verb === "pdf") return String(pdf(wo, wi, contextOf(v.slice(6))));
   return typeof f === "function" ? String(f(wo, wi, contextOf(v.slice(6)))) : "-";
+}`;
+
+/** Of the points of a domain. */
+function coordinatesOf(domain: string): number {
+  const known: Record<string, number> = { line: 1, set: 1, disk: 2, square: 2, triangle: 2 };
+  return domain.split(" x ").reduce((sum, part) => sum + (known[part.replace(/:.*/, "")] ?? 3), 0);
 }
-let rest = "";
-process.stdin.setEncoding("utf8").on("data", (text) => {
-  const lines = (rest + text).split("\\n");
-  rest = lines.pop();
-  if (lines.length > 0) process.stdout.write(lines.map(answer).join("\\n") + "\\n");
-});
-}
-`;
-}
+
+const answersOfPoints = (domain: string): string => `const coordinates = ${coordinatesOf(domain)}, point = (v) => (coordinates === 1 ? v[0] : v);
+
+function answer(line) {
+  const [verb, ...words] = line.split(" ");
+  if (verb === "hello") return "hello 2 sampler u=" + count + " domain=" + domain + " real=f64";
+  const v = words.map(Number);
+  if (verb === "sample") {
+    const d = sample(v);
+    return (d ? [d.x, d.pdf].flat() : Array(coordinates + 1).fill(0)).join(" ");
+  }
+  if (verb === "pdf") return String(pdf(point(v)));
+  return typeof f === "function" ? String(f(point(v))) : "-";
+}`;
 
 /** The code as comments, for who writes it in another language. */
 const commented = (code: string, mark: string): string => code.trimEnd().split("\n").map((line) => `${mark} ${line}`.trimEnd()).join("\n");
@@ -122,11 +147,55 @@ sampler = crescent.Sampler(sample, pdf, name="sampler")
 ${commented(code, "#")}
 `;
 
+const cppOfPoints = (domain: string, code: string): string => `// sampler.h: the frame of a sampler, to be filled in. Check it by crescent/gtest.h or crescent/check.h:
+//   EXPECT_THAT(sampler, crescent::IsARightSampler());
+//   crescent::check_sampler("sampler", sampler);
+// Domain and density: docs/domains.md.
+#pragma once
+
+#include <crescent/check.h>
+#include <span>
+
+// u: as many numbers in [0, 1) as the sampler takes. Writes the point and returns its density, 0 if nothing is drawn.
+double sample(std::span<const double> u, std::span<double> x);
+double pdf(std::span<const double> x);
+
+inline const crescent::PointSampler sampler{.domain = ${JSON.stringify(domain)}, .sample = sample, .pdf = pdf};
+
+// The same in JavaScript:
+${commented(code, "//")}
+`;
+
+const rowsOf = (domain: string): string => (coordinatesOf(domain) === 1 ? "x[n]" : `x[n, ${coordinatesOf(domain)}]`);
+const pythonOfPoints = (domain: string, code: string): string => `# sampler.py: the frame of a sampler, to be filled in. Check it:
+#   crescent check sampler.py
+# Domain and density: docs/domains.md. Arrays have a row for each draw.
+domain = ${JSON.stringify(domain)}
+
+
+def sample(u):  # u[n, 2] in [0, 1): ${rowsOf(domain)} and pdf[n], 0 where nothing is drawn
+    raise NotImplementedError
+
+
+def pdf(x):  # ${rowsOf(domain)}: pdf[n]
+    raise NotImplementedError
+
+# The same in JavaScript:
+${commented(code, "#")}
+`;
+
 /** The sampler in this format, with the f of this ground (apps/web/templates.ts). */
 export function exported(format: string, code: string, ground: string): { name: string; text: string } {
-  const wgsl = isShader(code), whole = wgsl ? code : withBrdf(code, ground), language = wgsl ? "WGSL" : "JavaScript";
+  const wgsl = isShader(code), domain = wgsl ? directions : domainOf(code);
+  if (domain !== directions) {
+    if (format === "cpp") return { name: "sampler.h", text: cppOfPoints(domain, code) };
+    if (format === "python") return { name: "sampler.py", text: pythonOfPoints(domain, code) };
+    return { name: "sampler.mjs", text: program(code, `Points of the domain ${domain}, docs/domains.md.`, answersOfPoints(domain)) };
+  }
+  const whole = wgsl ? code : withBrdf(code, ground), language = wgsl ? "WGSL" : "JavaScript";
   if (format === "cpp") return { name: "sampler.h", text: cpp(whole, language) };
   if (format === "python") return { name: "sampler.py", text: python(whole, language) };
   if (wgsl) return { name: "sampler.wgsl", text: `// crescent check sampler.wgsl\n${code}` };
-  return { name: "sampler.mjs", text: program(whole) };
+  const about = "Local frame, n = +z; w_o is given, w_i is drawn; pdf in 1/sr.";
+  return { name: "sampler.mjs", text: program(whole, about, answersOfDirections) };
 }

@@ -87,6 +87,12 @@ async function perform(api: Api, job: Exclude<Job, { kind: "open" | "look" }>): 
 
 const readsReference = (job: Job): boolean => job.kind === "reference" || job.kind === "photograph";
 
+/** Tells the module what the user's functions take. Throws EngineError. */
+export function introduce({ numbers, context, bits, points }: UserSampler, api: Api): void {
+  api.number("user_takes", numbers, context ? 1 : 0, bits);
+  if (points) api.say("user_takes_points", points);
+}
+
 /** An instance that opens the experiment of a job, and opens it again after a failure. */
 export class Answering {
   private api: Api;
@@ -104,7 +110,7 @@ export class Answering {
     const { user } = this, api = new Api(this.module, user?.calls);
     this.given = "";
     api.number("keep_points", this.kept);
-    if (user) api.number("user_takes", user.numbers, user.context ? 1 : 0, user.bits);
+    if (user) introduce(user, api);
     return api;
   }
 

@@ -3,6 +3,7 @@ import { showChoices } from "./choices";
 import { controlRows } from "./controls";
 import { Asker } from "./answers";
 import { Box, EngineError } from "./api";
+import { directions, domainOf, pointTemplates } from "./domains";
 import { byId, copied, el, newTask, Speaker } from "./dom";
 import { openPixel } from "./hemisphere";
 import { showLadders } from "./ladders";
@@ -14,7 +15,7 @@ import { exercises } from "./exercises";
 import { FilmView } from "./film";
 import { packed, unpacked } from "./packed";
 import { shaderTemplates } from "./shader_templates";
-import { templates } from "./templates";
+import { Template, templates } from "./templates";
 import { isShader, missingForShaders } from "./wgsl";
 import { checkedCode, Work, Workshop } from "./workshop";
 import { choice } from "./controls";
@@ -25,6 +26,7 @@ import { samplers, startText } from "./text";
 import { command, fresh, nativeHash, openingOf, overrides, read, Source, State, write } from "./state";
 
 export interface Data { version: string; sources: Record<string, Source> }
+const allTemplates: Readonly<Record<string, Template>> = { ...templates, ...shaderTemplates, ...pointTemplates };
 type Opened = Pick<State, "experiment" | "set" | "arms">;
 interface Sampler { name: string; label: string; summary: string }
 
@@ -332,14 +334,14 @@ export class Page implements Viewer {
     if (part === "faults") return found ? this.faults.show(at, found) : this.faults.list(at);
     if (part !== "write") return;
     at.replaceChildren(el("h2", {}, "Write a sampler"),
-      el("p", {}, "In JavaScript: ", el("code", {}, "sample(wo, u)"), " returns a direction w_i and its density, ", el("code", {}, "pdf(wo, wi)"), " the density of any direction. Local frame, n = +z; w_o is given, w_i is drawn, both leave the surface; pdf in 1/sr. A third argument, if the functions have one, has the surface and the lights. In WGSL: a file for ", el("code", {}, "crescent check FILE.wgsl"), ", whose comments call its functions; f is that of the surface."),
-      this.templateChoices(!this.state.code && this.template in shaderTemplates));
+      el("p", {}, "In JavaScript: ", el("code", {}, "sample(wo, u)"), " returns a direction w_i and its density, ", el("code", {}, "pdf(wo, wi)"), " the density of any direction. Local frame, n = +z; w_o is given, w_i is drawn, both leave the surface; pdf in 1/sr. A third argument, if the functions have one, has the surface and the lights. In WGSL: a file for ", el("code", {}, "crescent check FILE.wgsl"), ", whose comments call its functions; f is that of the surface. Over another domain, ", el("code", {}, "const domain = \"disk\";"), ", ", el("code", {}, "sample(u)"), " returns a point x and its density, and ", el("code", {}, "pdf(x)"), " that of any point; an ", el("code", {}, "f(x)"), " is an integrand."),
+      this.templateChoices(this.state.code ? "" : allTemplates[this.template]!.code));
     this.workshop!.show(true);
     void this.loadCode();
   }
 
-  /** The language of a sampler, and what it starts from. */
-  private templateChoices(wgsl: boolean): HTMLElement {
+  /** The language and the domain of a sampler, and what it starts from. */
+  private templateChoices(code: string): HTMLElement {
     const open = (template: string): void => {
       this.template = template;
       Object.assign(this.state, { code: "", ground: "" });
@@ -347,11 +349,14 @@ export class Page implements Viewer {
       this.turn();
       void this.loadCode();
     };
-    const lacks = missingForShaders(), of = wgsl ? shaderTemplates : templates, names = Object.keys(of);
-    const language = wgsl ? "wgsl" : "javascript";
-    return el("div", { class: "choices", id: "templates", "data-language": language },
+    const lacks = missingForShaders(), wgsl = isShader(code), domain = wgsl ? directions : domainOf(code);
+    const of = wgsl ? shaderTemplates : domain === directions ? templates : Object.fromEntries(Object.entries(pointTemplates).filter(([name]) => name === domain));
+    const names = Object.keys(of), language = wgsl ? "wgsl" : "javascript";
+    const domains = wgsl ? [] : Object.keys(pointTemplates), own = [directions, ...domains].includes(domain) ? [] : [domain];
+    return el("div", { class: "choices", id: "templates", "data-of": `${language} ${domain}` },
       choice("language", "language", [["javascript", "JavaScript"], ["wgsl", lacks ? `WGSL: ${lacks}` : "WGSL", lacks !== ""]], language, (value) => open(value === "wgsl" ? "wgsl-cosine" : "cosine")),
-      choice("template", "start from", names.map((name) => [name, of[name]!.title]), names.includes(this.template) ? this.template : names[0]!, open));
+      choice("domain", "domain", [[directions, "directions, hemisphere"], ...[...domains, ...own].map((name): [string, string] => [name, name])], domain, (value) => open(value === directions ? "cosine" : value)),
+      ...(names.length > 0 ? [choice("template", "start from", names.map((name) => [name, of[name]!.title]), names.includes(this.template) ? this.template : names[0]!, open)] : []));
   }
 
   private async openWorkshop(): Promise<void> {
@@ -366,7 +371,7 @@ export class Page implements Viewer {
 
   /** The code of the address, or a template. */
   private async loadCode(): Promise<void> {
-    const { code, ground } = this.state, { code: plain, ground: own } = { ...templates, ...shaderTemplates }[this.template]!;
+    const { code, ground } = this.state, { code: plain, ground: own } = allTemplates[this.template]!;
     if (this.loaded === (code || "template")) return;
     this.loaded = code || "template";
     let text = plain;
@@ -376,20 +381,20 @@ export class Page implements Viewer {
       byId("wrong").append(el("p", {}, "The address has a sampler's code that cannot be read: a template is open."));
     }
     if (this.state.part !== "write") return;
-    this.showLanguage(text);
+    this.showTemplates(text);
     await this.workshop!.load({ code: text, ground: ground || own });
   }
 
-  /** The choices are those of the code's language. */
-  private showLanguage(code: string): void {
-    const wgsl = isShader(code);
-    if (byId("templates").dataset["language"] !== (wgsl ? "wgsl" : "javascript")) byId("templates").replaceWith(this.templateChoices(wgsl));
+  /** The choices are those of the code's language and domain. */
+  private showTemplates(code: string): void {
+    const choices = this.templateChoices(code);
+    if (byId("templates").dataset["of"] !== choices.dataset["of"]) byId("templates").replaceWith(choices);
   }
 
   /** The user has changed the code, or what it is shown on. */
   private async written({ code, ground }: Work): Promise<void> {
     if (this.state.part !== "write") return this.faults.forget();
-    this.showLanguage(code);
+    this.showTemplates(code);
     const words = await packed(code);
     if (this.state.part !== "write") return;
     Object.assign(this.state, { code: words, ground });

@@ -1,6 +1,7 @@
 // Runs jobs in workers. A new opening cancels all earlier requests: results under way are dropped. One worker, the film
 // worker, assembles the films; it processes its jobs in the order of their arrival.
 import { Box, EngineError } from "./api";
+import { returning } from "./domains";
 import { Answer, Fault, Job, Opening, Reply } from "./jobs";
 import { isShader } from "./wgsl";
 
@@ -91,8 +92,7 @@ export class FilmWorker {
 export function withUser(source: string, code: string): { source: string; first: number } {
   if (isShader(code)) return { source: `${source}\ncrescentUser(() => ({ wgsl: ${JSON.stringify(code)} }));`, first: 0 };
   const before = `${source}\ncrescentUser(() => { "use strict";\n`;
-  const names = ["sample", "pdf", "numbers"].map((name) => `${name}: typeof ${name} === "undefined" ? undefined : ${name}`);
-  return { source: `${before}${code}\n;return { ${names.join(", ")} }; });`, first: before.split("\n").length - 1 };
+  return { source: `${before}${returning(code)} });`, first: before.split("\n").length - 1 };
 }
 
 export class Pool {

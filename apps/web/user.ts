@@ -1,6 +1,7 @@
-// The user's sampler in a worker: its functions, called for many rows of the module's memory. The page puts the code
-// behind the script of the worker, as the argument of crescentUser (apps/web/pool.ts).
-import { Call, EngineError, UserCalls } from "./api";
+// The user's sampler in a worker: its functions, called for many rows of the module's memory, or for one point of a domain.
+// The page puts the code behind the script of the worker, as the argument of crescentUser (apps/web/pool.ts).
+import { Call, EngineError, noCalls, UserCalls } from "./api";
+import { directions } from "./domains";
 import { openedShader } from "./wgsl";
 
 type Vector = [number, number, number];
@@ -11,10 +12,18 @@ interface Functions {
   sample?: (wo: Vector, u: number[], context?: Context) => Drawn;
   pdf?: (wo: Vector, wi: Vector, context?: Context) => number;
   numbers?: unknown;
+  domain?: string; // that the code declares; of points, in place of these functions, Points
+  f?: unknown;
   wgsl?: string; // in their place: a file of WGSL
 }
-/** `bits`: of the answers' precision. */
-export interface UserSampler { calls: UserCalls; numbers: number; context: boolean; bits: number }
+type Point = number | number[]; // a number where there is one coordinate
+interface Points {
+  sample: (u: number[]) => { x: Point; pdf: number } | null | undefined;
+  pdf: (x: Point) => number;
+  f?: (x: Point) => number;
+}
+/** `bits`: of the answers' precision. `points`: the domain, if it is not of directions, and whether there is an integrand. */
+export interface UserSampler { calls: UserCalls; numbers: number; context: boolean; bits: number; points?: { domain: string; numbers: number; integrand: boolean } }
 
 const kinds = ["disk", "sphere", "rectangle"];
 
@@ -53,6 +62,36 @@ function shown(value: unknown): string {
 
 const wrongDraw = (d: unknown): EngineError => new EngineError("user", `sample returned ${shown(d)}; expected { wi: [x, y, z], pdf: number }, or null where nothing is drawn`);
 const wrongPdf = (p: unknown): EngineError => new EngineError("user", `pdf returned ${shown(p)}; expected a number`);
+
+/** One point at a time. */
+function callsOfPoints({ sample, pdf, f }: Points): UserCalls {
+  return (memory) => {
+    const doubles = (at: number, count: number): Float64Array => new Float64Array(memory().buffer, at, count);
+    const point_drawn: Call = (uAt, numbers, xAt, coordinates) => {
+      try {
+        const drawn = sample(Array.from(doubles(uAt!, numbers!)));
+        if (drawn === null) return 0;
+        const x = typeof drawn?.x === "number" ? [drawn.x] : drawn?.x ?? [];
+        if (typeof drawn?.pdf !== "number" || x.length !== coordinates || !Array.prototype.every.call(x, (one) => typeof one === "number"))
+          throw new EngineError("user", `sample returned ${shown(drawn)}; expected { x: ${coordinates === 1 ? "a number" : `${coordinates} numbers`}, pdf: number }, or null where nothing is drawn`);
+        doubles(xAt!, coordinates!).set(x);
+        return drawn.pdf;
+      } catch (error) {
+        throw fault(error);
+      }
+    };
+    const point_value: Call = (integrand, xAt, coordinates) => {
+      try {
+        const x = doubles(xAt!, coordinates!), value = (integrand ? f! : pdf)(coordinates === 1 ? x[0]! : Array.from(x));
+        if (typeof value !== "number") throw integrand ? new EngineError("user", `f returned ${shown(value)}; expected a number`) : wrongPdf(value);
+        return value;
+      } catch (error) {
+        throw fault(error);
+      }
+    };
+    return { ...noCalls, point_drawn, point_value };
+  };
+}
 
 function callsOf(sample: NonNullable<Functions["sample"]>, pdf: NonNullable<Functions["pdf"]>, context: boolean): UserCalls {
   return (memory) => {
@@ -99,7 +138,7 @@ function callsOf(sample: NonNullable<Functions["sample"]>, pdf: NonNullable<Func
         throw fault(error);
       }
     };
-    return { user_sample, user_pdf };
+    return { ...noCalls, user_sample, user_pdf };
   };
 }
 
@@ -116,11 +155,15 @@ export function userSampler(): () => UserSampler | Promise<UserSampler> | undefi
   return () => {
     if (failed) throw failed;
     if (!functions) return undefined;
-    const { sample, pdf, numbers = 2, wgsl } = functions;
+    const { sample, pdf, f, numbers = 2, domain = directions, wgsl } = functions, points = domain !== directions;
     if (wgsl !== undefined) return openedShader(wgsl);
-    if (!sample) throw new EngineError("user", "there is no function sample(wo, u)");
-    if (!pdf) throw new EngineError("user", "there is no function pdf(wo, wi)");
+    if (!sample) throw new EngineError("user", `there is no function ${points ? "sample(u)" : "sample(wo, u)"}`);
+    if (!pdf) throw new EngineError("user", `there is no function ${points ? "pdf(x)" : "pdf(wo, wi)"}`);
     if (typeof numbers !== "number" || !(numbers >= 1 && numbers <= 8 && Number.isInteger(numbers))) throw new EngineError("user", `numbers is ${shown(numbers)}; expected how many random numbers a sample takes, 1 to 8`);
+    if (points) {
+      const integrand = typeof f === "function";
+      return { calls: callsOfPoints({ sample, pdf, ...(integrand ? { f } : {}) } as unknown as Points), numbers, context: false, bits: 53, points: { domain, numbers, integrand } };
+    }
     const context = sample.length > 2 || pdf.length > 2;
     return { calls: callsOf(sample, pdf, context), numbers, context, bits: 53 };
   };

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "disk.h"
+#include "user_points.h"
 
 extern "C" {
 
@@ -117,8 +118,10 @@ CaseSetup setup_of(const ordered_json& query) {
         query.at("light").get<std::string>(), on.at("sharpness").get<double>());
 }
 
-/// {sampler: "" for that of the page, or a built-in one} at each w_o, [theta, azimuth] in degrees.
+/// {sampler: "" for that of the page, or a built-in one} at each w_o, [theta, azimuth] in degrees. A sampler of points
+/// has one case.
 std::vector<CheckCase> cases_of(const ordered_json& query) {
+    if (const auto points = page_point_sampler()) return make_user_cases(points, false);
     const CaseSetup setup = setup_of(query);
     const std::string built_in = query.value("sampler", "");
     std::vector<CheckCase> out;

@@ -1,7 +1,7 @@
 // A user's sampler in WGSL: a file for `crescent check FILE.wgsl`, whose comments `// crescent: KEY = VALUE` have the
 // snippets. The text around them is that of the program (python/crescent_shader), in shader_text.json. It is evaluated by
 // WebGPU, whose answers come later: the module waits for them (JSPI).
-import { Call, EngineError, UserCalls } from "./api";
+import { Call, EngineError, noCalls, UserCalls } from "./api";
 import texts from "./shader_text.json";
 
 interface Line { text: string; number: number } // of the file, from 1; 0: a line of the page
@@ -199,7 +199,7 @@ export async function openedShader(code: string): Promise<{ calls: UserCalls; nu
       doubles(outAt!, count!).set(out);
       return 0;
     };
-    return { user_sample, user_pdf };
+    return { ...noCalls, user_sample, user_pdf };
   };
   calls.suspends = true;
   return { calls, numbers: shader.numbers, context, bits: 24 };

@@ -5,10 +5,12 @@ import { Box, EngineError } from "./api";
 import { choice } from "./controls";
 import { byId, copied, download, el, minus, newTask, plusMinus, Speaker } from "./dom";
 import { Editor } from "./editor";
+import { directions, domainOf } from "./domains";
 import { exported, exports } from "./export";
 import { FilmView } from "./film";
 import { showLadders } from "./ladders";
 import { Described, Model, Shown, Viewer } from "./model";
+import { drawPoints, pointLayers, PointPicture } from "./points";
 import { FilmWorker, Pool, withUser } from "./pool";
 import { openingOf, Source } from "./state";
 import { grounds } from "./templates";
@@ -18,6 +20,7 @@ import { evaluations, four } from "./workshop_settings";
 
 const faults: Record<string, string> = {
   constant: "a constant factor", leak: "a share of uniform draws", cap: "a share of p that is never drawn", rotation: "a rotation", parameter: "a wrong parameter",
+  gap: "a share of p that is never drawn", shift: "a shift along the range",
 };
 
 export interface Verdict {
@@ -64,12 +67,14 @@ export class Workshop implements Viewer {
   private readonly charts = el("div", { class: "charts" });
   private readonly options = el("div", { class: "choices" });
   private readonly views = el("div", { class: "choices" });
+  private readonly besideBuiltIn = el("div");
   private readonly out = el("pre", {}, el("code", { id: "exported", tabindex: 0 }));
   private ground = "lambert";
   private scene: string;
   private beside = "cosine";
   private n = 16;
   private layer = "pdf";
+  private shownDomain = directions;
   private wo: [number, number] = [30, 0];
   private films: Pool | undefined;
   private probe: Pool | undefined;
@@ -102,9 +107,10 @@ export class Workshop implements Viewer {
             el("label", { class: "file" }, "Open a file", el("input", { type: "file", id: "open-code", accept: ".js,.mjs,.wgsl,.txt", onchange: (e: Event) => void this.openFile(e) })))),
         el("div", {}, this.views, el("figure", { class: "hemisphere" }, this.hemisphere, this.caption))),
       this.verdicts,
-      el("h3", {}, "Its film beside a built-in one"), this.options, this.film.root, this.charts,
+      this.besideBuiltIn,
       el("details", { id: "export", ontoggle: () => this.export() }, el("summary", {}, "Export: the program, a frame for C++ or Python"), formats,
         this.out, el("p", {}, button("copy-export", "Copy", () => void this.copyExport()), " ", button("save-export", "Save as a file", () => this.saveExport()))));
+    this.besideBuiltIn.append(el("h3", {}, "Its film beside a built-in one"), this.options, this.film.root, this.charts);
     window.setInterval(() => this.guard(), 500);
   }
 
@@ -115,13 +121,17 @@ export class Workshop implements Viewer {
     this.editor.code = code;
     this.ground = ground in grounds ? ground : "lambert";
     this.verdicts.replaceChildren();
-    this.layer = "pdf";
+    this.layer = this.drawsPoints ? "deviation" : "pdf";
     for (const step of [(): void => this.controls(), (): void => this.restart()]) {
       await newTask();
       if (era !== this.era) return;
       step();
     }
   }
+
+  /** The code's domain: a film and w_o exist for directions alone. */
+  private get domain(): string { return isShader(this.editor.code) ? directions : domainOf(this.editor.code); }
+  private get drawsPoints(): boolean { return this.domain !== directions; }
 
   get work(): Work { return { code: this.editor.code, ground: this.ground }; }
 
@@ -158,6 +168,10 @@ export class Workshop implements Viewer {
     this.end();
     if (!this.active) return;
     const { era } = this, { source, first } = withUser(this.at.worker, this.editor.code);
+    if (this.shownDomain !== this.domain) {
+      this.layer = this.drawsPoints ? "deviation" : "pdf";
+      this.controls();
+    }
     this.first = first;
     this.watch = performance.now();
     this.probe = new Pool(this.at.module, source, 1);
@@ -167,7 +181,7 @@ export class Workshop implements Viewer {
       this.watch = 0;
       this.say();
       void this.look();
-      this.render(source);
+      if (!this.drawsPoints) this.render(source);
     }, (error: unknown) => { this.watch = 0; this.failedIn(era, error); });
     this.export();
   }
@@ -180,12 +194,10 @@ export class Workshop implements Viewer {
     if (limit === 0) return;
     this.end();
     this.watch = 0;
-    this.say(`The code did not return within ${Math.round(limit / 1000)} s and was ended: look for a loop that does not end.`, this.loopLine());
+    this.say(`The code did not return within ${Math.round(limit / 1000)} s and was ended: look for a loop that does not end.`, this.lineOf(/\b(while|for|do)\b/));
   }
-  private loopLine(): number {
-    const lines = this.editor.code.split("\n"), at = lines.findIndex((line) => /\b(while|for|do)\b/.test(line));
-    return at + 1;
-  }
+  /** The first line of the code that has it; 0 if none has. */
+  private lineOf(words: RegExp): number { return this.editor.code.split("\n").findIndex((line) => words.test(line)) + 1; }
 
   /** A fault with its line, or none. */
   private say(words = "", line = 0, column = 0): void {
@@ -200,7 +212,7 @@ export class Workshop implements Viewer {
     if (era !== this.era) return;
     this.end(); // one fault is enough: the other workers would report it again
     const why = error instanceof EngineError ? error : new EngineError("bug", String(error));
-    if (why.kind !== "user") return this.say(why.sentence);
+    if (why.kind !== "user") return this.say(why.sentence, why.kind === "input" && this.drawsPoints ? this.lineOf(/\bdomain\b/) : 0);
     const lines = this.editor.code.split("\n").length, text = why.message.replace(/^Uncaught /, "").replace(/\.?$/, ".");
     const [line, column] = (why.lines ?? []).map(([l, c]) => [l - this.first, c] as const).find(([l]) => l >= 1 && l <= lines) ?? [0, 0];
     const syntax = /SyntaxError/.test(text), broken = syntax ? this.editor.brokenLine || lines : 0;
@@ -218,6 +230,7 @@ export class Workshop implements Viewer {
   private async look(): Promise<void> {
     const { probe, era, layer } = this, mine = ++this.looks, request = { ...this.request(), wo: [this.wo] };
     if (!probe) return this.restartSoon();
+    if (this.drawsPoints) return this.lookAtPoints(probe);
     try {
       const [disk, drawn] = await Promise.all([
         probe.request({ kind: "disk", call: "user_disk", request: { ...request, what: layer, size }, size }),
@@ -237,6 +250,22 @@ export class Workshop implements Viewer {
         }
       this.hemisphere.setAttribute("aria-label", `${layers.find(([key]) => key === layer)![1]}: ${all.length} draws at ${on}`);
       this.caption.replaceChildren(el("b", {}, on), `: ${captions[layer]}. ${below > 0 ? `${below} of ${draws} draws fell below the horizon or drew nothing. ` : ""}The mirror direction is to the right.`);
+      document.documentElement.dataset["looked"] = String(era);
+    } catch (error) {
+      this.failedIn(era, error);
+    }
+  }
+
+  /** Points by bins, and what the pdf expects there. */
+  private async lookAtPoints(probe: Pool): Promise<void> {
+    const { era, layer } = this, mine = ++this.looks;
+    try {
+      const { response } = await probe.request({ kind: "json", call: "user_points_drawn", request: { evaluations } }, true);
+      if (era !== this.era || mine !== this.looks) return;
+      const picture = response as PointPicture, words = drawPoints(this.hemisphere, picture, layer);
+      this.views.hidden = picture.kind !== "map"; // the others have one layer
+      this.hemisphere.setAttribute("aria-label", `draws over ${this.domain}: ${words}`);
+      this.caption.replaceChildren(el("b", {}, this.domain), `: ${words}.`);
       document.documentElement.dataset["looked"] = String(era);
     } catch (error) {
       this.failedIn(era, error);
@@ -268,7 +297,12 @@ export class Workshop implements Viewer {
   failed(error: EngineError): void { this.failedIn(this.era, error); }
 
   private controls(): void {
-    const again = (): void => { this.at.changed(this.work); this.restart(); };
+    const again = (): void => { this.at.changed(this.work); this.restart(); }, look = (value: string): void => { this.layer = value; void this.look(); };
+    this.shownDomain = this.domain;
+    this.besideBuiltIn.hidden = this.drawsPoints;
+    this.views.hidden = false;
+    this.hemisphere.classList.toggle("disk", !this.drawsPoints);
+    if (this.drawsPoints) return this.views.replaceChildren(choice("your-layer", "the picture shows", pointLayers, this.layer, look));
     this.options.replaceChildren(
       choice("your-scene", "scene", Object.entries(this.at.sources).filter(([, source]) => source.reference !== "note" || source.regions.length > 0).map(([name, s]) => [name, s.title]), this.scene, (value) => { this.scene = value; again(); }),
       choice("your-beside", "beside", samplers().map(({ name, label }) => [name, label]), this.beside, (value) => { this.beside = value; again(); }),
@@ -280,7 +314,7 @@ export class Workshop implements Viewer {
     });
     this.views.replaceChildren(
       choice("your-ground", "surface and light", Object.entries(grounds).map(([key, { words }]) => [key, words]), this.ground, (value) => { this.ground = value; this.verdicts.replaceChildren(); again(); }),
-      choice("your-layer", "the hemisphere shows", layers, this.layer, (value) => { this.layer = value; void this.look(); }),
+      choice("your-layer", "the hemisphere shows", layers, this.layer, look),
       el("div", { class: "choice" }, el("span", { class: "label" }, "w_o ", angle), theta));
   }
 
@@ -311,16 +345,18 @@ export class Workshop implements Viewer {
       el("th", { scope: "row" }, el("button", { type: "button", class: "plain", title: v.question, onclick: () => this.picture(v) }, v.name)),
       el("td", { class: v.state === "wrong" || v.state === "error" ? "bad" : v.state === "right" ? "good" : "" }, v.state),
       el("td", {}, minus(plusMinus(v.message)), power(v), ...(v.cause && !v.message.includes(v.cause) ? [` ${minus(plusMinus(v.cause))}`] : []))));
+    const where = this.drawsPoints ? `over ${this.domain}` : `at w_o of ${four.map(([theta]) => `${theta}°`).join(", ")}`;
     const first = result.verdicts.find(({ state }) => state === "wrong" || state === "error");
     this.verdicts.replaceChildren(
       el("p", {}, el("b", { "data-result": result.state }, result.state), first ? `: fix ${first.name} first. ` : ". ",
-        `${result.evaluations.toLocaleString("en")} evaluations at w_o of ${four.map(([theta]) => `${theta}°`).join(", ")} in ${(took / 1000).toFixed(1)} s. A right verdict says what it could have missed; the program, with ten times as many, misses less. Click a verdict for its picture.`),
-      el("table", { class: "verdicts" }, el("caption", {}, grounds[this.ground]!.words), el("tbody", {}, ...rows)));
+        `${result.evaluations.toLocaleString("en")} evaluations ${where} in ${(took / 1000).toFixed(1)} s. A right verdict says what it could have missed; the program, with ten times as many, misses less.${this.drawsPoints ? "" : " Click a verdict for its picture."}`),
+      el("table", { class: "verdicts" }, el("caption", {}, this.drawsPoints ? this.domain : grounds[this.ground]!.words), el("tbody", {}, ...rows)));
     if (first) this.picture(first);
   }
 
   /** The draws or directions that a verdict speaks of. */
   private picture(v: Verdict): void {
+    if (this.drawsPoints) return;
     this.wo = [v.theta, v.azimuth];
     this.layer = pictures[v.name] ?? "pdf";
     this.controls();

@@ -1,7 +1,9 @@
 // The samplers of the page in node, checked as the page checks them: those of the exercises before and after their
 // repair, and the templates.
 import { Api } from "../../../apps/web/api";
+import { pointTemplates, returning } from "../../../apps/web/domains";
 import { exercises } from "../../../apps/web/exercises";
+import { introduce } from "../../../apps/web/jobs";
 import { grounds, templates } from "../../../apps/web/templates";
 import { userSampler, UserSampler } from "../../../apps/web/user";
 import { evaluations, four } from "../../../apps/web/workshop_settings";
@@ -15,11 +17,10 @@ declare const global: Record<string, unknown>;
 export function checked(module: WebAssembly.Module, code: string, ground: string, wo = four): { state: string; verdicts: Verdict[] } {
   global["self"] = global;
   const take = userSampler();
-  const names = ["sample", "pdf", "numbers"].map((name) => `${name}: typeof ${name} === "undefined" ? undefined : ${name}`);
-  (global["crescentUser"] as (make: () => unknown) => void)(new Function(`"use strict";\n${code}\n;return { ${names.join(", ")} };`) as () => unknown);
+  (global["crescentUser"] as (make: () => unknown) => void)(new Function(`"use strict";\n${returning(code)}`) as () => unknown);
   const user = take() as UserSampler;
   const api = new Api(module, user.calls), { lobe, lambert, sharpness, light } = grounds[ground]!;
-  api.number("user_takes", user.numbers, user.context ? 1 : 0, user.bits);
+  introduce(user, api);
   return api.json("user_checked", { sampler: "", surface: { lobe, lambert, sharpness }, light, wo, evaluations });
 }
 
@@ -35,7 +36,7 @@ export function exerciseLines(module: WebAssembly.Module): string[] {
     lines.push(`${name}: ${before}${after ? `, then ${after}` : ""}; ${why} ${left}`);
     if (repair ? before !== "wrong" || after !== "right" : before !== "inconclusive") bad.push(lines[lines.length - 1]!);
   }
-  for (const [name, { code, ground }] of Object.entries(templates)) {
+  for (const [name, { code, ground }] of [...Object.entries(templates), ...Object.entries(pointTemplates)]) {
     const [found, why] = state(code, ground);
     lines.push(`template ${name}: ${found}`);
     if (found !== "right") bad.push(`template ${name}: ${found}; ${why}`);

@@ -119,6 +119,41 @@ def tests(page, folder):
                               "const s = document.getElementById(arguments[0]); s.value = arguments[1];"
                               "s.dispatchEvent(new Event('change'))", name, value)
 
+    def points_are_drawn(driver):
+        """Each domain of the menu has a template that is right, without a film; a missing root is named; the address gives
+        the domain back; a domain that does not exist and a point of another one have a sentence."""
+        browser.open_page(driver, page, "#part=write", until=LOOKED)
+        domains = driver.execute_script("return [...document.getElementById('domain').options].map((o) => o.value)")
+        assert len(domains) == 9 and domains[0] == "hemisphere", domains
+        for domain in domains[1:]:
+            choose(driver, "domain", domain)
+            browser.wait(driver, LOOKED)
+            found = verdicts(driver)
+            assert set(found.values()) <= {"right", "skipped"} and found["density"] == "right", (domain, found)
+            assert ("right" in found["mean"]) == (domain == "line:0,inf"), (domain, found)
+            assert not driver.find_element(By.ID, "your-film").is_displayed()
+            said = browser.text(driver, "#write figcaption")
+            assert ("no picture" in said) == (domain in ("cube", "set:2 x hemisphere")), (domain, said)
+            assert driver.find_element(By.ID, "your-layer").is_displayed() == (domain in ("disk", "square", "triangle")), domain
+        choose(driver, "domain", "disk")
+        browser.wait(driver, LOOKED)
+        lens = driver.execute_script("return document.querySelector('.cm-content').innerText")
+        write(driver, lens.replace("Math.sqrt(u[0])", "u[0]"))
+        browser.wait(driver, LOOKED)
+        assert verdicts(driver)["density"] == "wrong"
+        assert "a square root is missing" in browser.text(driver, "#verdicts"), browser.text(driver, "#verdicts")
+        address = driver.execute_script("return location.hash")
+        browser.open_page(driver, page, address, until=LOOKED)
+        assert driver.execute_script("return document.getElementById('domain').value") == "disk"
+        for code, line, word in ((lens.replace('"disk"', '"disc"'), 1, "'disc' is no domain of the page"),
+                                 (lens.replace('"disk"', '"line:0,1"'), 0, "expected { x: a number, pdf: number }")):
+            write(driver, code)
+            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}", seconds=60)
+            assert word in said and (not line or said.startswith(f"Line {line}: ")), f"{word} in line {line}: {said}"
+        choose(driver, "domain", "hemisphere")
+        browser.wait(driver, f"{data}.written")
+        assert driver.find_element(By.ID, "your-film").is_displayed()
+
     def a_shader_is_written(driver):
         """In WGSL both templates are right, a constant too many is wrong, a mistake has its line and a sampler its film; the
         address gives the code and its language back."""
@@ -236,5 +271,5 @@ def tests(page, folder):
         assert "refuses workers" in browser.text(driver, "#wrong"), browser.text(driver, "#wrong")
         assert driver.execute_script("return document.getElementById('bench').hidden")
 
-    return [reached_and_read, a_sampler_is_written, mistakes_have_lines, a_shader_is_written, without_webgpu,
+    return [reached_and_read, a_sampler_is_written, points_are_drawn, mistakes_have_lines, a_shader_is_written, without_webgpu,
             an_exercise_is_solved, the_main_film, workers_are_refused]
