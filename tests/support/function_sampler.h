@@ -38,7 +38,9 @@ struct FunctionSampler : SamplerSource {
     std::function<Vec3d(Vec3d wo, Vec3d wi)> weights{};           // of draws, by channel; none: without weights
     std::function<void(const PrimarySample& u, Draw&)> change{};  // of each draw at last
     Traits of{};
+    bool is_serial = false;
     std::string name() const override { return "made"; }
+    bool serial() const override { return is_serial; }
     Traits traits() const override { return of; }
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
         for (std::size_t i = 0; i < u.size(); ++i) {

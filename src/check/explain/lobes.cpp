@@ -23,11 +23,12 @@ constexpr double one_end = 1e-4;      // in units of the number
 constexpr double steep_rim = 0x1p-7;  // a steep change at 0 or at 1 is not a jump
 constexpr double least_draws = 400;   // so that the 5 % error of a cell biases x by 0.3 % at most
 constexpr std::uint32_t draws_for_lobes = 1u << 16, few_draws_for_lobes = 1u << 14;
-constexpr double fits_at = 1e-3;            // p-value of the remaining misfit
-constexpr double known_share = 0.02;        // of x, relative
-constexpr double known_probability = 0.05;  // half an interval
-constexpr double left_out = 0.1;            // an x that is 0 is known to this: a lobe that p does not have
-constexpr double known_factor = 0.1;        // half an interval of x, relative: a factor of a lobe that is named
+constexpr std::uint32_t more_draws = 4, most_draws_for_lobes = 1u << 18;  // times as many, where a fit may become clear
+constexpr double fits_at = 1e-3;                                          // p-value of the remaining misfit
+constexpr double known_share = 0.02;                                      // of x, relative
+constexpr double known_probability = 0.05;                                // half an interval
+constexpr double left_out = 0.1;      // an x that is 0 is known to this: a lobe that p does not have
+constexpr double known_factor = 0.1;  // half an interval of x, relative: a factor of a lobe that is named
 
 bool has_direction(const Draw& d) { return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z); }
 
@@ -248,6 +249,25 @@ bool explains(const Shares& s) {
     return chi_squared_tail(degrees, s.misfit) > fits_at || s.misfit - degrees < 0.02 * (s.before - degrees);
 }
 
+/// Whether x fits better than 1 beyond chance, and well: with more draws it may explain the difference.
+bool may_explain(const Shares& s) {
+    const double lobes = static_cast<double>(s.x.size());
+    return s.cells > lobes && chi_squared_tail(lobes, s.before - s.misfit) < fits_at &&
+        chi_squared_tail(s.cells - lobes, s.misfit) > fits_at;
+}
+
+/// The shares by which p has the lobes that it draws otherwise; none if they do not explain the difference.
+std::optional<Shares> shares_at(Source& source, const Place& place, const LobeChooser& chooser) {
+    const auto lobes = static_cast<std::uint32_t>(chooser.lobes.size());
+    for (std::uint32_t count = source.adapter.serial() ? few_draws_for_lobes : draws_for_lobes;; count *= more_draws) {
+        std::vector<LobeDraws> draws;
+        for (std::size_t k = 0; k < lobes; ++k) draws.push_back(draws_of(source, place, chooser, k, count / lobes));
+        const std::optional<Shares> shares = shares_of(cells_of(place, chooser, draws), lobes);
+        if (!shares || explains(*shares)) return shares;
+        if (!may_explain(*shares) || count * more_draws > most_draws_for_lobes) return {};
+    }
+}
+
 /// A probability with half of its interval, which is cut at 0 and 1.
 std::string probability_text(double p, double half) {
     if (p - half < 0) return fmt::format("at most {:.2g}", std::max(p + half, 0.0));
@@ -324,18 +344,13 @@ std::optional<LobeChooser> chooser_of(Source& source, const StreamKey& key) {
 
 std::optional<Cause> lobe_cause(std::span<const Place> places) {
     for (const Place& place : places) {
-        if (place.traits.domain && place.traits.domain->is_discrete()) continue;  // every entry is a lobe of its own
+        if (place.traits.domain && place.traits.domain->has_set()) continue;  // every entry is a lobe of its own
         Source source = place.source();
         const StreamKey key = place.key(13, Purpose::pairs, 2);
         const std::optional<LobeChooser> chooser = chooser_of(source, key);
         if (!chooser) continue;
-        const std::uint32_t count = source.adapter.serial() ? few_draws_for_lobes : draws_for_lobes;
-        std::vector<LobeDraws> draws;
-        for (std::size_t k = 0; k < chooser->lobes.size(); ++k)
-            draws.push_back(
-                draws_of(source, place, *chooser, k, count / static_cast<std::uint32_t>(chooser->lobes.size())));
-        const auto shares = shares_of(cells_of(place, *chooser, draws), chooser->lobes.size());
-        if (!shares || !explains(*shares)) continue;
+        const std::optional<Shares> shares = shares_at(source, place, *chooser);
+        if (!shares) continue;
         const auto [least, most] = std::ranges::minmax_element(shares->x);
         if (*most - *least < known_share) continue;  // a constant
         if (std::optional<std::string> text = lobe_sentence(*chooser, *shares, place.where()))

@@ -61,6 +61,20 @@ TEST(LobesOfASampler, AreDrawnWithOtherProbabilities) {
     EXPECT_NE(r.text().find("0.3, 0.7"), std::string::npos) << r.text();
 }
 
+/// A sampler that answers one caller at a time is asked for fewer draws, and for more of them where they would tell.
+TEST(LobesOfASampler, OverlapInASamplerForOneCaller) {
+    const auto draw = [](Vec3d o, const PrimarySample& u) {
+        return u[2] < 0.3 ? cosine_draw(o, u) : power_draw(tilt(40), 3, u);
+    };
+    FunctionSampler sampler = made(
+        draw, [](Vec3d, Vec3d w) { return (std::max(w.z, 0.0) / pi + power_pdf(tilt(40), 3, w)) / 2; }, 3,
+        Traits::WoDomain::none);
+    sampler.is_serial = true;
+    const Explained r = explained(std::move(sampler));
+    expect_cause(r, "chooser");
+    EXPECT_NE(r.text().find("0.3, 0.7"), std::string::npos) << r.text();
+}
+
 /// Two lights whose p is per area: the factor of each, r^2 / cos, is missing, and p does not integrate to 1.
 TEST(LobesOfASampler, MayEachHaveAFactor) {
     const Vec3d a = tilt(20, 0), b = tilt(60, 120);

@@ -312,6 +312,10 @@ bool DomainChart::is_discrete() const {
     return std::ranges::all_of(domain_.parts(), [](const DomainPart& part) { return part.kind == Kind::set; });
 }
 
+bool DomainChart::has_set() const {
+    return std::ranges::any_of(domain_.parts(), [](const DomainPart& part) { return part.kind == Kind::set; });
+}
+
 bool DomainChart::has_point(Vec3d w) const {
     const bool everywhere = std::ranges::all_of(
         domain_.parts(), [](const DomainPart& part) { return part.kind != Kind::set || cells_of(part) == part.count; });

@@ -38,6 +38,8 @@ public:
     double density(Vec3d w, double per_sr) const;
     /// Whether all of its parts are sets.
     bool is_discrete() const;
+    /// Whether one of them is a set.
+    bool has_set() const;
     /// The direction that the point of `w` has in another chart of the same domain.
     Vec3d in_chart(const DomainChart& other, Vec3d w) const;
     /// Whether a direction belongs to a point: not beyond the last entry of a set.
