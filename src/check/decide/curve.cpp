@@ -22,10 +22,6 @@ constexpr double far_below = 1e-3;
 /// The largest derivative that rounding in single precision, by 4 ulp, may hide.
 constexpr double unresolved = 4 * ulp / (2 * step);
 
-bool has_direction(const Draw& d) {
-    return d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z);
-}
-
 /// The derivatives at one u that are not 0; `known`: whether all of them are.
 struct Derivatives {
     std::vector<Vec3d> moving;

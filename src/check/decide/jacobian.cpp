@@ -35,9 +35,8 @@ struct Point {
     Branch branch{};
 };
 
-bool drawn(const Draw& d) { return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z); }
 bool same_direction(const Draw& a, const Draw& b) {
-    return drawn(a) && drawn(b) &&
+    return has_direction(a) && has_direction(b) &&
         std::fabs(a.wi.x - b.wi.x) + std::fabs(a.wi.y - b.wi.y) + std::fabs(a.wi.z - b.wi.z) < 1e-7;
 }
 
@@ -145,7 +144,7 @@ std::optional<int> chooser(Source& source, const std::vector<PrimarySample>& u, 
         const std::vector<Draw> d = draws_at(source, v);
         int moved = 0, tested = 0;
         for (std::size_t i = 0; i < u.size(); ++i)
-            if (drawn(draws[i])) {
+            if (has_direction(draws[i])) {
                 ++tested;
                 moved += !same_direction(d[i], draws[i]);
             }
@@ -178,7 +177,7 @@ std::vector<CentralDifferences> differences(Source& source, const std::vector<Po
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Draw* q = &d[4 * i];
             const double x = points[i].u[points[i].first], y = points[i].u[points[i].second];
-            if (std::min({x, y, 1 - x, 1 - y}) < 2 * h || !std::all_of(q, q + 4, drawn)) continue;
+            if (std::min({x, y, 1 - x, 1 - y}) < 2 * h || !std::all_of(q, q + 4, has_direction)) continue;
             const Vec3d a = q[0].wi - q[1].wi, b = q[2].wi - q[3].wi, n = cross(a, b);
             const auto [least, most] = std::minmax({q[0].pdf, q[1].pdf, q[2].pdf, q[3].pdf});
             out[i][s] = {
@@ -293,7 +292,7 @@ std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
     }
     std::vector<Point> derived;
     for (std::size_t i = 0; i < u.size(); ++i)
-        if (drawn(draws[i])) derived.push_back({.u = u[i], .draw = draws[i], .first = first, .second = second});
+        if (has_direction(draws[i])) derived.push_back({.u = u[i], .draw = draws[i], .first = first, .second = second});
     differentiate(source, derived);
     std::erase_if(derived, [](const Point& x) { return !(x.error < jacobian_error); });
     if (choosing) {

@@ -190,13 +190,8 @@ Sample drawn(Source& source, std::uint32_t count, const StreamKey& key) {
     const std::vector<PrimarySample> u = first_numbers(key, count, source.traits);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
-    Sample out;
-    for (const Draw& d : draws)
-        if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z)) out.w.push_back(d.wi);
-    out.p.resize(out.w.size());
-    source.density(out.w, out.p);
-    out.of = count;
-    return out;
+    UsableDraws usable = usable_draws(source, draws);
+    return {std::move(usable.w), std::move(usable.p), static_cast<double>(count)};
 }
 
 /// The noncentrality at which chi^2 with these degrees of freedom exceeds this level half of the time.

@@ -436,8 +436,7 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
     Pilot out;
     std::vector<PrimarySample> u;
     std::vector<Draw> draws;
-    std::vector<Vec3d> w;
-    std::vector<double> p, unweighted_pdf;
+    std::vector<double> unweighted_pdf;
     std::vector<Vec3d> unweighted;  // directions without a weight, among the first batch
     out.of = source.available(key, budget.pilot());
     for (std::uint32_t from = 0; from < out.of; from += batch_size) {
@@ -445,32 +444,20 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
         u.resize(n);
         draws.assign(n, {});
         source.draw(key, from, u, draws);
-        w.clear();
-        std::vector<const Draw*> usable;
-        for (const Draw& d : draws) {
-            if (d.delta != 0 || !(d.pdf > 0) || !std::isfinite(d.wi.x + d.wi.y + d.wi.z) || !std::isfinite(d.pdf))
-                continue;
-            if (!(dot(d.wi, d.wi) > 0)) continue;
-            w.push_back(d.wi);
-            usable.push_back(&d);
-        }
-        p.resize(w.size());
-        source.density(w, p);
+        const auto [rows, w, p] = usable_draws(source, draws);
         for (std::size_t i = 0; i < w.size(); ++i) {
-            if (!is_direction(source.traits, *usable[i], p[i])) continue;
+            const Draw& d = draws[rows[i]];
             out.points.push_back({to_chart(w[i]), p[i]});
             out.directions.push_back(w[i]);
-            if (out.u.size() < budget.of_steps())
-                out.u.push_back(u[static_cast<std::size_t>(usable[i] - draws.data())]);
-            if (!usable[i]->weight) {
+            if (out.u.size() < budget.of_steps()) out.u.push_back(u[rows[i]]);
+            if (!d.weight) {
                 if (from == 0) {
                     unweighted.push_back(w[i]);
-                    unweighted_pdf.push_back(usable[i]->pdf);
+                    unweighted_pdf.push_back(d.pdf);
                 }
                 continue;
             }
-            const Vec3d x = source.channels() == 3 ? usable[i]->weights
-                                                   : Vec3d{*usable[i]->weight, *usable[i]->weight, *usable[i]->weight};
+            const Vec3d x = source.channels() == 3 ? d.weights : Vec3d{*d.weight, *d.weight, *d.weight};
             for (int c = 0; c < 3; ++c)
                 if (std::isfinite(channel_of(x, c)))
                     out.weight[static_cast<std::size_t>(c)] += channel_of(x, c) / out.of;

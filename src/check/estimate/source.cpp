@@ -94,6 +94,28 @@ void Source::density_from(Vec3d other_wo, std::span<const Vec3d> wi, std::span<d
     adapter.exact_pdf(technique, pairs_of(other_wo, wi), out);
 }
 
+UsableDraws usable_draws(Source& source, std::span<const Draw> draws) {
+    UsableDraws out;
+    for (std::size_t i = 0; i < draws.size(); ++i)
+        if (has_direction(draws[i])) {
+            out.row.push_back(i);
+            out.w.push_back(draws[i].wi);
+        }
+    out.p.resize(out.w.size());
+    source.density(out.w, out.p);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < out.w.size(); ++k) {
+        if (!is_direction(source.traits, draws[out.row[k]], out.p[k])) continue;
+        out.row[kept] = out.row[k];
+        out.w[kept] = out.w[k];
+        out.p[kept++] = out.p[k];
+    }
+    out.row.resize(kept);
+    out.w.resize(kept);
+    out.p.resize(kept);
+    return out;
+}
+
 bool Source::reached_otherwise(Vec3d wi) {
     for (int t = 0; t < adapter.techniques(); ++t) {
         double p = 0;

@@ -98,13 +98,26 @@ private:
     void note_invalid(InvalidAnswers::Function function, Vec3d wi, double value);
 };
 
-/// Whether the draw is a direction of the tested density: not a delta part, and not an empty draw. p: the density
-/// there. Below the surface a draw counts only if p is positive; otherwise the estimator ignores it. A sampler that
-/// does not depend on w_o, such as that of a light, has no surface.
-inline bool is_direction(const Traits& traits, const Draw& d, double p) {
-    const bool no_surface = !traits.has_surface();
-    return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z) && (d.wi.z > 0 || p > 0 || no_surface);
+/// Whether the draw is a direction with a density: neither a delta part nor empty, and of finite numbers.
+inline bool has_direction(const Draw& d) {
+    return d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z) && dot(d.wi, d.wi) > 0;
 }
+
+/// Whether the draw is a direction of the tested density. p: the density there. Below the surface a draw counts only if
+/// p is positive; otherwise the estimator ignores it. A sampler that does not depend on w_o, such as that of a light,
+/// has no surface.
+inline bool is_direction(const Traits& traits, const Draw& d, double p) {
+    return has_direction(d) && (d.wi.z > 0 || p > 0 || !traits.has_surface());
+}
+
+/// Draws that are directions of the tested density: their rows, their directions, and p there.
+struct UsableDraws {
+    std::vector<std::size_t> row;
+    std::vector<Vec3d> w;
+    std::vector<double> p;
+};
+/// Evaluates p at these draws.
+UsableDraws usable_draws(Source& source, std::span<const Draw> draws);
 
 // ---- Whether pdf(w) and f(w) are random estimates that are right only in the mean, such as those of layered surfaces.
 // Then two answers for one direction differ or, if their random numbers are a hash of the direction, answers for

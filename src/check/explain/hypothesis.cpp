@@ -54,18 +54,9 @@ void draw_at(Place& place, std::uint32_t count) {
     const std::vector<PrimarySample> u = first_numbers(key, count, source.traits);
     std::vector<Draw> draws(count);
     source.draw(u, draws);
-    std::vector<Vec3d> w;
-    std::vector<const Draw*> usable;
-    for (const Draw& d : draws)
-        if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z) && dot(d.wi, d.wi) > 0) {
-            w.push_back(d.wi);
-            usable.push_back(&d);
-        }
-    std::vector<double> p(w.size());
-    source.density(w, p);
+    const auto [rows, w, p] = usable_draws(source, draws);
     const CheckAt& c = *place.at;
     for (std::size_t i = 0; i < w.size(); ++i) {
-        if (!is_direction(source.traits, *usable[i], p[i])) continue;
         place.w.push_back(w[i]);
         place.p.push_back(p[i]);
         const std::size_t l = c.plan->tree.find(to_chart(w[i]));

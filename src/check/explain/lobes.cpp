@@ -30,8 +30,6 @@ constexpr double known_probability = 0.05;                                // hal
 constexpr double left_out = 0.1;      // an x that is 0 is known to this: a lobe that p does not have
 constexpr double known_factor = 0.1;  // half an interval of x, relative: a factor of a lobe that is named
 
-bool has_direction(const Draw& d) { return d.delta == 0 && d.pdf > 0 && std::isfinite(d.wi.x + d.wi.y + d.wi.z); }
-
 struct NumberStep {
     std::size_t of;
     double from, to;
@@ -132,19 +130,10 @@ LobeDraws draws_of(
         }
         std::vector<Draw> draws(u.size());
         source.draw(u, draws);
-        std::vector<Vec3d> w;
-        std::vector<const Draw*> usable;
-        for (const Draw& d : draws)
-            if (has_direction(d)) {
-                w.push_back(d.wi);
-                usable.push_back(&d);
-            }
-        std::vector<double> p(w.size());
-        source.density(w, p);
-        for (std::size_t i = 0; i < w.size(); ++i) {
-            if (!is_direction(source.traits, *usable[i], p[i])) continue;
-            const std::size_t l = plan.tree.find(to_chart(w[i]));
-            const double h = plan.values(plan.tree.leaves()[l], w[i], p[i])[bridge];
+        const UsableDraws usable = usable_draws(source, draws);
+        for (std::size_t i = 0; i < usable.w.size(); ++i) {
+            const std::size_t l = plan.tree.find(to_chart(usable.w[i]));
+            const double h = plan.values(plan.tree.leaves()[l], usable.w[i], usable.p[i])[bridge];
             out.sum[l] += h;
             out.square[l] += h * h;
         }

@@ -44,7 +44,7 @@ std::vector<Compared> compared_at(const CheckCase& check_case, int technique, st
     std::vector<Vec3d> w;
     std::vector<const Draw*> usable;
     for (const Draw& d : draws)
-        if (d.delta == 0 && d.pdf > 0 && std::isfinite(d.pdf + d.wi.x + d.wi.y + d.wi.z)) {
+        if (has_direction(d)) {
             w.push_back(d.wi);
             usable.push_back(&d);
         }
