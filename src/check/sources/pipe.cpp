@@ -32,9 +32,10 @@ namespace {
 /// A multiple of 2^-24, which single precision represents exactly: u itself, or else an odd one, the middle of an
 /// interval of 2^-23. Multiples rounded down would favour one side of every threshold within the sampler.
 double for_float(double u) {
-    const double in_steps = u * 0x1p24, below = std::floor(in_steps);
-    const double nearest = below == in_steps ? below : below + (std::fmod(below, 2) == 0 ? 1 : 0);
-    return std::min(nearest * 0x1p-24, 1 - 0x1p-24);
+    const double in_steps = u * 0x1p24;
+    const auto below = static_cast<std::uint32_t>(in_steps);
+    const bool is_multiple = below == in_steps;
+    return std::min((is_multiple ? below : below | 1) * 0x1p-24, 1 - 0x1p-24);
 }
 
 /// The mistake that a program found in its input: "FILE:LINE:COLUMN: TEXT", "FILE: TEXT" or TEXT about `label`.
@@ -104,8 +105,9 @@ private:
     std::vector<double> example_;  // the columns of the context in a check
     bool has_f_ = false;
     mutable std::mutex lock_;
-    mutable std::vector<double> request_, answers_;               // of samples; guarded by lock_
-    mutable std::vector<float> single_request_, single_answers_;  // of a block in single precision; guarded by lock_
+    // Rows of the last query, guarded by lock_; factors_: of an answer, 0 without a request.
+    mutable std::vector<double> request_, answers_, factors_;
+    mutable std::vector<float> single_request_, single_answers_;  // of a block in single precision
 
     /// Calls work(w_o, rows, context) for the runs of a query: those of a scene, or all rows at the example.
     template <class Work> void for_each_run(const SamplerQuery& query, const Work& work) const {
@@ -203,11 +205,9 @@ private:
     }
     /// Writes the rows of a request for samples at one w_o. u: their random numbers, row by row. Returns the end.
     double* write_rows(Vec3d wo, std::span<const double> u, std::span<const double> context, double* to) const {
-        std::vector<double> before;
-        add_wo(wo_to_send(wo), before);
         const std::size_t numbers = own_numbers();
         for (std::size_t k = 0; k < u.size(); k += numbers) {
-            to = std::copy(before.begin(), before.end(), to);
+            to = write_wo(wo, to);
             for (const double number : u.subspan(k, numbers)) *to++ = number_for(number);
             to = std::copy(context.begin(), context.end(), to);
         }
@@ -218,15 +218,18 @@ private:
         if (buffer.size() < size) buffer.resize(size);
         return std::span(buffer).first(size);
     }
-    void add_wo(Vec3d wo, std::vector<double>& in) const {
-        if (columns_of_wo() > 0) in.insert(in.end(), {wo.x, wo.y, wo.z});
+    /// Returns the end of its columns.
+    double* write_wo(Vec3d wo, double* to) const {
+        if (columns_of_wo() == 0) return to;
+        const Vec3d sent = wo_to_send(wo);
+        to[0] = sent.x;
+        to[1] = sent.y;
+        to[2] = sent.z;
+        return to + 3;
     }
-    /// Appends w_i, or the point that it is. Returns the factor of a density there, 0 if there is no point.
-    double add_point(Vec3d wi, std::vector<double>& in) const {
-        const std::size_t before = in.size();
-        in.resize(before + columns_of_point());
-        const std::span<double> to = std::span(in).subspan(before);
-        if (domain()) return domain()->point(wi, to);
+    /// Writes w_i, or the point that it is. Returns the factor of a density there, 0 if there is no point.
+    double write_point(Vec3d wi, double* to) const {
+        if (domain()) return domain()->point(wi, {to, columns_of_point()});
         to[0] = wi.x;
         to[1] = wi.y;
         to[2] = wi.z;
@@ -341,28 +344,30 @@ private:
         const std::span<const Pair> pairs = query.pairs;
         const std::size_t lights = lights_of(query);
         const std::size_t given = columns_of_wo() + columns_of_point() + context_columns(hello_.uses, lights);
-        std::vector<double> in, factor(pairs.size());  // factor: of an answer; 0 without a request
+        const std::span<double> room = first_of(request_, pairs.size() * given),
+                                factor = first_of(factors_, pairs.size());
+        double* to = room.data();
         std::size_t row = 0;
         for_each_run(query, [&](Vec3d, std::size_t rows, const std::vector<double>& context) {
             for (const std::size_t end = row + rows; row < end; ++row) {
                 const Pair& p = pairs[row];
+                factor[row] = 0;
                 if (hello_.hemisphere && !(p.wi.z > 0)) continue;
-                const std::size_t before = in.size();
-                add_wo(wo_to_send(p.wo), in);
-                factor[row] = add_point(p.wi, in);
+                double* const point = write_wo(p.wo, to);
+                factor[row] = write_point(p.wi, point);
                 if (operation[0] == 'f' && hello_.f_cos && !domain())
                     factor[row] = p.wi.z != 0 ? 1 / std::fabs(p.wi.z) : 0;
-                if (factor[row] > 0) in.insert(in.end(), context.begin(), context.end());
-                else in.resize(before);
+                if (factor[row] > 0) to = std::copy(context.begin(), context.end(), point + columns_of_point());
             }
         });
+        const std::span<double> in = room.first(static_cast<std::size_t>(to - room.data()));
         const std::size_t count = in.size() / given;
-        std::vector<double> answers(count * columns);
+        const std::span<double> answers = first_of(answers_, count * columns);
         if (hello_.blocks()) query_block(operation, verb, count, given, columns, in, answers, lights);
         else if (count > 0)
             connection_.lines(count, expected, writer(verb, given, in), [&](std::size_t i, std::string_view s) {
                 if (operation[0] == 'f' && s == "-") {
-                    std::fill_n(answers.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, std::nan(""));
+                    std::ranges::fill(answers.subspan(i * columns, columns), std::nan(""));
                     return true;
                 }
                 for (std::size_t k = 0; k < columns; ++k)
@@ -442,13 +447,14 @@ private:
     /// Whether f is a number at one of these pairs.
     bool answers_f(const std::vector<Pair>& pairs) {
         const std::size_t columns = static_cast<std::size_t>(hello_.traits.channels);
-        std::vector<double> in;
+        const std::size_t given = columns_of_wo() + columns_of_point() + example_.size();
+        std::vector<double> in(given * pairs.size());
+        double* to = in.data();
         for (const Pair& pair : pairs) {
-            add_wo(wo_to_send(pair.wo), in);
-            add_point(pair.wi, in);
-            in.insert(in.end(), example_.begin(), example_.end());
+            double* const point = write_wo(pair.wo, to);
+            write_point(pair.wi, point);
+            to = std::copy(example_.begin(), example_.end(), point + columns_of_point());
         }
-        const std::size_t given = in.size() / pairs.size();
         std::vector<double> answer(pairs.size() * columns);
         bool any = false;
         if (hello_.blocks()) {
