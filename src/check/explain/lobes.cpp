@@ -264,18 +264,24 @@ std::string probability_text(double p, double half) {
     return with_error(p, half);
 }
 
+/// Whether p has a lobe as if it alone were drawn: times x, where it is drawn with this probability.
+bool is_without_probability(double probability, double x, double error) {
+    return std::fabs(x * probability - 1) < std::max(3 * error * probability, known_share);
+}
+
 /// `where`: " at w_o 60 deg", or "". Other probabilities of the same lobes leave the integral of p as it is: if that
 /// differs, each lobe has a factor, which is named if it is known.
 std::optional<std::string> lobe_sentence(const LobeChooser& chooser, const Shares& s, const std::string& where) {
     const int number = chooser.number + 1;
     std::vector<std::size_t> differing;
     std::vector<std::string> drawn, claimed, factors;
-    bool shares_known = true, factors_known = true;
+    bool shares_known = true, factors_known = true, without_probabilities = true;
     double sum = 0, sum_half = 0;
     for (std::size_t k = 0; k < s.x.size(); ++k) {
         const double share = chooser.lobes[k].share(), half = 1.96 * s.errors[k];
         shares_known = shares_known && half * share < known_probability;
         factors_known = factors_known && half < known_factor * s.x[k];
+        without_probabilities = without_probabilities && is_without_probability(share, s.x[k], s.errors[k]);
         sum += s.x[k] * share;
         sum_half += half * share;
         drawn.push_back(fmt::format("{:.3g}", share));
@@ -290,8 +296,7 @@ std::optional<std::string> lobe_sentence(const LobeChooser& chooser, const Share
     if (differing.size() == 1) {
         const LobeInterval& lobe = chooser.lobes[differing[0]];
         const double x = s.x[differing[0]];
-        const bool no_chooser =
-            std::fabs(x * lobe.share() - 1) < std::max(3 * s.errors[differing[0]] * lobe.share(), known_share);
+        const bool no_chooser = is_without_probability(lobe.share(), x, s.errors[differing[0]]);
         return fmt::format(
             "Of the lobes that u{} chooses, the one from {:.4g} to {:.4g} has {:.3g} +- {:.1g} times what "
             "it draws in p{}, the others are right: {}.",
@@ -299,6 +304,12 @@ std::optional<std::string> lobe_sentence(const LobeChooser& chooser, const Share
             no_chooser ? "the chooser's probability of that one lobe is left out"
                        : "the chooser's probability of that one lobe, or a constant of its own, is off");
     }
+    if (without_probabilities && factors_known)
+        return fmt::format(
+            "Of the lobes that u{} chooses, p has {} times what they draw{}, each as if it alone were drawn: the "
+            "chooser's "
+            "probability of each is left out.",
+            number, fmt::join(factors, ", "), where);
     if (std::fabs(sum - 1) > sum_half + known_share) {
         if (!factors_known) return {};
         return fmt::format(

@@ -75,6 +75,15 @@ TEST(LobesOfASampler, OverlapInASamplerForOneCaller) {
     EXPECT_NE(r.text().find("0.3, 0.7"), std::string::npos) << r.text();
 }
 
+TEST(LobesOfASampler, MayAllLackTheirProbability) {
+    const Vec3d a = tilt(20, 0), b = tilt(60, 120);
+    const auto draw = [a, b](Vec3d, const PrimarySample& u) { return power_draw(u[2] < 0.3 ? a : b, 40, u); };
+    const Explained r = explained(made(
+        draw, [a, b](Vec3d, Vec3d w) { return power_pdf(a, 40, w) + power_pdf(b, 40, w); }, 3, Traits::WoDomain::none));
+    expect_cause(r, "chooser");
+    EXPECT_NE(r.text().find("the chooser's probability of each is left out"), std::string::npos) << r.text();
+}
+
 /// Two lights whose p is per area: the factor of each, r^2 / cos, is missing, and p does not integrate to 1.
 TEST(LobesOfASampler, MayEachHaveAFactor) {
     const Vec3d a = tilt(20, 0), b = tilt(60, 120);
