@@ -12,8 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "check/estimate/stream.h"
-#include "check/sources/external.h"
+#include "crescent/crescent.h"
 
 namespace {
 

@@ -1,9 +1,6 @@
 // The user's functions are called for one point at a time, in double precision.
 #include "user_points.h"
 
-#include "check/report/verdicts.h"
-#include "check/sources/point_sampler.h"
-
 extern "C" {
 
 /// Provided by the page: writes the coordinates of a point and returns its density, 0 if nothing is drawn.
@@ -68,11 +65,13 @@ CRESCENT_EXPORT(user_takes_points)()->void {
 /// sector_labels}; {kind: ""} if there are no draws.
 CRESCENT_EXPORT(user_points_drawn)()->void {
     const ordered_json query = request();
-    const CheckCase here = make_user_cases(page_point_sampler(), false).front();
-    const check::CheckAt looked = check::check_sampler_at(*here.adapter, 0, here.wo, {here.light},
-        check::CheckBudget::limited(query.at("evaluations").get<double>()), seed_of(TestSettings::quick().seed, 0));
-    if (const auto line = check::line_picture(here, looked)) return respond(picture_of(*line));
-    if (const auto map = check::bin_map(here, looked)) return respond(picture_of(*map));
+    ProgressMonitor monitor;
+    TestSettings settings = TestSettings::quick();
+    settings.pictures = true;
+    settings.budget = check::CheckBudget::limited(query.at("evaluations").get<double>());
+    const CheckResult result = run_checks(make_user_cases(page_point_sampler(), false), settings, monitor);
+    if (!result.lines.empty()) return respond(picture_of(result.lines.front()));
+    if (!result.maps.empty()) return respond(picture_of(result.maps.front()));
     respond({{"kind", ""}});
 }
 

@@ -8,6 +8,7 @@
 #include "check/check.h"
 #include "check/sources/cases.h"
 #include "check/sources/check_case.h"
+#include "check/sources/point_sampler.h"
 #include "check/sources/random_numbers.h"
 #include "check/verdict.h"
 #include "experiment/experiment.h"
