@@ -1,6 +1,6 @@
 // Metrics with confidence intervals from RenderStats. Intervals are t intervals over renders, 95 %, cut at 0 if the
-// metric cannot be negative; for the squared bias by the jackknife, for counts by count_interval(). docs/error-rates.md
-// has their measured coverage.
+// metric cannot be negative; for the squared bias by the jackknife, for counts by count_interval().
+// tests/calibration/results/compare.md has their measured coverage.
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-// A rate in a cell of docs/error-rates.md: "3 of 100 (0.00623–0.0852)", with the 95 % interval of the rate.
+// A rate in a cell of tests/calibration/results: "3 of 100 (0.00623–0.0852)", with the 95 % interval of the rate.
 #pragma once
 
 #include <cstdint>

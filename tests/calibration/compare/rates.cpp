@@ -1,6 +1,6 @@
 // crescent_compare_rates [--calls 100] [--seed S]: false alarms, power, and coverage of the intervals of `crescent
-// compare --arm`. Prints a section of docs/error-rates.md. Each kind of noise is compared `--calls` times, each call
-// with its own seed; the true value of a metric is its mean over all calls of the kind. Rates have exact binomial
+// compare --arm`. Prints tests/calibration/results/compare.md. Each kind of noise is compared `--calls` times, each
+// call with its own seed; the true value of a metric is its mean over all calls of the kind. Rates have exact binomial
 // intervals.
 #include <CLI/CLI.hpp>
 #include <algorithm>

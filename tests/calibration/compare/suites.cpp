@@ -1,6 +1,6 @@
 // crescent_suites [--suites 100] [--views 50] [--repeats 200] [--seed S]: how often whole suites of unchanged views
-// report a change, and how often a change of the size that a view states is found. Prints a section of
-// docs/error-rates.md. Renders are synthetic, so the true values are known.
+// report a change, and how often a change of the size that a view states is found. Prints
+// tests/calibration/results/suites.md. Renders are synthetic, so the true values are known.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>

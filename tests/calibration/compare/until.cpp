@@ -2,7 +2,7 @@
 // anytime.py, which compares them with other implementations.
 // crescent_until [--suites 1000] [--pairs 200] [--seed S] [--rows FILE]: how often suites whose renders are made until
 // they are decided report a change that is not there, how many renders they make, and whether an 8-bit version of a
-// render is decided as its floating-point version. Prints a section of docs/error-rates.md. FILE gets a line for each
+// render is decided as its floating-point version. Prints tests/calibration/results/until.md. FILE gets a line for each
 // suite when it is decided; suites that have one are not decided again.
 #include <CLI/CLI.hpp>
 #include <algorithm>
