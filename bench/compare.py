@@ -20,6 +20,8 @@ import statistics
 import subprocess
 import sys
 
+from measured_part import print_measured
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build"
 LEAST = 10  # times Mitsuba
@@ -93,39 +95,14 @@ def table(rows):
     return "\n".join(out)
 
 
-def page(facts, rows, rounds, command):
-    version = facts.get("mitsuba")
-    peer = "Mitsuba was not installed." if version is None else (
-        f"Mitsuba {version}: variant `llvm_ad_rgb`, integrator `direct` with `emitter_samples` 0 and `bsdf_samples` "
-        f"{facts['n']}, 1 spp, hidden emitters, the samplers as a BSDF in Python; compilation is not counted. Its "
-        "scene differs in two details that cost no time: geometry also occludes the fill, so the means differ, and the "
-        "canvas is in front of the wall instead of in a recess."
-    )
-    return f"""# Speed
+def measured(facts, rows, rounds, command):
+    """Returns the part of docs/speed.md: the table, and how it was measured."""
+    peer = f"Mitsuba {facts['mitsuba']}" if facts.get("mitsuba") else "Mitsuba was not installed"
+    return f"""{table(rows)}
 
-How fast crescent renders films, compared with a straightforward program and with Mitsuba 3. Measured and written by
-
-```sh
-{command}
-```
-
-Not run in the tests: needs Mitsuba and an idle machine.
-
-The unit is Msamples/s: the median of {rounds} rounds, in which the programs run alternately on one machine. Ratios are
-those of the times of one round: the median, and in brackets the smallest and the largest. A sample is one draw of one
-geometry pixel, for all programs: {facts['geometry_pixels']} geometry pixels x N = {facts['n']}. Pixels that see no
-surface are not counted.
-
-{table(rows)}
-
-- {datetime.date.today().isoformat()}, {processor()}, {facts['threads']} threads, {facts['isa']}, {facts['compiler']},
-  crescent {facts['version']} ({facts['commit']})
-- Each time is the best of three consecutive films.
-- crescent: films with shadow tests, as in a run: primary rays are traced once per run.
-- straightforward: `bench/straightforward.cpp`, the same estimator in double precision, one ray at a time, on the same
-  number of threads.
-- {peer}
-"""
+By `{command}`, the median of {rounds} rounds, {facts['geometry_pixels']} geometry pixels x N = {facts['n']}, on
+{datetime.date.today().isoformat()}: {processor()}, {facts['threads']} threads, {facts['isa']}, {facts['compiler']},
+crescent {facts['version']} ({facts['commit']}). {peer}."""
 
 
 def main():
@@ -133,7 +110,7 @@ def main():
     parser.add_argument("--experiment", default="experiments/gallery.toml")
     parser.add_argument("--n", type=int, default=64, help="samples per pixel (default 64)")
     parser.add_argument("--rounds", type=int, default=7, help="turns each program takes (default 7)")
-    parser.add_argument("--write", action="store_true", help="write docs/speed.md")
+    parser.add_argument("--write", action="store_true", help="write the part of docs/speed.md")
     parser.add_argument("--no-mitsuba", action="store_true")
     args = parser.parse_args()
 
@@ -144,12 +121,9 @@ def main():
         facts, seconds = turn(bench, python, args)
         turns.append(seconds)
     rows = [summary(turns, arm, facts["geometry_pixels"] * facts["n"]) for arm in turns[0]]
-    print(table(rows))
-    if args.write:
-        command = shlex.join(["bench/compare.py", *sys.argv[1:]])
-        file = ROOT / "docs" / "speed.md"
-        _, title, rest = (file.read_text() if file.exists() else "").partition("\n## Web app\n")  # bench/page.py's
-        file.write_text(page(facts, rows, args.rounds, command) + title + rest)
+    command = shlex.join(["bench/compare.py", *sys.argv[1:]])
+    page = ROOT / "docs" / "speed.md" if args.write else None
+    print_measured(measured(facts, rows, args.rounds, command), page, "compare.py")
     against_mitsuba = [(row["arm"], row["ratios"]["mitsuba"]) for row in rows if "mitsuba" in row["ratios"]]
     slow = [arm for arm, ratios in against_mitsuba if statistics.median(ratios) < LEAST]
     if slow:

@@ -6,8 +6,8 @@
 Measures what ./page has built: Msamples/s of one thread by bench/page.mjs, then in Chromium, from a file, best of
 three: ms from opening to the first picture, to the gallery's three arms at N = 64, to the last metric, and from a
 slider's move to the first new pixels, the median of twenty moves, and to N = 64 again; ms between frames while the page
-works; ms of a check of a sampler in JavaScript. --write puts all of it under
-"Web app" in docs/speed.md. Needs chromium, chromedriver and selenium, like the tests of the page.
+works; ms of a check of a sampler in JavaScript. --write puts all of it into
+docs/speed.md. Needs chromium, chromedriver and selenium, like the tests of the page.
 """
 import argparse
 import datetime
@@ -23,12 +23,11 @@ import time
 from selenium.webdriver.common.keys import Keys
 
 from compare import processor
+from measured_part import print_measured
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/system/browser"))
 import browser  # noqa: E402
-
-TITLE = "\n## Web app\n"
 
 
 def rates(crescent, build):
@@ -178,8 +177,7 @@ def section(rows, facts, openings, slider, drawn, command):
     phases, checked = drawn
     framed = "\n".join(f"| {words} | {' | '.join(f'{ms:.0f}' for ms in times) or ' |  | '} | {'' if task is None else f'{task:.0f}'} |"
                        for words, *times, task in phases)
-    return f"""{TITLE}
-Msamples/s of one thread, the best of five alternating runs: the module of the web app and the SSE4 code of the program.
+    return f"""Msamples/s of one thread, the best of five alternating runs: the module of the web app and the SSE4 code of the program.
 
 | sampler | page | program, SSE4 | page / program |
 |---|---|---|---|
@@ -203,8 +201,7 @@ Msamples/s of one thread, the best of five alternating runs: the module of the w
 - {datetime.date.today().isoformat()}, {processor()}, {os.cpu_count()} threads, load {load:.1f} at the end;
   {openings[0]['browser']}; {facts['engine']}; crescent {facts['commit']}
 - Written by `{command}`.
-- The reference, computed by the module on one thread: {facts['reference']:.1f} s.
-"""
+- The reference, computed by the module on one thread: {facts['reference']:.1f} s."""
 
 
 def main():
@@ -218,10 +215,7 @@ def main():
     rows, facts = rates(args.crescent.resolve(), args.build.resolve())
     command = shlex.join(["bench/page.py", *sys.argv[1:]])
     text = section(rows, facts, [opened(page) for _ in range(3)], moved(page), frames(page), command)
-    print(text)
-    if args.write:
-        file = ROOT / "docs" / "speed.md"
-        file.write_text(file.read_text().split(TITLE)[0].rstrip("\n") + "\n" + text)
+    print_measured(text, ROOT / "docs" / "speed.md" if args.write else None, "page.py")
 
 
 if __name__ == "__main__":
