@@ -11,9 +11,10 @@ mkdir -p fresh
 (cd "$CRESCENT_SOURCE" && cp -r --parents CMakeLists.txt VERSION LICENSE cmake include src apps tests "$work/fresh")
 cp -r fresh plain
 
-# The file of a `<!-- file PATH -->` is the block of code that follows; that of `<!-- in PATH -->` is added to PATH, at
-# the end of its namespace. `<!-- list PATH "HEADER" WORD -->` is two words there; `<!-- line PATH MACRO ["HEADER"] LINE
-# -->` is a line at the end of the list MACRO, and the header that it needs.
+# The file of a `<!-- file PATH -->` is the block of code that follows, that of `<!-- copy FILE FOLDER -->` is FILE, to
+# which the page links; the block of `<!-- in PATH -->` is added to PATH, at the end of its namespace. `<!-- list PATH
+# "HEADER" WORD -->` is two words there; `<!-- line PATH MACRO ["HEADER"] LINE -->` is a line at the end of the list
+# MACRO, and the header that it needs.
 add_header() { sed -i "0,/^#include \"/s||#include $2\n&|" "fresh/$1"; } # PATH "HEADER"
 add_section() { # TITLE
     awk -v title="## $1" '/^## /{on = $0 == title} on' "$page" >section
@@ -28,6 +29,10 @@ add_section() { # TITLE
         [ "$how" = file ] && cp code "fresh/$path" && continue
         awk 'FNR == NR { code = code $0 "\n"; next } /^}  \/\/ namespace/ { print code } 1' code "fresh/$path" >listed &&
             mv listed "fresh/$path"
+    done || exit 1
+    sed -n 's/^<!-- copy \(.*\) -->$/\1/p' section | while read -r file folder; do
+        grep -qF "(../$file)" section || die "docs/extending.md has no link to $file"
+        cp "$CRESCENT_SOURCE/$file" "fresh/$folder"
     done || exit 1
     sed -n 's/^<!-- list \(.*\) -->$/\1/p' section | while read -r path header word; do
         add_header "$path" "$header"
@@ -50,7 +55,7 @@ for title in "A sampler" "A lobe" "A shape" "A light" "A metric" "A plate" "A ve
     add_section "$title"
     diff -rq plain fresh | sort >differences || true
     count=$(wc -l <differences)
-    places=$((1 + $(grep -c '^<!-- file ' section)))
+    places=$((1 + $(grep -c '^<!-- \(file\|copy\) ' section)))
     [ $((count - touched)) -eq $places ] || die "$title touches $((count - touched)) places, not one list and one new file:
 $(cat differences)"
     touched=$count
