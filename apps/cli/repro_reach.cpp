@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <regex>
 #include <sstream>
@@ -15,6 +17,22 @@ namespace crescent::cli {
 namespace {
 
 std::string python_text(const std::string& text) { return nlohmann::json(text).dump(); }
+
+/// What takes the place of crescent for a sampler's file that imports nothing of it but Sampler; a remark if it imports
+/// more; "" if it imports nothing.
+std::string replaced_import(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    static const std::regex imported("(^|\\n)[ \\t]*(import|from)[ \\t]+crescent\\b");
+    static const std::regex more(
+        "crescent\\.(?!Sampler\\b)|import[ \\t]+crescent[ \\t]+as|from[ \\t]+crescent[ \\t]+import[ "
+        "\\t]+(?!Sampler[ \\t]*(\\r?\\n|$))");
+    if (!std::regex_search(text, imported)) return "";
+    if (std::regex_search(text, more)) return "# The file of the sampler needs crescent.\n";
+    return "from types import SimpleNamespace as Space\n"
+           "def put(sample, pdf=None, f=None, **more): return Space(sample=sample, pdf=pdf, f=f, **more)\n"
+           "sys.modules['crescent'] = Space(Sampler=put)  # all that the file of the sampler uses of it\n";
+}
 
 }  // namespace
 
@@ -67,6 +85,7 @@ std::string import_lines(const std::string& word) {
         std::ranges::replace(module, '/', '.');
     }
     std::string out = "import sys; sys.path.insert(0, " + python_text(folder) + ")\nimport numpy as np\n";
+    if (file.ends_with(".py")) out += replaced_import(file);
     if (name.empty()) return out + "import " + module + " as sampler\n";
     return out + "from " + module + " import " + name +
         " as sampler\nsampler = sampler() if isinstance(sampler, type) else sampler\n";

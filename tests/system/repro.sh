@@ -171,3 +171,13 @@ export CRESCENT_PYTHON=$python PYTHONPATH=$CRESCENT_BUILD/python
 expect 1 "$CRESCENT" check --quiet bsdf/lobes/clearcoat.py --repro clearcoat_repro.py
 unset PYTHONPATH
 shows "pdf integrates to 2.8" clearcoat_repro.py
+
+# A file that makes a crescent.Sampler is shown without crescent; one that uses more of it says that it needs it.
+sed '1i import crescent' "$CRESCENT_SOURCE/examples/clearcoat.py" >held.py
+printf '\nlobe = crescent.Sampler(sample, pdf, f)\n' >>held.py
+PYTHONPATH=$CRESCENT_BUILD/python expect 1 "$CRESCENT" check --quiet held.py:lobe --repro held_repro.py
+expect 1 /usr/bin/python3 held_repro.py
+grep -q "pdf integrates to 2.8" printed || die "a file that imports crescent is not shown without: $(cat said held_repro.py)"
+sed 's/^lobe = .*/lobe = crescent.adapters.numpy(sample, lambda wo, wi: f(wo, wi) * abs(wi[:, 2]), pdf)/' held.py >adapted.py
+PYTHONPATH=$CRESCENT_BUILD/python expect 1 "$CRESCENT" check --quiet adapted.py:lobe --repro adapted_repro.py
+grep -q "^# The file of the sampler needs crescent" adapted_repro.py || die "no remark: $(cat adapted_repro.py)"
