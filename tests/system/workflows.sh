@@ -22,12 +22,10 @@ expect 1 actionlint -oneline
 grep -q 'pakage' printed || die "an input that action.yml has not is not found: $(cat printed)"
 cp "$CRESCENT_SOURCE"/.github/workflows/release.yml .github/workflows
 
-# The workflow of docs/ci.md, with this action.
+# The workflow of docs/ci.md, with this action, and the one that accepts.
 awk '/^```yaml$/ { inside = 1; next } inside && /^```$/ { exit } inside' "$CRESCENT_SOURCE/docs/ci.md" |
     sed 's,uses: [^ ]*/crescent@.*,uses: ./,' >.github/workflows/renders.yml
-awk '/^```yaml$/ { ++block; inside = 1; next } /^```$/ { inside = 0 } inside && block == 2' "$CRESCENT_SOURCE/docs/ci.md" \
-    >.github/workflows/accept.yml
-grep -q 'crescent accept' .github/workflows/accept.yml || die "docs/ci.md has no workflow that accepts"
+cp "$CRESCENT_SOURCE/examples/ci/accept.yml" .github/workflows
 grep -q 'suite: suite.toml' .github/workflows/renders.yml || die "docs/ci.md has no workflow"
 expect 0 actionlint -oneline
 
