@@ -65,17 +65,36 @@ for option in $(grep -o -- '`[^`]*`' "$CRESCENT_SOURCE/AGENTS.md" | grep -o -- '
     grep -q -- "$option\b" options || die "AGENTS.md names $option, which check and compare do not have"
 done
 
-# The search field of the site finds each word of a heading, and options.
+# The search field of the site finds each word of a heading, bold terms, first cells of tables, variables and options,
+# with their dashes and without.
 mkdir -p site/search
 printf 'var indexSectionsWithContent =\n{\n  0: "abr",\n  1: "b"\n};\n' >site/search/searchdata.js
 for at in 0 1 2; do printf "var searchData=\n[\n  ['b_0',['b',['../b.html',1,'']]]\n];\n" >site/search/all_$at.js; done
+printf '<script src="all_0.js"></script>' >site/search/all_0.html
 {
     printf '<div class="title">Other things</div>'
     printf '<h1><a class="anchor" id="x1"></a>\nA <code>b</code> &amp; a Reservoir</h1>'
 } >site/md_a.html
-printf '<div class="title">x</div><td><code>--repro FILE</code></td>' >site/index.html
+{
+    printf '<div class="title">x</div><div class="textblock"><p >In RGB.</p><b>Bad tail.</b> <code>A_B</code>\n'
+    printf '<tr class="r">\n<td><code>--repro FILE</code></td><td>beside</td></tr><div>compare --until it</div>'
+} >site/index.html
 expect 0 python3 "$CRESCENT_SOURCE/tools/site_search.py" site
-grep -qF '["reservoir_s1", ["A b & a Reservoir", ["../md_a.html#x1", 1, "Other things"]]],' site/search/all_2.js &&
-    grep -qF '["repro_s2", ["--repro", ["../index.html#", 1, "x"]]],' site/search/all_2.js &&
-    grep -q "^  \['b_0'" site/search/all_2.js ||
-    die "the words are not found: $(cat printed site/search/all_2.js)"
+found() { # KEY LABEL LINK: the search field has it.
+    local letters letter=${1:0:1}
+    letters=$(sed -n 's/^  0: "\(.*\)",$/\1/p' site/search/searchdata.js)
+    [ "$letter" != _ ] || letter=-
+    grep -q "\"$1_s[0-9]*\", \[\"$2\", \[\"../$3\"" \
+        "site/search/all_$(printf %x "$(printf %s "${letters%%"$letter"*}" | wc -c)").js" ||
+        die "'$1' is not found: $(cat printed site/search/*.js)"
+}
+found reservoir "A b & a Reservoir" md_a.html#x1
+found bad_20tail "Bad tail" index.html#
+found tail "Bad tail" index.html#
+found a_5fb A_B index.html#
+found rgb x index.html#
+found repro --repro index.html#
+found _2d_2drepro --repro index.html#
+found _2d_2duntil --until index.html#
+! grep -q beside site/search/*.js || die "other cells than the first are found"
+grep -q "all_3.js" site/search/all_3.html && grep -q "^  \['b_0'" site/search/all_2.js || die "an entry is lost"
