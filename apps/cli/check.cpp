@@ -390,6 +390,15 @@ bool whole_list(const CheckFlags& flags) {
     return flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();
 }
 
+/// Right if each verdict is the expected one; inconclusive if others were only not decided.
+State state_of_list(const CheckResult& j) {
+    if (j.as_expected) return State::right;
+    const bool not_decided = j.unmet.empty() && std::ranges::all_of(j.verdicts, [](const Verdict& v) {
+        return v.waived || v.expected || v.state == State::inconclusive;
+    });
+    return not_decided ? State::inconclusive : State::wrong;
+}
+
 /// With hundreds of cases, each ends at the first stage that leaves nothing open.
 TestSettings settings_of_list(const CheckFlags& flags) {
     TestSettings r = test_settings_of(flags);
@@ -564,12 +573,14 @@ int check(const CheckFlags& given) {
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();
     const bool all = whole_list(flags);
-    if (all) j.state = j.as_expected ? State::right : State::wrong;  // the state is that of the whole list
+    if (all) j.state = state_of_list(j);
     print_verdicts(j, flags.verbose);
     if (flags.verbose) print(cost_of(j, watch.seconds()));
     if (all)
-        print(j.as_expected ? "every arm gets the verdicts expected of it\n"
-                            : "not every arm gets the verdicts expected of it\n");
+        print(j.as_expected ? "every sampler gets the verdicts expected of it\n"
+                : j.state == State::inconclusive
+                ? "every verdict that was decided is the expected one; --full decides more\n"
+                : "not every sampler gets the verdicts expected of it\n");
     write_files(flags, j);
     return exit_of(j.state, flags);
 }
