@@ -284,8 +284,8 @@ TEST_F(Accepting, MomentsOfWholeNumbersAreReadAgain) {
         for (std::uint32_t k = 0; k < 6; ++k) {
             std::string text = fmt::format("P5\n{} {}\n255\n", side, side);
             for (std::uint32_t i = 0; i < side * side; ++i)
-                text += static_cast<char>(
-                    std::min(255.0, std::round(60 * synthetic_pixel({Kind::gamma, 0.2, bias}, seed + k, i, side))));
+                text += static_cast<char>(static_cast<unsigned char>(
+                    std::min(255.0, std::round(60 * synthetic_pixel({Kind::gamma, 0.2, bias}, seed + k, i, side)))));
             write(fmt::format("out/v-{}.exr", k), text);
         }
     };
