@@ -14,7 +14,7 @@ import numpy as np
 
 from . import GREETING_OF_PYTHON, BadInput, MissingPart
 
-MOST_ROWS = 1 << 15  # of a request: as the program sends them
+MOST_ROWS = 1 << 16  # of a request: as the program sends them
 Array = np.ndarray[Any, Any]
 
 

@@ -156,8 +156,7 @@ void PipeConnection::take_lines(Exchange& x, const Read& read) {
 
 // Rows are read from and written to the caller's memory without a copy: they are most of the exchanged data.
 void PipeConnection::blocks(const Rows& rows) {
-    constexpr std::size_t most_rows =
-        1 << 15;  // 65536 are allowed; smaller blocks let both sides work at the same time
+    constexpr std::size_t most_rows = 1 << 16;  // of a block, docs/samplers.md
     const std::size_t row_size = rows.in.size() / rows.count;
     Exchange x{.count = rows.count, .expected = rows.expected, .describe = rows.describe, .produce = {}, .take = {}};
     check_open();
