@@ -821,7 +821,31 @@ def mitsuba_cases() -> list[tuple[str, Case]]:
                 ),
             )
         )
+    for extinction in (0.3, 1.7, 25.0):
+        out.append((f"homogeneous medium, {extinction} / m", medium_case(mi, extinction)))
     return out
+
+
+def medium_case(mi: Any, extinction: float) -> Case:
+    """The distances that a homogeneous medium samples along a ray that nothing else ends."""
+    import drjit as dr
+
+    medium = mi.load_dict({"type": "homogeneous", "sigma_t": extinction, "albedo": 0.8})
+
+    def sample(u: Array) -> Array:
+        ray = mi.Ray3f(mi.Point3f(dr.zeros(mi.Float, len(u)), 0, 0), mi.Vector3f(0, 0, 1))
+        number = mi.Float(np.ascontiguousarray(u[:, 0], np.float32))
+        return np.array(medium.sample_interaction(ray, number, mi.UInt32(0), mi.Bool(True)).t, float)
+
+    def pdf(distance: Array) -> Array:
+        at = dr.zeros(mi.MediumInteraction3f, len(distance))
+        at.t = mi.Float(np.ascontiguousarray(distance, np.float32))
+        at.combined_extinction = mi.Color3f(extinction)
+        end = dr.zeros(mi.SurfaceInteraction3f, len(distance))
+        end.t = dr.inf
+        return np.array(medium.transmittance_eval_pdf(at, end, mi.Bool(True))[1].x, float)
+
+    return Case("line:0,inf", 1, sample, pdf)
 
 
 def check_mitsuba(seed: int, number: int, full: bool) -> list[dict[str, Any]]:
