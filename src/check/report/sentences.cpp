@@ -69,22 +69,20 @@ std::pair<double, double> sums_below(const CheckAt& c, int node) {
     return {a.first + b.first, a.second + b.second};
 }
 
-/// Draws over the expectation of p in one half of a node, without regard to the draws elsewhere. It names the half in
-/// which they differ by more standard errors.
-std::string node_sentence(const CheckAt& c, int node) {
-    const TreeNode& x = c.plan->tree.nodes()[static_cast<std::size_t>(node)];
-    const double n = c.observations.independent;
-    const auto errors_at = [&](int child) {
-        const auto [drawn, claimed] = sums_below(c, child);
-        return std::fabs(drawn - claimed) / std::sqrt(std::max(drawn, claimed) / n + 1e-300);
-    };
-    const int half = errors_at(x.child) >= errors_at(x.child + 1) ? x.child : x.child + 1;
-    const auto [drawn, claimed] = sums_below(c, half);
-    const std::string where = region_text(c.plan->tree.nodes()[static_cast<std::size_t>(half)].rect, c.traits);
-    if (!(claimed > 0)) return fmt::format("Draws fall where p expects none: {}.", where);
-    const double error = std::sqrt(std::max(drawn, 1 / n) / n) / claimed;
-    return fmt::format(
-        "Draws are {} times what p expects {}.", with_error(drawn / claimed, half_width_95 * error), where);
+/// The share of the draws at a node that are in its first half, or in the other one if p has less of that.
+std::string node_sentence(const CheckAt& c, const Answer& a) {
+    const std::vector<TreeNode>& nodes = c.plan->tree.nodes();
+    const TreeNode& x = nodes[static_cast<std::size_t>(a.member)];
+    const double first = sums_below(c, x.child).second, both = first + sums_below(c, x.child + 1).second;
+    const bool is_first = first <= both - first;
+    const double share = (is_first ? first : both - first) / both, per_draw = first / both / a.expected;
+    const ChartRect& half = nodes[static_cast<std::size_t>(is_first ? x.child : x.child + 1)].rect;
+    if (!(share > 0)) return fmt::format("Draws fall where p expects none: {}.", region_text(half, c.traits));
+    const double difference = a.difference * per_draw;
+    return fmt::format("Of the draws{} {} % are {}, where p has {:.4g} %.",
+        x.depth == 0 ? "" : " " + region_text(x.rect, c.traits) + ",",
+        with_error(100 * (is_first ? share + difference : share - difference), 100 * half_width_95 * a.sd * per_draw),
+        region_text(half, c.traits), 100 * share);
 }
 
 std::string band_sentence(int member, const Answer& a, const Traits& traits) {
@@ -183,7 +181,7 @@ std::string sentence_of(const CheckAt& c, const Finding& f) {
         case Family::mass:
         case Family::mass_sets: return mass_sentence(c, a);
         case Family::node:
-        case Family::node_sets: return node_sentence(c, f.first.member);
+        case Family::node_sets: return node_sentence(c, a);
         case Family::bridge:
         case Family::bridge_sets:
         case Family::slope:

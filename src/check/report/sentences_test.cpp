@@ -80,5 +80,24 @@ TEST(SentencesOfFindings, HaveTheSizeOfTheFault) {
     EXPECT_THAT(sentence_of(at, *mass_finding), HasSubstr("1.25"));
 }
 
+/// The sentence has the share that the test measured: its interval does not contain that of p.
+TEST(Sentences, OfANodeStateWhatItsTestMeasured) {
+    FunctionSampler s;  // 52 % of the draws have an azimuth below 180 degrees
+    s.draw = [](Vec3d o, const PrimarySample& u) {
+        PrimarySample moved = u;
+        moved[1] = u[1] < 0.52 ? u[1] / 1.04 : 1 - (1 - u[1]) / 0.96;
+        return cosine_draw(o, moved);
+    };
+    const CheckAt c = check_sampler_at(s, 0, {0, 0, 1}, {}, CheckBudget::limited(), 1);
+    const auto node = std::ranges::find_if(c.findings,
+        [](const Finding& f) { return f.first.family == Family::node || f.first.family == Family::node_sets; });
+    ASSERT_NE(node, c.findings.end());
+    double drawn = 0, half = 0, claimed = 0;
+    const std::string text = sentence_of(c, *node);
+    ASSERT_EQ(std::sscanf(text.c_str() + text.find(" +- ") - 6, "%lf +- %lf", &drawn, &half), 2) << text;
+    ASSERT_EQ(std::sscanf(text.c_str() + text.find("p has ") + 6, "%lf", &claimed), 1) << text;
+    EXPECT_GT(std::fabs(drawn - claimed), half) << text;
+}
+
 }  // namespace sentences_test
 }  // namespace crescent::check

@@ -95,7 +95,9 @@ std::vector<Replicates> replicates_by_row(const Tree& tree, std::vector<Replicat
 
 namespace {
 
-Answer answer_of_sets(const Evidence& e, const std::vector<Replicates>& sets, std::size_t node, const NodeSplit& s) {
+/// drawn: the sum over the node, as in `test_nodes`.
+Answer answer_of_sets(
+    const Evidence& e, const std::vector<Replicates>& sets, std::size_t node, const NodeSplit& s, double drawn) {
     const TreeNode& x = e.plan.tree.nodes()[node];
     const Replicates &whole = sets[static_cast<std::size_t>(x.row)],
                      &half = sets[static_cast<std::size_t>(e.plan.tree.nodes()[static_cast<std::size_t>(x.child)].row)];
@@ -110,7 +112,7 @@ Answer answer_of_sets(const Evidence& e, const std::vector<Replicates>& sets, st
         .sd = std::sqrt(v),
         .floor = s.floor,
         .p = 1,
-        .expected = s.share,
+        .expected = s.share * drawn,
         .claimed = s.claim_variance / (v + 1e-300)};
     a.p = student_p_of(std::fabs(of_sets.mean) - s.floor, v,
         freedom(v, s.doubt + 2 * of_sets.variance * of_sets.variance / (replicate_sets - 1)));
@@ -148,7 +150,7 @@ void test_nodes(const Evidence& e, const Visit& visit) {
         // The mean of a replicate must be nearly normal: with fewer draws the tail of Student's t is wrong by orders of
         // magnitude.
         if (by_sets && nodes[i].depth < replicated_depth && s.smaller_half / replicate_sets >= e.least)
-            visit(answer_of_sets(e, sets, i, s));
+            visit(answer_of_sets(e, sets, i, s, sums[i].drawn));
     }
     for (std::size_t d = 0; d < chi.size(); ++d)
         if (degrees[d] > 0)
