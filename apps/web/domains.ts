@@ -5,7 +5,7 @@ import { Template } from "./templates";
 /** The domain of all other samplers of the page. */
 export const directions = "hemisphere";
 
-/** The domain that the code declares by a line such as `const domain = "disk";`. */
+/** The domain that the code declares by a line such as `const domain = "disk";`; WGSL, which has no texts, declares none. */
 export function domainOf(code: string): string {
   return /^[ \t]*(?:const|let|var)[ \t]+domain[ \t]*=[ \t]*(["'`])([^"'`\n]*)\1/m.exec(code)?.[2] ?? directions;
 }

@@ -186,7 +186,7 @@ ${commented(code, "#")}
 
 /** The sampler in this format, with the f of this ground (apps/web/templates.ts). */
 export function exported(format: string, code: string, ground: string): { name: string; text: string } {
-  const wgsl = isShader(code), domain = wgsl ? directions : domainOf(code);
+  const wgsl = isShader(code), domain = domainOf(code);
   if (domain !== directions) {
     if (format === "cpp") return { name: "sampler.h", text: cppOfPoints(domain, code) };
     if (format === "python") return { name: "sampler.py", text: pythonOfPoints(domain, code) };

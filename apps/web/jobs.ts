@@ -90,7 +90,7 @@ const readsReference = (job: Job): boolean => job.kind === "reference" || job.ki
 /** Tells the module what the user's functions take. Throws EngineError. */
 export function introduce({ numbers, context, bits, points }: UserSampler, api: Api): void {
   api.number("user_takes", numbers, context ? 1 : 0, bits);
-  if (points) api.say("user_takes_points", points);
+  if (points) api.say("user_takes_points", { ...points, numbers });
 }
 
 /** An instance that opens the experiment of a job, and opens it again after a failure. */

@@ -27,6 +27,8 @@ import { command, fresh, nativeHash, openingOf, overrides, read, Source, State, 
 
 export interface Data { version: string; sources: Record<string, Source> }
 const allTemplates: Readonly<Record<string, Template>> = { ...templates, ...shaderTemplates, ...pointTemplates };
+/** The language and the domain of code. */
+const kindOf = (code: string): string => `${isShader(code) ? "wgsl" : "javascript"} ${domainOf(code)}`;
 type Opened = Pick<State, "experiment" | "set" | "arms">;
 interface Sampler { name: string; label: string; summary: string }
 
@@ -349,11 +351,11 @@ export class Page implements Viewer {
       this.turn();
       void this.loadCode();
     };
-    const lacks = missingForShaders(), wgsl = isShader(code), domain = wgsl ? directions : domainOf(code);
+    const lacks = missingForShaders(), wgsl = isShader(code), domain = domainOf(code);
     const of = wgsl ? shaderTemplates : domain === directions ? templates : Object.fromEntries(Object.entries(pointTemplates).filter(([name]) => name === domain));
     const names = Object.keys(of), language = wgsl ? "wgsl" : "javascript";
     const domains = wgsl ? [] : Object.keys(pointTemplates), own = [directions, ...domains].includes(domain) ? [] : [domain];
-    return el("div", { class: "choices", id: "templates", "data-of": `${language} ${domain}` },
+    return el("div", { class: "choices", id: "templates", "data-of": kindOf(code) },
       choice("language", "language", [["javascript", "JavaScript"], ["wgsl", lacks ? `WGSL: ${lacks}` : "WGSL", lacks !== ""]], language, (value) => open(value === "wgsl" ? "wgsl-cosine" : "cosine")),
       choice("domain", "domain", [[directions, "directions, hemisphere"], ...[...domains, ...own].map((name): [string, string] => [name, name])], domain, (value) => open(value === directions ? "cosine" : value)),
       ...(names.length > 0 ? [choice("template", "start from", names.map((name) => [name, of[name]!.title]), names.includes(this.template) ? this.template : names[0]!, open)] : []));
@@ -387,8 +389,7 @@ export class Page implements Viewer {
 
   /** The choices are those of the code's language and domain. */
   private showTemplates(code: string): void {
-    const choices = this.templateChoices(code);
-    if (byId("templates").dataset["of"] !== choices.dataset["of"]) byId("templates").replaceWith(choices);
+    if (byId("templates").dataset["of"] !== kindOf(code)) byId("templates").replaceWith(this.templateChoices(code));
   }
 
   /** The user has changed the code, or what it is shown on. */

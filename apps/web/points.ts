@@ -33,7 +33,8 @@ function words(pen: CanvasRenderingContext2D, text: string, x: number, y: number
 
 function drawBars(pen: CanvasRenderingContext2D, size: number, p: Line): string {
   const { width, height } = frame(pen, size), first = p.edges[0]!, span = p.edges.at(-1)! - first;
-  const density = p.observed.map((n, k) => n / (p.edges[k + 1]! - p.edges[k]!)), expected = p.expected.map((n, k) => n / (p.edges[k + 1]! - p.edges[k]!));
+  const perLength = (n: number, k: number): number => n / (p.edges[k + 1]! - p.edges[k]!);
+  const density = p.observed.map(perLength), expected = p.expected.map(perLength);
   const top = Math.max(...density, ...expected) * 1.05 || 1;
   const x = (at: number): number => margin.left + (width * (at - first)) / span, y = (value: number): number => margin.top + height * (1 - value / top);
   pen.fillStyle = bar;

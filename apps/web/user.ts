@@ -23,7 +23,7 @@ interface Points {
   f?: (x: Point) => number;
 }
 /** `bits`: of the answers' precision. `points`: the domain, if it is not of directions, and whether there is an integrand. */
-export interface UserSampler { calls: UserCalls; numbers: number; context: boolean; bits: number; points?: { domain: string; numbers: number; integrand: boolean } }
+export interface UserSampler { calls: UserCalls; numbers: number; context: boolean; bits: number; points?: { domain: string; integrand: boolean } }
 
 const kinds = ["disk", "sphere", "rectangle"];
 
@@ -162,7 +162,7 @@ export function userSampler(): () => UserSampler | Promise<UserSampler> | undefi
     if (typeof numbers !== "number" || !(numbers >= 1 && numbers <= 8 && Number.isInteger(numbers))) throw new EngineError("user", `numbers is ${shown(numbers)}; expected how many random numbers a sample takes, 1 to 8`);
     if (points) {
       const integrand = typeof f === "function";
-      return { calls: callsOfPoints({ sample, pdf, ...(integrand ? { f } : {}) } as unknown as Points), numbers, context: false, bits: 53, points: { domain, numbers, integrand } };
+      return { calls: callsOfPoints({ sample, pdf, ...(integrand ? { f } : {}) } as unknown as Points), numbers, context: false, bits: 53, points: { domain, integrand } };
     }
     const context = sample.length > 2 || pdf.length > 2;
     return { calls: callsOf(sample, pdf, context), numbers, context, bits: 53 };

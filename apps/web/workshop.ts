@@ -130,7 +130,7 @@ export class Workshop implements Viewer {
   }
 
   /** The code's domain: a film and w_o exist for directions alone. */
-  private get domain(): string { return isShader(this.editor.code) ? directions : domainOf(this.editor.code); }
+  private get domain(): string { return domainOf(this.editor.code); }
   private get drawsPoints(): boolean { return this.domain !== directions; }
 
   get work(): Work { return { code: this.editor.code, ground: this.ground }; }
