@@ -50,7 +50,7 @@ std::string ask_lines(const Handshake& hello, const std::string& program, std::s
     std::string out = "import subprocess, sys\nimport numpy as np\n\n\ndef ask(verb, *columns):  # the protocol of " +
         std::string(hello.blocks() ? "blocks" : "lines") + "\n    rows = np.hstack(columns)\n";
     if (hello.blocks()) {
-        const std::string type = hello.block_number == sizeof(float) ? "'<f4'" : "'<f8'";
+        const std::string type = hello.single_blocks() ? "'<f4'" : "'<f8'";
         return out + "    block = verb.encode() + np.uint32(len(rows)).tobytes() + rows.astype(" + type +
             ").tobytes()\n"
             "    said = subprocess.run(" +

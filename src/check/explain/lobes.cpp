@@ -307,8 +307,7 @@ std::optional<std::string> lobe_sentence(const LobeChooser& chooser, const Share
     if (without_probabilities && factors_known)
         return fmt::format(
             "Of the lobes that u{} chooses, p has {} times what they draw{}, each as if it alone were drawn: the "
-            "chooser's "
-            "probability of each is left out.",
+            "chooser's probability of each is left out.",
             number, fmt::join(factors, ", "), where);
     if (std::fabs(sum - 1) > sum_half + known_share) {
         if (!factors_known) return {};

@@ -58,22 +58,18 @@ std::string mass_sentence(const CheckAt& c, const Answer& a) {
         with_error(a.expected, half), drawn);
 }
 
-/// Sums of h over the leaves below a node: of the draws and of p.
-std::pair<double, double> sums_below(const CheckAt& c, int node) {
+/// The sum of h p over the leaves below a node.
+double claimed_below(const CheckAt& c, int node) {
     const TreeNode& x = c.plan->tree.nodes()[static_cast<std::size_t>(node)];
-    if (x.child < 0) {
-        const auto l = static_cast<std::size_t>(x.leaf);
-        return {c.observations.leaves[l] / c.observations.independent, c.integrals.leaves[l].bridge.value};
-    }
-    const auto a = sums_below(c, x.child), b = sums_below(c, x.child + 1);
-    return {a.first + b.first, a.second + b.second};
+    if (x.child < 0) return c.integrals.leaves[static_cast<std::size_t>(x.leaf)].bridge.value;
+    return claimed_below(c, x.child) + claimed_below(c, x.child + 1);
 }
 
 /// The share of the draws at a node that are in its first half, or in the other one if p has less of that.
 std::string node_sentence(const CheckAt& c, const Answer& a) {
     const std::vector<TreeNode>& nodes = c.plan->tree.nodes();
     const TreeNode& x = nodes[static_cast<std::size_t>(a.member)];
-    const double first = sums_below(c, x.child).second, both = first + sums_below(c, x.child + 1).second;
+    const double first = claimed_below(c, x.child), both = first + claimed_below(c, x.child + 1);
     const bool is_first = first <= both - first;
     const double share = (is_first ? first : both - first) / both, per_draw = first / both / a.expected;
     const ChartRect& half = nodes[static_cast<std::size_t>(is_first ? x.child : x.child + 1)].rect;

@@ -60,6 +60,7 @@ struct Handshake {
     std::vector<std::string> uses;  // of context_names()
     EvaluationDevice device{};
     bool blocks() const { return block_number > 0; }
+    bool single_blocks() const { return block_number == sizeof(float); }
     bool uses_lights() const { return std::ranges::find(uses, "lights") != uses.end(); }
 };
 

@@ -259,7 +259,7 @@ private:
         if (hello_.uses_lights()) add_count(lights);
         if (hello_.merge && std::string_view(verb) == "sample") add_count(static_cast<std::size_t>(neighbours_));
         const PipeConnection::Write write = writer(verb, given, in);
-        const bool single = hello_.block_number == sizeof(float);
+        const bool single = hello_.single_blocks();
         if (single) {
             single_request_.assign(in.begin(), in.end());
             single_answers_.resize(out.size());
@@ -710,7 +710,7 @@ HandshakeError read_handshake(std::string_view answer, Handshake& out) {
     out.name = printable(name, 60);
     if (out.delta && !out.weight)
         return {"weight=yes with delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
-    if (out.block_number == sizeof(float) && out.traits.u_bits > 24)
+    if (out.single_blocks() && out.traits.u_bits > 24)
         return {"u_bits=24 with block=f32, whose numbers have 24 bits", "got u_bits=53"};
     out.traits.delta = out.delta;
     return settle_domain(out);
