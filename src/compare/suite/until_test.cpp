@@ -29,10 +29,10 @@ struct Made {
     RenderSides sides;
     SyntheticNoise before{Kind::gamma, 0.2}, after{Kind::gamma, 0.2};
     bool constant = false;
-    std::size_t most = 200;
+    std::size_t render_limit = 200;
     int width = side;
     std::string failure;
-    double seconds = 0, stopped_after = 0;  // of a program, and of those beyond `most`
+    double seconds = 0, stopped_after = 0;  // of a program, and of those beyond `render_limit`
     ProgressMonitor silent;
     ProgressMonitor* monitor = &silent;
 
@@ -61,7 +61,7 @@ struct Made {
             std::vector<RenderEnd> out(jobs.size());
             for (std::size_t k = 0; k < jobs.size(); ++k) {
                 if (!failure.empty()) out[k].failure = failure;
-                else if (made < most) {
+                else if (made < render_limit) {
                     out[k].made = true;
                     out[k].seconds = seconds;
                     ++made;
@@ -94,17 +94,17 @@ TEST(Until, AnUnchangedViewEndsAsSameAndAChangedOneAsChanged) {
 TEST(Until, TheEndOfTheBudgetLeavesAViewUndecidedWithANumber) {
     Made few;
     few.suite.options.smallest = 0.0005;
-    few.most = 5;
+    few.render_limit = 5;
     const ViewResult view = few.decide().views[0];
     EXPECT_EQ(view.state, ViewState::too_few);
     EXPECT_THAT(view.headline, HasSubstr("more renders"));
 }
 
 TEST(Until, AProgramThatTheBudgetStopsIsNamed) {
-    for (const std::size_t most : {std::size_t{0}, std::size_t{5}}) {
+    for (const std::size_t limit : {std::size_t{0}, std::size_t{5}}) {
         Made slow;
         slow.suite.options.smallest = 0.0005;
-        slow.most = most;
+        slow.render_limit = limit;
         slow.stopped_after = 90;
         const ViewResult view = slow.decide().views[0];
         EXPECT_EQ(view.state, ViewState::too_few);
@@ -117,7 +117,7 @@ TEST(Until, AProgramThatTheBudgetStopsIsNamed) {
 TEST(Until, AProgramThatIsStoppedAfterItsUsualTimeIsNotNamed) {
     Made slow;
     slow.suite.options.smallest = 0.0005;
-    slow.most = 5;
+    slow.render_limit = 5;
     slow.seconds = 60;
     slow.stopped_after = 90;
     EXPECT_THAT(slow.decide().views[0].sentence, ::testing::Not(HasSubstr("stopped")));
@@ -239,7 +239,7 @@ TEST(Until, HeavyTailsEndAsUndecided) {
         for (std::uint32_t seed = 1; seed < 5; ++seed) {
             Made heavy;
             heavy.before = heavy.after = {Kind::pareto, 1.5};
-            heavy.most = 60;
+            heavy.render_limit = 60;
             heavy.width = width;
             EXPECT_EQ(heavy.decide(seed).views[0].state, ViewState::too_few) << width << " " << seed;
         }

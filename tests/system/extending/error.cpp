@@ -15,8 +15,8 @@ void draw_error(Sheet& sheet) {
         return;
     }
     const View v = view(film);
-    const double most = std::sqrt(static_cast<double>(*std::max_element(film->var.begin(), film->var.end())));
-    const double top = most > 0 ? most : 1;
+    const double largest = std::sqrt(static_cast<double>(*std::max_element(film->var.begin(), film->var.end())));
+    const double top = largest > 0 ? largest : 1;
     const Rect slot{content_band.x, content_band.y, content_band.w - 124, content_band.h};
     const Fit f = fit(v.width, v.height, slot.w, slot.h);
     const Rect picture = paint_framed(sheet,
