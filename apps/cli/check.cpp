@@ -597,8 +597,9 @@ CheckResult unchecked_result(const SamplerError& fault, const CheckFlags& flags,
         v.check_case = before_any_case;
         v.name = name;
         v.state = j.state;
-        v.message = name == verdict_names[0] ? "The sampler could not be checked: " + std::string(fault.what()) + "."
-                                             : "It could not be queried: the sampler was not checked.";
+        v.sentences = {name == verdict_names[0]
+                ? Sentence{"failure", "The sampler could not be checked: " + std::string(fault.what()) + "."}
+                : Sentence{"not evaluated", "It could not be queried: the sampler was not checked."}};
         v.expected = false;
         j.verdicts.push_back(v);
     }

@@ -17,7 +17,7 @@ Verdict caught_or_not(const PlantedFault& fault, const std::string& caught) {
     v.name = "caught";
     v.state = caught.empty() ? State::wrong : State::right;
     v.expected = !caught.empty();
-    v.message = caught.empty() ? "No verdict detects this planted fault." : "Caught by " + caught + ".";
+    v.sentences = {{"caught", caught.empty() ? "No verdict detects this planted fault." : "Caught by " + caught + "."}};
     return v;
 }
 

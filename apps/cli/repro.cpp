@@ -609,8 +609,8 @@ std::optional<std::string> repro_script(
             "    t, p = np.radians([theta, phi])\n"
             "    return np.array([[np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)]])\n\n\n"
             "wo = {}\n{}sys.exit('wrong' if wrong else 0)\n",
-            finding.name, sentences_of(printable(finding.worst->message)).front(), without_unused(reach->lines, script),
-            at_text(wo), script);
+            finding.name, printable(finding.worst->first_sentence()), without_unused(reach->lines, script), at_text(wo),
+            script);
     }
     return {};
 }

@@ -488,7 +488,7 @@ std::string reach_lines(const CheckFlags& flags, const Traits& traits, std::size
 
 std::string script_of(const Finding& finding, const std::string& reach, const std::string& lines) {
     return fmt::format("# {}: {}\n{}\n\n{}sys.exit('wrong' if wrong else 0)\n", finding.name,
-        sentences_of(printable(finding.worst->message)).front(), without_unused(reach, lines), lines);
+        printable(finding.worst->first_sentence()), without_unused(reach, lines), lines);
 }
 
 }  // namespace of_points

@@ -28,7 +28,7 @@ std::vector<CheckCase> cases_named(const std::string& name, double theta) {
 }
 
 ordered_json verdict_fields(const Verdict& v) {
-    ordered_json out = {{"name", v.name}, {"state", word(v.state)}, {"message", v.message}, {"evidence", v.evidence}};
+    ordered_json out = {{"name", v.name}, {"state", word(v.state)}, {"message", v.message()}, {"evidence", v.evidence}};
     if (v.state == State::wrong && v.expected) out["why"] = v.why_expected;
     return out;
 }

@@ -197,7 +197,7 @@ CRESCENT_EXPORT(user_checked)()->void {
         if (!worst) continue;
         if (rank(worst->state) > rank(all)) all = worst->state;
         ordered_json one = {{"name", worst->name}, {"question", verdict_questions[k]}, {"state", word(worst->state)},
-            {"message", worst->message}, {"cause", worst->cause}, {"states", states}, {"evidence", worst->evidence},
+            {"message", worst->message()}, {"cause", worst->cause}, {"states", states}, {"evidence", worst->evidence},
             {"hidden", ordered_json::object()}};
         for (const auto& [fault, size] : worst->hidden) one["hidden"][fault] = json_number(size);
         const auto at = worst->wo.value_or(std::pair(cases[0].theta_deg, cases[0].azimuth_deg));

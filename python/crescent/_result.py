@@ -28,6 +28,12 @@ class Verdict:
     expected: bool = True  #: False: another state was expected of a built-in sampler
     evidence: dict[str, Any] = field(default_factory=dict, repr=False)  #: the numbers of the test
     seconds: float = field(default=0.0, compare=False, repr=False)
+    wo_deg: tuple[float, float] | None = field(default=None, repr=False)  #: angle from n and azimuth; None: no w_o
+    sentences: tuple[tuple[str, str], ...] = field(default=(), repr=False)  #: of the message: what it states, its text
+
+    def states(self, what: str) -> bool:
+        """Whether a sentence of the message states this."""
+        return any(stated == what for stated, _ in self.sentences)
 
 
 def _verdict(raw: dict[str, Any]) -> Verdict:
@@ -42,6 +48,8 @@ def _verdict(raw: dict[str, Any]) -> Verdict:
         raw["expected"],
         _json.loads(raw["evidence"]),
         raw["seconds"],
+        raw["wo_deg"],
+        tuple(raw["sentences"]),
     )
 
 

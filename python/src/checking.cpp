@@ -231,7 +231,11 @@ AsDict as_dict(const Verdict& v) {
     out["case"] = v.check_case;
     out["name"] = v.name;
     out["state"] = std::string(word(v.state));
-    out["message"] = v.message;
+    out["message"] = v.message();
+    nb::list sentences;
+    for (const Sentence& sentence : v.sentences) sentences.append(nb::make_tuple(sentence.what, sentence.text));
+    out["sentences"] = sentences;
+    out["wo_deg"] = v.wo ? nb::object(nb::make_tuple(v.wo->first, v.wo->second)) : nb::none();
     out["cause"] = v.cause;
     out["status"] = next_step_text(v, FrontEnd::python);
     out["expected"] = v.expected;

@@ -26,6 +26,19 @@ def test_a_right_sampler_is_right_and_a_pdf_that_is_1_percent_off_is_wrong():
     assert {"normalised", "identity"} <= set(off.broken())
 
 
+def test_a_verdict_has_its_sentences_and_what_each_states():
+    result = crescent.check(cosine, lambda wo, wi: 1.5 * cosine_pdf(wo, wi), lambert, wo_deg=[(30, 90)])
+    (normalised,) = result.of("normalised")
+    assert [what for what, _ in normalised.sentences] == ["integral", "expected"]
+    assert " ".join(text for _, text in normalised.sentences) == normalised.message
+    assert normalised.states("integral") and not normalised.states("p-value") and normalised.wo_deg == (30, 90)
+    (stored,) = [v for v in json.loads(result.json())["verdicts"] if v["name"] == "normalised"]
+    assert [(s["what"], s["text"]) for s in stored["sentences"]] == list(normalised.sentences)
+    nan = crescent.check(lambda wo, u: (cosine(wo, u)[0], np.where(u[:, 0] == 0, np.nan, cosine(wo, u)[1])), cosine_pdf)
+    (valid, *_) = [v for v in nan.of("valid") if v.state == "wrong"]
+    assert valid.states("pdf is NaN") and valid.evidence["first_u"][0] == 0
+
+
 def test_describe_says_what_distribution_the_draws_have():
     d = crescent.describe(cosine, cosine_pdf, name="cosine", wo_deg=30)
     assert "mean direction" in str(d) and len(d.cases) == 1

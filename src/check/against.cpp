@@ -154,8 +154,9 @@ private:
     void note_unusable(Verdict& v) const {
         const bool of_a = draws_a_.invalid > 0;
         v.state = State::inconclusive;
-        v.message = fmt::format("{:g} draws of {} cannot be used: {} is not valid here.",
-            of_a ? draws_a_.invalid : draws_b_.invalid, of_a ? "A" : "B", of_a ? "A" : "B");
+        v.sentences = {{"unusable draws",
+            fmt::format("{:g} draws of {} cannot be used: {} is not valid here.",
+                of_a ? draws_a_.invalid : draws_b_.invalid, of_a ? "A" : "B", of_a ? "A" : "B")}};
         v.next_step = "A valid sampler; `crescent check` of it alone shows more.";
     }
 
@@ -208,20 +209,19 @@ private:
         if (differ) {
             const auto clearest = std::ranges::min_element(
                 d.found, {}, [](const auto& f) { return std::fabs(f.second.sd / f.second.difference); });
-            v.message = "They draw from different distributions. " + sentence_of(clearest->second);
+            v.sentences = {{"different distributions", "They draw from different distributions."},
+                {"clearest difference", sentence_of(clearest->second)}};
             return;
         }
         const AgainstSizes sizes = sizes_against(*common_, draws_a_, draws_b_, plan_.levels.first);
-        v.message = "No difference between their distributions was found.";
+        v.sentences = {{"no difference", "No difference between their distributions was found."}};
         if (!sizes.part) return;
         v.evidence["would_have_found"]["part"] = *sizes.part;
-        v.message +=
-            fmt::format(" A part of {:.2g} of the draws that one of them lacks would have been found", *sizes.part);
-        if (sizes.distance && !traits().domain) {
-            v.evidence["would_have_found"]["distance"] = *sizes.distance;
-            v.message += fmt::format(", and mean directions {:.2g} apart", *sizes.distance);
-        }
-        v.message += ".";
+        const bool has_distance = sizes.distance && !traits().domain;
+        if (has_distance) v.evidence["would_have_found"]["distance"] = *sizes.distance;
+        v.sentences.push_back({"detectable",
+            fmt::format("A part of {:.2g} of the draws that one of them lacks would have been found{}.", *sizes.part,
+                has_distance ? fmt::format(", and mean directions {:.2g} apart", *sizes.distance) : "")});
     }
 };
 
@@ -246,9 +246,11 @@ std::vector<Verdict> failed_verdicts(const CheckCase& a, const CheckCase& b, con
         v.check_case = a.text();
         v.name = name;
         v.state = slow ? State::inconclusive : State::error;
-        v.message = slow                                 ? std::string(fault.what())
-            : dynamic_cast<const SamplerExited*>(&fault) ? fmt::format("It could not be evaluated: {}.", fault.what())
-                                                         : fmt::format("The sampler failed: {}.", fault.what());
+        v.sentences = {{slow ? "too slow" : "failure",
+            slow ? std::string(fault.what())
+                : dynamic_cast<const SamplerExited*>(&fault)
+                ? fmt::format("It could not be evaluated: {}.", fault.what())
+                : fmt::format("The sampler failed: {}.", fault.what())}};
         if (slow) v.next.kind = NextStep::Kind::more_time;
         out.push_back(std::move(v));
     }
@@ -316,7 +318,7 @@ std::string against_text(const CheckResult& j) {
     for (const Verdict& v : j.verdicts) {
         if (v.check_case != last) out += fmt::format("{}{} [{}]\n", out.empty() ? "" : "\n", v.arm, v.check_case);
         last = v.check_case;
-        out += fmt::format("  {:<18} {:<13} {}{}\n", v.name, word(v.state), v.message,
+        out += fmt::format("  {:<18} {:<13} {}{}\n", v.name, word(v.state), v.message(),
             next_step_text(v).empty() ? "" : " Next step: " + next_step_text(v));
     }
     return out +

@@ -102,17 +102,19 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
     v.evidence["directions"] = both.wi.size();
     v.evidence["differ"] = count;
     if (count == 0) {
-        v.message = fmt::format(
-            "f is the same at {} directions{}.", both.wi.size(), only_at_draws(a) ? ", the draws of A" : "");
+        v.sentences = {{"same f",
+            fmt::format(
+                "f is the same at {} directions{}.", both.wi.size(), only_at_draws(a) ? ", the draws of A" : "")}};
         return;
     }
     const Vec3d w = both.wi[worst];
     v.evidence["largest_relative"] = largest;
     v.evidence["worst_wi"] = {w.x, w.y, w.z};
     v.evidence["f"] = {both.a[worst], both.b[worst]};
-    v.message = fmt::format("f differs at {} of {} directions, most at {}: {:.6g} and {:.6g}", count, both.wi.size(),
-        direction_text(w), both.a[worst], both.b[worst]);
-    v.message += sum_b > 0 ? fmt::format("; the mean of f over them is {:.4g} times that of B.", sum_a / sum_b) : ".";
+    v.sentences = {{"difference of f",
+        fmt::format("f differs at {} of {} directions, most at {}: {:.6g} and {:.6g}{}.", count, both.wi.size(),
+            direction_text(w), both.a[worst], both.b[worst],
+            sum_b > 0 ? fmt::format("; the mean of f over them is {:.4g} times that of B", sum_a / sum_b) : "")}};
 }
 
 /// The first delta part whose q times weight differs. A part that has less than one expected draw in the pilot may be
@@ -143,19 +145,20 @@ void compare_f(const AgainstCase& c, Verdict& v) {
     };
     if (!(a.has_f() || only_at_draws(a)) || !b.has_f()) {
         v.state = State::skipped;
-        v.message = only_at_draws(a) ? "f of A is known only at its draws, and B has no f for a comparison."
-            : a.can_draw()           ? "There is no f to compare."
-                                     : "The file of A has no column f: there is nothing to compare.";
+        v.sentences = {{"no f",
+            only_at_draws(a)   ? "f of A is known only at its draws, and B has no f for a comparison."
+                : a.can_draw() ? "There is no f to compare."
+                               : "The file of A has no column f: there is nothing to compare."}};
     } else if (is_estimate(c.a) || is_estimate(c.b)) {
         v.state = State::skipped;
-        v.message = "f is a random estimate: only its mean could be the same.";
+        v.sentences = {{"estimates", "f is a random estimate: only its mean could be the same."}};
     } else {
         note_difference(c, f_of_both(c), v);
     }
     if (const std::string delta = differing_delta(c); !delta.empty()) {
         v.same = false;
         v.evidence["same"] = false;
-        v.message += (v.message.empty() ? "" : " ") + delta;
+        v.sentences.push_back({"delta part", delta});
         v.state = State::right;
     }
     if (c.expect_same && !v.same.value_or(true)) v.state = State::wrong;
@@ -188,7 +191,7 @@ struct WeightMoments {
 
 void skip(Verdict& v, std::string message) {
     v.state = State::skipped;
-    v.message = std::move(message);
+    v.sentences = {{"not ranked", std::move(message)}};
 }
 
 /// Adds the ratio with its interval to the verdict, and the smaller variance if both stages agree.
@@ -199,12 +202,13 @@ void note_ratio(Verdict& v, double ratio, double log_se, bool differ) {
     const bool alike = low > 1 - alike_variances && high < 1 + alike_variances;
     const bool ranked = differ && !alike && std::fabs(ratio - 1) > alike_variances;
     v.evidence["better"] = !ranked ? "none" : ratio > 1 ? "B" : "A";
-    v.message = fmt::format("{}: the variance of A is {:.4g} times that of B (95 %: {:.4g} to {:.4g}).",
-        alike           ? "The variances are alike to 1 %"
-            : !ranked   ? "Neither is shown to be better here"
-            : ratio > 1 ? "B is better here"
-                        : "A is better here",
-        ratio, low, high);
+    v.sentences = {{"variance ratio",
+        fmt::format("{}: the variance of A is {:.4g} times that of B (95 %: {:.4g} to {:.4g}).",
+            alike           ? "The variances are alike to 1 %"
+                : !ranked   ? "Neither is shown to be better here"
+                : ratio > 1 ? "B is better here"
+                            : "A is better here",
+            ratio, low, high)}};
 }
 
 /// Weights of fresh draws.
@@ -238,11 +242,12 @@ void rank(const AgainstCase& c, const WeightMoments& a, const WeightMoments& b, 
     const bool none_a = a.none(1), none_b = b.none(1);
     if (a.none(2) && b.none(2)) {
         v.evidence["better"] = "none";
-        v.message = "Neither has a variance: the weights of each are all alike.";
+        v.sentences = {{"no variance", "Neither has a variance: the weights of each are all alike."}};
     } else if (none_a || none_b) {
         v.evidence["better"] = none_a ? "A" : "B";
-        v.message = fmt::format("{} is better here: its weights are all alike; the variance of {} is {:.4g}.",
-            none_a ? "A" : "B", none_a ? "B" : "A", none_a ? b.variance : a.variance);
+        v.sentences = {{"variance ratio",
+            fmt::format("{} is better here: its weights are all alike; the variance of {} is {:.4g}.",
+                none_a ? "A" : "B", none_a ? "B" : "A", none_a ? b.variance : a.variance)}};
     } else {
         note_ratio(v, a.variance / b.variance, math::hypot(a.variance_se / a.variance, b.variance_se / b.variance),
             differ(variances_p));
@@ -315,23 +320,25 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
     const ReweighedDraws first(c, 1);
     if (first.lost > 0 || WeightMoments(first.x).heavy || WeightMoments(first.others).heavy) {
         v.state = State::inconclusive;
-        v.message = first.lost > 0
-            ? fmt::format("p of B is 0 at {:.0f} of the {} draws of A with light: B never samples it.", first.lost,
-                  first.x.size())
-            : "A or B has a heavy tail: the variance is not known.";
+        if (first.lost > 0)
+            v.sentences = {{"support",
+                fmt::format("p of B is 0 at {:.0f} of the {} draws of A with light: B never samples it.", first.lost,
+                    first.x.size())}};
+        else v.sentences = {{"heavy tail", "A or B has a heavy tail: the variance is not known."}};
         v.next.kind = NextStep::Kind::heavier_pdf;
         return;
     }
     v.evidence["variance_a"] = first.all.variance();
     v.evidence["variance_b"] = first.all.of_other();
     if (!first.all.varies()) {
-        v.message = fmt::format("The variances are {:.4g} and {:.4g}.", std::max(first.all.variance(), 0.0),
-            std::max(first.all.of_other(), 0.0));
+        v.sentences = {{"variances",
+            fmt::format("The variances are {:.4g} and {:.4g}.", std::max(first.all.variance(), 0.0),
+                std::max(first.all.of_other(), 0.0))}};
         return;
     }
     note_ratio(v, math::exp(first.all.log_ratio()), first.log_se(),
         first.p() < c.levels.first && ReweighedDraws(c, 2).p() < c.levels.second);
-    v.message += " B's follows from the draws of A by p_A / p_B.";
+    v.sentences.push_back({"method", "B's follows from the draws of A by p_A / p_B."});
 }
 
 /// Whether the check of the sampler alone prevents a variance ratio.
@@ -374,8 +381,7 @@ void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
     for (const auto& [m, who] : {std::pair(&of_a, "A"), {&of_b, "B"}})
         if (m->heavy) {
             v.state = State::inconclusive;
-            v.message +=
-                fmt::format("{}{} has a heavy tail: its variance is not known.", v.message.empty() ? "" : " ", who);
+            v.sentences.push_back({"heavy tail", fmt::format("{} has a heavy tail: its variance is not known.", who)});
             v.next.kind = NextStep::Kind::heavier_pdf;
         }
     if (v.state == State::right) rank(c, of_a, of_b, v);

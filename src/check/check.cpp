@@ -28,6 +28,12 @@ std::string_view word(State state) {
     return "";
 }
 
+std::string text_of(const Sentences& sentences) {
+    std::string out;
+    for (const Sentence& sentence : sentences) out += (out.empty() ? "" : " ") + sentence.text;
+    return out;
+}
+
 void note_first_failure(const std::string& what, Verdict& v) {
     v.first_failure = true;
     v.evidence["first_fault"] = what;
@@ -83,14 +89,15 @@ void expect(const CheckCase& check_case, bool reaches_all, Verdict& v) {
 /// Messages of the verdicts of a case that ended early: of the first verdict, and of the others.
 struct AbortText {
     State state = State::error;
+    const char* what = "";  // states the first text
     std::string first, rest;
 };
 
 AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSettings& settings) {
     const std::string rest = "Not evaluated: the sampler failed before.";
     switch (cut.why) {
-        case Cut::Why::fault: return {State::error, fmt::format("The sampler failed: {}.", cut.what), rest};
-        case Cut::Why::exited: return {State::error, rest, rest};
+        case Cut::Why::fault: return {State::error, "failure", fmt::format("The sampler failed: {}.", cut.what), rest};
+        case Cut::Why::exited: return {State::error, "not evaluated", rest, rest};
         case Cut::Why::too_slow: break;
     }
     const double of_program = check_case.adapter->spending().allowed;
@@ -98,7 +105,7 @@ AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSett
         ? fmt::format("Not examined: {:g} s are not enough for this program at every w_o.", of_program)
         : fmt::format("Not examined: {:g} s (TestSettings::seconds) are not enough for this sampler at every w_o.",
               settings.seconds);
-    return {settings.accept_few ? State::skipped : State::inconclusive, message, message};
+    return {settings.accept_few ? State::skipped : State::inconclusive, "not evaluated", message, message};
 }
 
 /// Sets all verdicts of a case that ended early, except `valid` if the first draws were examined. Records what was
@@ -111,7 +118,7 @@ void report_cut(const CheckCase& check_case, const Cut& cut, const TestSettings&
         if (cut.first_draws && v.name == verdict_names[0]) continue;
         const bool first = skipped.verdicts.empty();
         v.state = text.state;
-        v.message = first ? text.first : text.rest;
+        v.sentences = {first ? Sentence{text.what, text.first} : Sentence{"not evaluated", text.rest}};
         v.evidence = nlohmann::ordered_json::object();
         if (first && cut.why == Cut::Why::fault) note_first_failure(cut.what, v);
         if (v.state == State::inconclusive) v.next.kind = NextStep::Kind::more_time;
@@ -125,7 +132,7 @@ void report_whole_cut(const Cut& cut, const CheckCase& check_case, const TestSet
     if (valid.state != State::right) return;
     const AbortText text = abort_text(cut, check_case, settings);
     valid.state = text.state;
-    valid.message = text.first;
+    valid.sentences = {{text.what, text.first}};
     if (cut.why == Cut::Why::fault) note_first_failure(cut.what, valid);
 }
 

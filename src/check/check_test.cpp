@@ -122,9 +122,9 @@ TEST(RunChecks, KeepsResultsFromBeforeAFailure) {
     EXPECT_EQ(j.state, State::error);
     EXPECT_EQ(verdict_at(j, 1, "density").state, State::right);
     EXPECT_EQ(verdict_at(j, 2, "valid").state, State::right);  // from its first draws
-    EXPECT_EQ(verdict_at(j, 2, "support").message, "The sampler failed: no answer.");
+    EXPECT_EQ(verdict_at(j, 2, "support").message(), "The sampler failed: no answer.");
     EXPECT_EQ(verdict_at(j, 2, "support").evidence["first_fault"], "no answer");
-    EXPECT_EQ(verdict_at(j, 0, "density").message, "Not evaluated: the sampler failed before.");
+    EXPECT_EQ(verdict_at(j, 0, "density").message(), "Not evaluated: the sampler failed before.");
     EXPECT_TRUE(j.left_out.empty());
 }
 

@@ -63,13 +63,26 @@ struct ImpliedDensity {
     double peak = 0, peak_error = 0;
 };
 
+/// A sentence of a verdict. `what` names what it states: sentences that state the same at several w_o are one finding.
+struct Sentence {
+    std::string what, text;
+    int technique = 0;  // that it names, of several that are combined, from 1 on; 0: none
+
+    static constexpr std::string_view expected = "expected";  // what the value of the sentence before should be
+    /// Whether both are about the same, in whatever numbers.
+    bool states_same(const Sentence& other) const { return what == other.what && technique == other.technique; }
+};
+using Sentences = std::vector<Sentence>;
+/// The sentences in a row, with spaces between them.
+std::string text_of(const Sentences& sentences);
+
 /// `evidence` is written for the JSON and never read: what other parts of the program need has a member of its own.
 struct Verdict {
     std::string arm;
     std::string check_case;  // w_o and parameters
     std::string name;        // one of verdict_names
     State state = State::right;
-    std::string message;      // what was found, how large with its interval, and where
+    Sentences sentences{};    // what was found, how large with its interval, and where
     std::string cause{};      // the cause; "" if unknown
     std::string next_step{};  // for an inconclusive verdict, if no front end has a call for it
     NextStep next{};
@@ -91,6 +104,11 @@ struct Verdict {
     bool expected = true;      // expected of a right sampler, or of this built-in arm
     std::string why_expected;  // printed if a wrong verdict is expected
     bool waived = false;       // the caller expects it, so it does not count
+
+    /// All sentences in a row.
+    std::string message() const { return text_of(sentences); }
+    /// The text of the first of them; "" if there are none.
+    std::string first_sentence() const { return sentences.empty() ? "" : sentences.front().text; }
 };
 
 /// Bins of one density test, for the maps of the HTML page: draws and expected draws, or, without a density (`expected`

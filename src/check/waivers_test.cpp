@@ -18,7 +18,7 @@ CheckResult of(std::initializer_list<std::tuple<const char*, const char*, State>
         v.check_case = "w_o 45 deg";
         v.name = name;
         v.state = state;
-        v.message = "So it is.";
+        v.sentences = {{"finding", "So it is."}};
         v.expected = state == State::right;
         j.verdicts.push_back(v);
     }

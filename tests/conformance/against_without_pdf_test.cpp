@@ -54,19 +54,19 @@ TEST(AgainstWithoutAPdf, VariancesAreRankedByReturnedWeights) {
     const CheckResult j = against(a, sampler_against(power(0.8, Gives::pdf), a));
     const Verdict& v = named(j, "variance");
     ASSERT_EQ(v.state, State::right) << against_text(j);
-    EXPECT_EQ(v.evidence.value("better", "?"), "B") << v.message;
+    EXPECT_EQ(v.evidence.value("better", "?"), "B") << v.message();
     // X is cos^(1-k) / (k+1), for p (k+1) cos^k over cos: E[X^2] = 1 / ((k+1) (3-k)), E[X] = 1/2.
     const auto variance = [](double k) { return 1 / ((k + 1) * (3 - k)) - 0.25; };
     const double ratio = variance(0.5) / variance(0.8);
-    EXPECT_LT(v.evidence["interval"][0].get<double>(), 1.05 * ratio) << v.message;
-    EXPECT_GT(v.evidence["interval"][1].get<double>(), 0.95 * ratio) << v.message;
+    EXPECT_LT(v.evidence["interval"][0].get<double>(), 1.05 * ratio) << v.message();
+    EXPECT_GT(v.evidence["interval"][1].get<double>(), 0.95 * ratio) << v.message();
 }
 
 TEST(AgainstWithoutAPdf, NorAWeightThereIsNoVariance) {
     const std::vector<CheckCase> a = {make_user_case(power(1, Gives::pdf), 45, 130)};
     const Verdict v = named(against(a, sampler_against(power(1, Gives::nothing), a)), "variance");
     EXPECT_EQ(v.state, State::skipped);
-    EXPECT_NE(v.message.find("B has neither a pdf(w) nor a weight"), std::string::npos) << v.message;
+    EXPECT_NE(v.message().find("B has neither a pdf(w) nor a weight"), std::string::npos) << v.message();
 }
 
 /// Returns `questions` draws and then terminates.
@@ -100,8 +100,8 @@ TEST(Against, WhatBreaksOffIsNamed) {
             against(a, sampler_against(first ? well : std::shared_ptr<const SamplerAdapter>(breaks), a));
         EXPECT_EQ(j.state, State::error);
         const std::string who = first ? "sampler A (fickle): " : "sampler B (fickle): ";
-        EXPECT_NE(named(j, "variance").message.find("failed: " + who), std::string::npos)
-            << named(j, "variance").message;
+        EXPECT_NE(named(j, "variance").message().find("failed: " + who), std::string::npos)
+            << named(j, "variance").message();
     }
 }
 

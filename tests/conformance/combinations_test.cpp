@@ -183,7 +183,7 @@ TEST(ArmCases, PassACorrectCombinationAtPixelsOfItsScene) {
              "kind = \"ris\"\nof = [\"cosine\", \"light-area\"]\ncandidates = 4"}) {
         SCOPED_TRACE(declared);
         const CheckResult result = checked(with("[arms.tested]\n" + declared + "\n"), 2);
-        for (const Verdict& v : result.verdicts) EXPECT_NE(v.state, State::wrong) << v.name << ": " << v.message;
+        for (const Verdict& v : result.verdicts) EXPECT_NE(v.state, State::wrong) << v.name << ": " << v.message();
     }
 }
 

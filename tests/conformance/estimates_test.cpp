@@ -92,7 +92,7 @@ CheckResult checked(std::shared_ptr<const SamplerAdapter> adapter, double theta 
 
 std::string all_messages(const CheckResult& j) {
     std::string out;
-    for (const Verdict& v : j.verdicts) out += v.name + ": " + std::string(word(v.state)) + ". " + v.message + "\n";
+    for (const Verdict& v : j.verdicts) out += v.name + ": " + std::string(word(v.state)) + ". " + v.message() + "\n";
     return out;
 }
 
@@ -102,7 +102,7 @@ TEST(Estimates, AreRecognisedAndNotAccused) {
             for (const SyntheticSampler& right : {recipe_of(Layers{}), recipe_of(RoughGlass{})}) {
                 const CheckResult j = checked(std::make_shared<Estimating>(right, Factor{coin}, walk));
                 EXPECT_NE(j.state, State::wrong) << all_messages(j);
-                EXPECT_NE(named(j, "valid").message.find("random estimates"), std::string::npos) << all_messages(j);
+                EXPECT_NE(named(j, "valid").message().find("random estimates"), std::string::npos) << all_messages(j);
                 for (const char* name : {"valid", "normalised", "density", "identity"})
                     EXPECT_EQ(named(j, name).state, State::right) << all_messages(j);
                 if (!coin) EXPECT_EQ(named(j, "mean").state, State::right) << all_messages(j);  // else a tail with ties
@@ -117,7 +117,7 @@ TEST(Estimates, OfFAloneOrOfPdfAloneAreTold) {
         const CheckResult j = checked(adapter);
         EXPECT_EQ(j.state, State::right) << all_messages(j);
         EXPECT_NE(
-            named(j, "valid").message.find(of_pdf ? "pdf(w) is a random" : "f(w) is a random"), std::string::npos);
+            named(j, "valid").message().find(of_pdf ? "pdf(w) is a random" : "f(w) is a random"), std::string::npos);
     }
 }
 

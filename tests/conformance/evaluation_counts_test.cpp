@@ -89,7 +89,7 @@ TEST(Programs, CorrectGlassIsConclusiveInQuickMode) {
         const Seen seen = checked(at(r, {{0, 0}, {85, 75}, {120, 250}, {95, 75}}));
         for (const Verdict& v : seen.result.verdicts)
             EXPECT_TRUE(v.state == State::right || v.state == State::skipped)
-                << r.parameters << " " << v.check_case << " " << v.name << ": " << v.message;
+                << r.parameters << " " << v.check_case << " " << v.name << ": " << v.message();
         EXPECT_LE(seen.most, promised);
         EXPECT_GT(seen.most, 100000u);
     }
@@ -102,7 +102,7 @@ TEST(Programs, CorrectLayersAreConclusiveInQuickMode) {
         const Seen seen = checked(at(r, {{45, 130}, {89, 180}}));
         for (const Verdict& v : seen.result.verdicts)
             EXPECT_TRUE(v.state == State::right || v.state == State::skipped)
-                << r.family << " " << v.check_case << " " << v.name << ": " << v.message;
+                << r.family << " " << v.check_case << " " << v.name << ": " << v.message();
         EXPECT_LE(seen.most, promised) << r.family;
     }
 }
@@ -229,7 +229,7 @@ TEST(Structs, AreAskedTheSameByAnyNumberOfThreads) {
         const CheckResult j = check_sampler("wrinkled", WrinkledForMany{{&asked}}, settings);
         std::string out = fmt::format("{} questions\n", j.questions);
         for (const Verdict& v : j.verdicts)
-            if (v.name != "efficiency") out += v.check_case + " " + v.message + "\n";  // efficiency reports times
+            if (v.name != "efficiency") out += v.check_case + " " + v.message() + "\n";  // efficiency reports times
         return out;
     };
     EXPECT_EQ(describe(), on_threads(1, describe));

@@ -53,7 +53,7 @@ TEST_P(ArmsAtTheLimits, OfTheSchemaHaveTheVerdictsOfTheory) {
                                    << verdict_table(j);
         for (const Verdict& v : j.verdicts)
             if (v.state == State::inconclusive)
-                EXPECT_FALSE(v.message.empty() || next_step_text(v).empty())
+                EXPECT_FALSE(v.message().empty() || next_step_text(v).empty())
                     << v.arm << " [" << v.check_case << "] " << v.name;
     }
 }
@@ -69,7 +69,7 @@ TEST(Programs, TooSlowOnesAreInconclusive) {
     EXPECT_EQ(j.state, State::inconclusive);
     EXPECT_EQ(j.left_out.size(), 8u);
     for (const Verdict& v : j.verdicts) {
-        EXPECT_EQ(v.state, State::inconclusive) << v.name << v.message;
+        EXPECT_EQ(v.state, State::inconclusive) << v.name << v.message();
         EXPECT_FALSE(next_step_text(v).empty()) << v.name;
     }
 }

@@ -90,8 +90,8 @@ SyntheticSampler resampled(bool by_root) {
 TEST(WithoutAPdf, DrawsThatContradictWeightsAreFound) {
     const CheckResult right = checked(resampled(false)), wrong = checked(resampled(true));
     EXPECT_EQ(right.state, State::right) << what_is_wrong(right);
-    EXPECT_EQ(named(wrong, "mean").state, State::wrong) << named(wrong, "mean").message;
-    EXPECT_EQ(named(wrong, "physics").state, State::right) << named(wrong, "physics").message;
+    EXPECT_EQ(named(wrong, "mean").state, State::wrong) << named(wrong, "mean").message();
+    EXPECT_EQ(named(wrong, "physics").state, State::right) << named(wrong, "physics").message();
 }
 
 TEST(WithoutAPdf, NorAWeightNothingIsCalledRight) {
@@ -103,7 +103,7 @@ TEST(WithoutAPdf, NorAWeightNothingIsCalledRight) {
     const CheckResult j = checked(r);
     EXPECT_EQ(j.state, State::inconclusive);
     const Verdict& v = named(j, "density");
-    EXPECT_NE(v.message.find("could not be examined"), std::string::npos) << v.message;
+    EXPECT_NE(v.message().find("could not be examined"), std::string::npos) << v.message();
     EXPECT_NE(v.next_step.find("weight=yes"), std::string::npos) << v.next_step;
 }
 
@@ -140,8 +140,8 @@ TEST(WithoutAPdf, ThePeakIsStatedWithItsStandardError) {
                      se = v.evidence["implied_peak"]["standard_error"].get<double>();
         EXPECT_GT(se, 0);
         EXPECT_LT(se, 0.15 * peak) << "a cell of a handful of draws";
-        EXPECT_NEAR(peak, due, 0.05 * due + 4 * se) << v.message;
-        EXPECT_NE(v.message.find(" +- "), std::string::npos) << v.message;
+        EXPECT_NEAR(peak, due, 0.05 * due + 4 * se) << v.message();
+        EXPECT_NE(v.message().find(" +- "), std::string::npos) << v.message();
     }
 }
 

@@ -73,7 +73,7 @@ std::optional<SmallFault> draws_on_curve(Source& source, const StreamKey& key) {
     source.draw(around, draws);
     source.draw(u, here);
     SmallFault out{
-        .family = Family::repeats, .what = "all draws lie on a curve, since no two random numbers move them apart"};
+        .family = Family::repeats, .what = "All draws lie on a curve, since no two random numbers move them apart"};
     const auto each = static_cast<std::size_t>(4 * numbers);
     for (std::size_t i = 0; i < u.size(); ++i) {
         const Derivatives d(std::span<const Draw>(draws).subspan(each * i, each), numbers);

@@ -88,14 +88,14 @@ std::optional<SmallFault> refraction(const Source& source, const std::vector<Del
             across, [&](const DeltaPart* p) { return !near(p->wi, -wo) && is_refracted(wo, p->wi, eta, false); });
         if (!flat) return {};
         return fault_at(*off_mirror,
-            "a delta part is not reflected to the mirror direction, although the boundary refracts as a flat one");
+            "A delta part is not reflected to the mirror direction, although the boundary refracts as a flat one");
     }
     for (const DeltaPart* p : across) {
         if (near(p->wi, -wo) || is_refracted(wo, p->wi, eta, false)) continue;
         if (!mirrors && !turns_with_wo(source, p->wi, key)) continue;
         return fault_at(*p,
-            is_refracted(wo, p->wi, eta, true) ? "a delta part is refracted by 1 / eta in place of eta"
-                                               : "a delta part is not refracted by the stated index");
+            is_refracted(wo, p->wi, eta, true) ? "A delta part is refracted by 1 / eta in place of eta"
+                                               : "A delta part is not refracted by the stated index");
     }
     return {};
 }
@@ -135,7 +135,7 @@ std::optional<SmallFault> reverse_power_fault(
                 expected = {forward_power.x * due->x, forward_power.y * due->y, forward_power.z * due->z};
     if (!std::ranges::all_of(back, [&](const Draw& d) { return alike_power(power_of(source, d), first); })) return {};
     if (alike_power(first, expected)) return {};
-    SmallFault out = fault_at(p, "the reverse path of a delta part has another power: not reciprocal");
+    SmallFault out = fault_at(p, "The reverse path of a delta part has another power: not reciprocal");
     out.first.p = first.x;
     out.first.expected = expected.x;
     out.size = expected.x > 0 ? first.x / expected.x - 1 : 0;
@@ -160,7 +160,7 @@ std::optional<SmallFault> reverse_path(
         if (!back.empty()) {
             if (std::optional<SmallFault> fault = reverse_power_fault(source, parts, p, back)) return fault;
         } else if (often) {
-            return fault_at(p, "no delta part returns from the direction of a delta part to w_o");
+            return fault_at(p, "No delta part returns from the direction of a delta part to w_o");
         }
     }
     return {};

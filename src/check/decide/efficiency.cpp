@@ -191,19 +191,20 @@ void test_one_efficiency(
     if (!e.fault.empty()) {
         v.state = State::error;
         note_first_failure(e.fault, v);
-        v.message = "The sampler failed: " + e.fault + ".";
+        v.sentences = {{"failure", "The sampler failed: " + e.fault + "."}};
         return;
     }
     v.evidence["variance"] = e.variance;
     v.evidence["variance_relative_se"] = e.relative_se;
     if (e.heavy) {
         v.state = State::inconclusive;
-        v.message = "Heavy tail: the variance is not known, so it is not ranked.";
+        v.sentences = {{"heavy tail", "Heavy tail: the variance is not known, so it is not ranked."}};
         v.next.kind = NextStep::Kind::heavier_pdf;
         return;
     }
     v.state = State::right;
-    v.message = fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se);
+    v.sentences = {
+        {"variance", fmt::format("The variance of X is {:.4g} (+- {:.1f} %).", e.variance, 100 * e.relative_se)}};
     if (e.nanoseconds > 0) v.timed_message = ranks_text(e, ranks_of(e, check_cases, group));
 }
 
@@ -222,13 +223,13 @@ std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std
         v.check_case = check_cases[e.check_case].text();
         v.name = "efficiency";
         v.state = State::skipped;
-        v.message = "There are no weights, so there is no variance.";
+        v.sentences = {{"no weights", "There are no weights, so there is no variance."}};
         if (e.has_weights || !e.fault.empty())
             test_one_efficiency(e, check_cases, groups[group_of(check_cases[e.check_case])], v);
         // A program failed while its f was evaluated for a baseline: reported where it would be ranked.
         if (check_cases[e.check_case].baseline && !e.fault.empty()) {
             out[checked].state = State::error;
-            out[checked].message = v.message;
+            out[checked].sentences = v.sentences;
         }
     }
     return out;

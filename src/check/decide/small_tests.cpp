@@ -16,19 +16,19 @@ std::optional<const char*> fault_of(const Draw& d, const Traits& traits) {
     if (d.pdf < 0) return "pdf is negative";
     if (std::isinf(d.pdf)) return "pdf is infinite";
     if (std::isnan(d.wi.x + d.wi.y + d.wi.z))
-        return traits.domain ? "a point is outside the domain" : "the direction is NaN";
+        return traits.domain ? "A point is outside the domain" : "The direction is NaN";
     const bool finite_weight = !d.weight || std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z);
     if (d.pdf == 0 && d.delta == 0) {
         if (!finite_weight) return "pdf is 0 and the weight is not finite";
         return {};
     }
-    if (!(d.delta >= 0 && d.delta <= 1)) return "a delta part is chosen with a probability outside (0, 1]";
-    if (d.delta > 0 && !d.weight) return "a draw of a delta part comes without its weight";
-    if (!(std::fabs(std::sqrt(dot(d.wi, d.wi)) - 1) <= unit_length)) return "the direction is not of length 1";
+    if (!(d.delta >= 0 && d.delta <= 1)) return "A delta part is chosen with a probability outside (0, 1]";
+    if (d.delta > 0 && !d.weight) return "A draw of a delta part comes without its weight";
+    if (!(std::fabs(std::sqrt(dot(d.wi, d.wi)) - 1) <= unit_length)) return "The direction is not of length 1";
     if (!d.weight) return {};
-    if (!finite_weight) return "the weight is not finite";
+    if (!finite_weight) return "The weight is not finite";
     if (std::min({*d.weight, d.weights.x, d.weights.y, d.weights.z}) < -negative_weight)
-        return "the weight is negative";
+        return "The weight is negative";
     return {};
 }
 
@@ -168,7 +168,7 @@ std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
         if (!same(together[i], again[i]) || !same(together[i], backwards[i]))
             if (out.times++ == 0) {
                 out.first = {.u = u[i], .draw = together[i], .p = 0, .expected = 0};
-                out.what = "the same u gives another draw";
+                out.what = "The same u gives another draw";
             }
     return out.times > 0 ? std::optional(out) : std::nullopt;
 }
@@ -263,7 +263,7 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     for (int k = 0; k < source.traits.numbers; ++k) {
         const std::vector<Draw> far = draws_moved_by(k, 0x1p-10), near = draws_moved_by(k, 0x1p-11),
                                 least = draws_moved_by(k, few_bits_step);
-        SmallFault out{.family = Family::repeats, .what = "only the first bits of a random number move the draw"};
+        SmallFault out{.family = Family::repeats, .what = "Only the first bits of a random number move the draw"};
         for (std::size_t i = 0; i < u.size(); ++i) {
             const double a = moved(here[i], far[i]), b = moved(here[i], near[i]);
             const bool smooth = b > 0 && a > 1.5 * b && a < 3 * b;

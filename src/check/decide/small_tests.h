@@ -20,7 +20,7 @@ struct SmallFault {
     double times = 0, of = 0;  // number of failures, number of tests
     double size = 0;           // relative, if it has one
     Example first{};
-    const char* what = "";
+    const char* what = "";      // begins a sentence
     std::optional<Vec3d> wo{};  // of the first, if it is not a w_o of the call
     std::string place{};        // of the first in a file
 };

@@ -81,18 +81,18 @@ double draws_for_1_percent(const Spread& s) {
 void describe_fit(const WeightTail& t, const CheckCase& check_case, Verdict& v) {
     if (!t.fit) {
         v.evidence["times_largest"] = t.times_largest;
-        v.message = t.times_largest < bound_drawn || static_cast<double>(t.times_largest) == t.spread.n
-            ? "The largest weights are alike: there is no tail. "
-            : fmt::format("The largest weight was drawn {} times: there is no tail. ", t.times_largest);
+        v.sentences = {{"no tail",
+            t.times_largest < bound_drawn || static_cast<double>(t.times_largest) == t.spread.n
+                ? "The largest weights are alike: there is no tail."
+                : fmt::format("The largest weight was drawn {} times: there is no tail.", t.times_largest)}};
         return;
     }
     v.evidence["k"] = t.fit->k;
     v.evidence["se"] = t.fit->se;
     v.evidence["exceedances"] = t.fit->exceedances;
-    v.message =
-        fmt::format("k-hat = {:.3f} +- {:.3f} over the {} largest weights", t.fit->k, t.fit->se, t.fit->exceedances);
-    if (check_case.theory.tail_k) v.message += fmt::format(" (theory: {:.3f})", *check_case.theory.tail_k);
-    v.message += ". ";
+    v.sentences = {{"tail index",
+        fmt::format("k-hat = {:.3f} +- {:.3f} over the {} largest weights{}.", t.fit->k, t.fit->se, t.fit->exceedances,
+            check_case.theory.tail_k ? fmt::format(" (theory: {:.3f})", *check_case.theory.tail_k) : "")}};
 }
 
 void describe_unseen(const WeightTail& t, Verdict& v) {
@@ -104,10 +104,12 @@ void describe_unseen(const WeightTail& t, Verdict& v) {
     v.evidence["unmet_chance_of_a_draw"] = t.unseen_chance;
     v.evidence["largest_drawn_weight"] = t.spread.largest;
     v.evidence["unmet_half_chance"] = t.half_chance;
-    v.message += fmt::format(
-        "Heavy tail that no draw met: {:.3g} +- {:.2g} % of f L cos comes from directions whose weight is larger than "
-        "the largest of {:.0f} draws, {:.4g}, half of it from directions that p gives {:.2g} of a draw.",
-        100 * share, 196 * t.unseen_error / t.integral, t.spread.n, t.spread.largest, t.half_chance);
+    v.sentences.push_back({"unseen tail",
+        fmt::format(
+            "Heavy tail that no draw met: {:.3g} +- {:.2g} % of f L cos comes from directions whose weight is "
+            "larger than the largest of {:.0f} draws, {:.4g}, half of it from directions that p gives {:.2g} of "
+            "a draw.",
+            100 * share, 196 * t.unseen_error / t.integral, t.spread.n, t.spread.largest, t.half_chance)});
     const double times = t.half_chance > 0 ? 1 / (t.half_chance * t.spread.n) : 1e300;
     if (times <= within_reach) v.next = {NextStep::Kind::more_draws, std::max(times, 2.0)};
     else v.next.kind = NextStep::Kind::heavier_pdf;
@@ -173,7 +175,7 @@ WeightTail tail_of(std::span<const CheckAt> techniques) {
 void test_tail(const CheckCase& check_case, const WeightTail& t, Verdict& v) {
     if (!t.has_weights) {
         v.state = State::skipped;
-        v.message = "There are no weights f L cos / p.";
+        v.sentences = {{"no weights", "There are no weights f L cos / p."}};
         return;
     }
     const double mean = t.spread.mean;
@@ -189,20 +191,25 @@ void test_tail(const CheckCase& check_case, const WeightTail& t, Verdict& v) {
     } else if (t.heavy()) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "no finite answer";
-        v.message += "Heavy tail: the variance is infinite or appears to be, so no interval of the mean is valid.";
+        v.sentences.push_back({"heavy tail",
+            "Heavy tail: the variance is infinite or appears to be, so no interval of the mean is valid."});
         v.next.kind = NextStep::Kind::heavier_pdf;
     } else if (t.open()) {
         v.state = State::inconclusive;
         v.evidence["samples_for_1_percent"] = "not known";
-        v.message += "Heavy tail or not: the interval of k contains 1/2, and from 1/2 on the variance is infinite.";
+        v.sentences.push_back({"open tail",
+            "Heavy tail or not: the interval of k contains 1/2, and from 1/2 on the variance is infinite."});
         // The tail of n draws has 3 sqrt(n) weights, so the error of k falls with the fourth root of n.
         const double tails = 4 * t.fit->se * t.fit->se / std::max(sqr(t.fit->k - heavy_index), 1e-4);
         v.next = {NextStep::Kind::more_draws, std::max(sqr(tails), 2.0)};
     } else {
         const double draws = draws_for_1_percent(t.spread);
         v.evidence["samples_for_1_percent"] = draws;
-        if (t.bounded) v.message += fmt::format("The largest weight is {:.3g} means. ", t.spread.largest / mean);
-        v.message += fmt::format("The variance is finite: about {:.3g} samples give 1 %.", draws);
+        if (t.bounded)
+            v.sentences.push_back(
+                {"largest weight", fmt::format("The largest weight is {:.3g} means.", t.spread.largest / mean)});
+        v.sentences.push_back(
+            {"finite variance", fmt::format("The variance is finite: about {:.3g} samples give 1 %.", draws)});
     }
 }
 
@@ -214,15 +221,18 @@ void test_plain_mean(const WeightTail& t, Verdict& v) {
     if (t.integral > 0) v.evidence["quadrature"] = t.integral;
     if (v.state != State::right) return;
     if (t.has_unseen()) {
-        v.message = fmt::format(
-            "The mean of {:.0f} weights is {:.6g}, the integral {:.6g}. ", t.spread.n, t.spread.mean, t.integral);
+        v.sentences = {{"mean and integral",
+            fmt::format(
+                "The mean of {:.0f} weights is {:.6g}, the integral {:.6g}.", t.spread.n, t.spread.mean, t.integral)}};
         describe_unseen(t, v);
     } else if (t.heavy()) {
         v.state = State::inconclusive;
-        v.message = fmt::format(
-            "Heavy tail: k-hat = {:.3f} +- {:.3f}. Weights below the usual one agree with the integral; the plain mean "
-            "of all, {:.6g}, has no interval.",
-            t.fit->k, t.fit->se, t.spread.mean);
+        v.sentences = {{"heavy tail", fmt::format("Heavy tail: k-hat = {:.3f} +- {:.3f}.", t.fit->k, t.fit->se)},
+            {"mean without interval",
+                fmt::format(
+                    "Weights below the usual one agree with the integral; the plain mean of all, {:.6g}, has no "
+                    "interval.",
+                    t.spread.mean)}};
         v.next.kind = NextStep::Kind::heavier_pdf;
     }
 }

@@ -63,8 +63,8 @@ TEST(TailOfWeights, HasTheIndexOfTheory) {
         ASSERT_TRUE(t.of.fit) << s;
         const double k = (s - 1) / (s + 1);
         EXPECT_NEAR(t.of.fit->k, k, 3 * t.of.fit->se) << s;
-        EXPECT_EQ(t.tail.state, k < 0.5 ? State::right : State::inconclusive) << s << t.tail.message;
-        EXPECT_EQ(t.mean.state, k < 0.5 ? State::right : State::inconclusive) << s << t.mean.message;
+        EXPECT_EQ(t.tail.state, k < 0.5 ? State::right : State::inconclusive) << s << t.tail.message();
+        EXPECT_EQ(t.mean.state, k < 0.5 ? State::right : State::inconclusive) << s << t.mean.message();
         EXPECT_EQ(t.tail.next.kind == NextStep::Kind::none, k < 0.5);
     }
 }
@@ -98,7 +98,7 @@ TEST(TailOfWeights, IsFoundByThePointsIfNoDrawShowsIt) {
     EXPECT_EQ(t.mean.state, State::inconclusive);
     EXPECT_GT(t.tail.evidence["unmet_share"].get<double>(), 0.9);
     EXPECT_NEAR(t.tail.evidence["unmet_half_chance"].get<double>(), 5e-7, 2e-7);
-    EXPECT_NE(t.tail.message.find("Heavy tail that no draw met"), std::string::npos);
+    EXPECT_NE(t.tail.message().find("Heavy tail that no draw met"), std::string::npos);
     EXPECT_EQ(t.tail.next.kind, NextStep::Kind::heavier_pdf);  // 120 times as many draws would be enough
 }
 

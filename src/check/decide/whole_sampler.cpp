@@ -187,7 +187,7 @@ namespace {
 
 constexpr const char* not_one = "MIS weights do not sum to 1";
 constexpr const char* without_density =
-    "a sampler has MIS weight where its density is 0, so that the weights of the others sum to less than 1";
+    "A sampler has MIS weight where its density is 0, so that the weights of the others sum to less than 1";
 
 /// Directions that one technique draws, with the weights of all techniques there.
 struct WeightedDraws {

@@ -387,14 +387,16 @@ EvaluationNoise look_for_noise(Source& source, const StreamKey& key) {
     return out;
 }
 
-std::string text_of(const EvaluationNoise& s) {
-    if (!s.pdf() && !s.f()) return "";
+Sentences sentences_of(const EvaluationNoise& s) {
+    if (!s.pdf() && !s.f()) return {};
     const char* what = s.pdf() && s.f() ? "pdf(w) and f(w) are random estimates"
         : s.pdf()                       ? "pdf(w) is a random estimate"
                                         : "f(w) is a random estimate";
-    return fmt::format("{}: {} differ by {:.2g} % (median). Their means are tested.", what,
-        s.hashed ? "answers for directions 2e-7 apart" : "two answers for one direction",
-        100 * std::max(s.of_pdf, s.of_f));
+    return {{"random estimates",
+                fmt::format("{}: {} differ by {:.2g} % (median).", what,
+                    s.hashed ? "answers for directions 2e-7 apart" : "two answers for one direction",
+                    100 * std::max(s.of_pdf, s.of_f))},
+        {"tested means", "Their means are tested."}};
 }
 
 }  // namespace crescent::check

@@ -8,6 +8,7 @@
 
 #include "check/estimate/stream.h"
 #include "check/sources/recorded_sampler.h"
+#include "check/verdict.h"
 
 namespace crescent::check {
 
@@ -132,8 +133,8 @@ struct EvaluationNoise {
 
 /// Uses a few hundred answers, at drawn directions and over the whole sphere.
 EvaluationNoise look_for_noise(Source& source, const StreamKey& key);
-/// A sentence; "" if nothing is an estimate.
-std::string text_of(const EvaluationNoise& scatter);
+/// None if nothing is an estimate.
+Sentences sentences_of(const EvaluationNoise& scatter);
 
 // ---- The reciprocity of f if no index is stated: f or f |cos| is symmetric, so that no index scales it across the
 // surface, or neither is.

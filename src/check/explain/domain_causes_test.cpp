@@ -134,7 +134,7 @@ TEST(DomainCauses, SayNothingOfConcentrationOverInfiniteLines) {
                 .pdf = density,
                 .parallel = true};
             std::string text;
-            for (const Verdict& v : check_sampler("made", sampler).verdicts) text += v.message + " " + v.cause + "\n";
+            for (const Verdict& v : check_sampler("made", sampler).verdicts) text += v.message() + " " + v.cause + "\n";
             EXPECT_EQ(text.find("concentrated"), std::string::npos) << domain << ", rate " << rate << ": " << text;
             EXPECT_NE(text.find("a rate, a mean free path or another scale"), std::string::npos)
                 << rate << ": " << text;

@@ -254,7 +254,8 @@ private:
             else if (name == "efficiency" && b_) set_efficiency(v);
             else {
                 v.state = State::skipped;
-                v.message = name == "efficiency" ? "Needs another estimator." : "A number has no density.";
+                v.sentences = {
+                    {"needs", name == "efficiency" ? "Needs another estimator." : "A number has no density."}};
             }
             v.expected = v.state == State::right || v.state == State::skipped ||
                 (v.state == State::inconclusive && (name == "tail" || name == "mean"));
@@ -276,15 +277,17 @@ private:
     void set_valid(Verdict& v) const {
         v.evidence["draws"] = a_.drawn;
         v.evidence["unusable"] = a_.unusable;
-        v.message = fmt::format("{} values can be used. NaN in one of {:.2g} draws would have been found.",
-            a_.drawn - a_.unusable, static_cast<double>(a_.drawn) / 3);
+        v.sentences = {{"usable", fmt::format("{} values can be used.", a_.drawn - a_.unusable)},
+            {"detectable",
+                fmt::format("NaN in one of {:.2g} draws would have been found.", static_cast<double>(a_.drawn) / 3)}};
         if (a_.unusable == 0) return;
         v.state = State::wrong;
         v.size = static_cast<double>(a_.unusable) / static_cast<double>(a_.drawn);
         std::string u;
         for (int k = 0; k < estimator_->traits().numbers; ++k)
             u += fmt::format("{}{:.6g}", k ? ", " : "", a_.first_unusable[k]);
-        v.message = fmt::format("{} of {} values are not finite, first at u = ({}).", a_.unusable, a_.drawn, u);
+        v.sentences = {{"not finite",
+            fmt::format("{} of {} values are not finite, first at u = ({}).", a_.unusable, a_.drawn, u)}};
     }
 
     void set_mean(Verdict& v) const {
@@ -295,7 +298,7 @@ private:
             {"standard_error", x.n > 0 ? x.error() : 0}, {"expected", d.difference.expected}};
         if (x.n < 2 || static_cast<double>(a_.unusable) > most_unusable * static_cast<double>(a_.drawn)) {
             v.state = State::skipped;
-            v.message = "Not given, since too many of the values are not numbers: see valid.";
+            v.sentences = {{"withheld", "Not given, since too many of the values are not numbers: see valid."}};
             return;
         }
         const std::string channel = channels() == 3 ? fmt::format(" in channel {}", d.channel + 1) : "";
@@ -303,29 +306,34 @@ private:
         const double bias = d.difference.value / d.difference.unit();
         v.evidence["bias"] = bias;
         if (d.state == State::inconclusive && heavy()) {
-            v.message = fmt::format(
-                "The values average to {:.5g}{}, {:.5g} expected. Their tail is heavy, so that no "
-                "interval of the mean is valid.",
-                x.mean(), channel, d.difference.expected);
+            v.sentences = {{"mean",
+                               fmt::format("The values average to {:.5g}{}, {:.5g} expected.", x.mean(), channel,
+                                   d.difference.expected)},
+                {"heavy tail", "Their tail is heavy, so that no interval of the mean is valid."}};
             v.next_step = bounded_values;
             return;
         }
-        v.message = fmt::format("The values average to {}{}. Expected {:.7g}{}.", mean, channel, d.difference.expected,
-            b_ ? ", the mean of " + expected_.estimator->name() : "");
+        v.sentences = {{"mean", fmt::format("The values average to {}{}.", mean, channel)},
+            {"expected",
+                fmt::format("Expected {:.7g}{}.", d.difference.expected,
+                    b_ ? ", the mean of " + expected_.estimator->name() : "")}};
         if (d.state == State::wrong) {
             v.size = std::fabs(bias);
-            v.message += fmt::format(" That is {} too {}.",
-                percent_with_error(std::fabs(bias), half_width_95 * d.difference.error / d.difference.unit()) +
-                    d.difference.unit_words(),
-                bias > 0 ? "large" : "small");
+            v.sentences.push_back({"bias",
+                fmt::format("That is {} too {}.",
+                    percent_with_error(std::fabs(bias), half_width_95 * d.difference.error / d.difference.unit()) +
+                        d.difference.unit_words(),
+                    bias > 0 ? "large" : "small")});
         } else if (d.state == State::right) {
             v.hidden["bias"] = d.hidden;
             v.evidence["would_have_found"] = {{"bias", d.hidden}};
-            v.message +=
-                fmt::format(" A bias of {:.2g} %{} would have been found.", 100 * d.hidden, d.difference.unit_words());
+            v.sentences.push_back({"detectable",
+                fmt::format("A bias of {:.2g} %{} would have been found.", 100 * d.hidden, d.difference.unit_words())});
         } else {
-            v.message += fmt::format(" Only a bias of {:.2g} %{} would have been found. Right requires at most {:g} %.",
-                100 * d.hidden, d.difference.unit_words(), 100 * most_bias);
+            v.sentences.push_back({"detectable",
+                fmt::format(
+                    "Only a bias of {:.2g} %{} would have been found.", 100 * d.hidden, d.difference.unit_words())});
+            v.sentences.push_back({"required", fmt::format("Right requires at most {:g} %.", 100 * most_bias)});
             v.next = {NextStep::Kind::more_draws, std::max(sqr(d.hidden / (most_bias)), 4.0)};
         }
     }
@@ -334,12 +342,13 @@ private:
         const Moments &x = a_.channels[0], &y = b_->channels[0];
         if (!(x.variance() > 0 && y.variance() > 0)) {
             v.state = State::skipped;
-            v.message = "One of the estimators has no variance.";
+            v.sentences = {{"no variance", "One of the estimators has no variance."}};
             return;
         }
         const double ratio = x.variance() / y.variance();
         v.evidence["variance_ratio"] = ratio;
-        v.message = fmt::format("Its variance is {:.3g} times that of {}.", ratio, expected_.estimator->name());
+        v.sentences = {
+            {"variance", fmt::format("Its variance is {:.3g} times that of {}.", ratio, expected_.estimator->name())}};
         v.timed_message = fmt::format(" A draw takes {:.3g} times as long.", a_.seconds / b_->seconds);
     }
 };

@@ -77,7 +77,7 @@ TEST(NumberCheck, OfZeroIsRelativeToTheSpread) {
     const auto mean = std::ranges::find(wrong.verdicts, "mean", &Verdict::name);
     EXPECT_EQ(mean->state, State::wrong);
     EXPECT_NEAR(mean->size, 0.05 * std::sqrt(12), 0.01);
-    EXPECT_NE(mean->message.find("of the standard deviation of a value"), std::string::npos) << mean->message;
+    EXPECT_NE(mean->message().find("of the standard deviation of a value"), std::string::npos) << mean->message();
 }
 
 TEST(NumberCheck, StatesTheRoundingOfAConstant) {

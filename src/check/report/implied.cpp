@@ -108,12 +108,12 @@ void note_implied_density(const CheckAt& c, Verdict& v) {
     v.evidence["implied_bins"] = {
         {"columns", {"cos_theta_from", "cos_theta_to", "phi_from", "phi_to", "pdf", "standard_error"}},
         {"rows", std::move(rows)}};
-    v.message = draws[0] > 0
-        ? fmt::format(
-              "There is no pdf(w) to compare the draws with. The density that they imply is highest about "
-              "{}: {:.4g} +- {:.2g} 1/sr, over {:.2g} sr.",
-              direction_text(w), peak.p, peak.se, r.area())
-        : "There is no pdf(w), and no direction is drawn as a density.";
+    if (draws[0] > 0)
+        v.sentences = {{"no pdf", "There is no pdf(w) to compare the draws with."},
+            {"implied density",
+                fmt::format("The density that they imply is highest about {}: {:.4g} +- {:.2g} 1/sr, over {:.2g} sr.",
+                    direction_text(w), peak.p, peak.se, r.area())}};
+    else v.sentences = {{"no pdf", "There is no pdf(w), and no direction is drawn as a density."}};
 }
 
 }  // namespace crescent::check

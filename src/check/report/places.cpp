@@ -132,7 +132,7 @@ std::string region_text(const ChartRect& r, const Traits& traits) {
     return out;
 }
 
-std::string sentence_of(const ShareDifference& d, const Traits& traits) {
+Sentence sentence_of(const ShareDifference& d, const Traits& traits) {
     const auto share = [](double x, double error) {
         const double half = half_width_95 * error;
         if (x - half < 0) return fmt::format("at most {:.2g} %", 100 * (x + half));
@@ -140,10 +140,13 @@ std::string sentence_of(const ShareDifference& d, const Traits& traits) {
         return percent_with_error(x, half);
     };
     if (const auto entry = traits.domain ? traits.domain->entry(d.rect) : std::nullopt)
-        return fmt::format("Entry {} is drawn with {}, p says {}.", *entry,
-            with_error(d.drawn, half_width_95 * d.drawn_error), with_error(d.claimed, half_width_95 * d.claimed_error));
-    return fmt::format("Of the draws {} are {}, where p has {}.", share(d.drawn, d.drawn_error),
-        region_text(d.rect, traits), share(d.claimed, d.claimed_error));
+        return {"probability of an entry",
+            fmt::format("Entry {} is drawn with {}, p says {}.", *entry,
+                with_error(d.drawn, half_width_95 * d.drawn_error),
+                with_error(d.claimed, half_width_95 * d.claimed_error))};
+    return {"share of a region",
+        fmt::format("Of the draws {} are {}, where p has {}.", share(d.drawn, d.drawn_error),
+            region_text(d.rect, traits), share(d.claimed, d.claimed_error))};
 }
 
 std::optional<Concentration> concentration_of(const CheckAt& c) {
@@ -176,17 +179,17 @@ std::optional<Concentration> concentration_of(const CheckAt& c) {
     return out;
 }
 
-std::string sentence_of(const Concentration& s, const Traits& traits) {
+std::optional<Sentence> sentence_of(const Concentration& s, const Traits& traits) {
     using Compared = Concentration::Compared;
-    if (s.compared == Compared::unknown) return "";
-    if (s.compared == Compared::same && traits.domain)
-        return "Draws and p are equally concentrated, at different places.";
+    if (s.compared == Compared::unknown) return {};
     if (s.compared == Compared::same)
-        return fmt::format("Draws and p are equally concentrated, within {:.3g} sr, at different places.", s.drawn);
-    if (traits.domain)
-        return fmt::format("Draws are {} concentrated than p.", s.compared == Compared::more ? "more" : "less");
-    return fmt::format("Draws are {} concentrated than p: over {:.3g} sr, p over {:.3g} sr.",
-        s.compared == Compared::more ? "more" : "less", s.drawn, s.claimed);
+        return Sentence{"equally concentrated",
+            fmt::format("Draws and p are equally concentrated,{} at different places.",
+                traits.domain ? "" : fmt::format(" within {:.3g} sr,", s.drawn))};
+    const std::string what = fmt::format("{} concentrated", s.compared == Compared::more ? "more" : "less");
+    return Sentence{what,
+        fmt::format("Draws are {} than p{}.", what,
+            traits.domain ? "" : fmt::format(": over {:.3g} sr, p over {:.3g} sr", s.drawn, s.claimed))};
 }
 
 }  // namespace crescent::check

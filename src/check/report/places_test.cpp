@@ -26,7 +26,7 @@ TEST(DifferencesOfShares, AreThoseOfTheRegion) {
     EXPECT_TRUE(d->drawn > 0 && d->drawn < 1 && d->claimed > 0 && d->claimed < 1);
     const Vec3d w = from_chart(d->rect.at(0.5, 0.5));
     EXPECT_NEAR(d->drawn / d->claimed, w.x > 0 ? 0.8 : 1.2, 5 * d->drawn_error / d->claimed);
-    EXPECT_THAT(sentence_of(*d, {}), HasSubstr("Of the draws"));
+    EXPECT_THAT(sentence_of(*d, {}).text, HasSubstr("Of the draws"));
     const Explained constant = checked(made(cosine_draw, [](Vec3d o, Vec3d v) { return 1.5 * cosine_pdf(o, v); }));
     EXPECT_FALSE(largest_difference(at(constant)));  // it changes no share
 }
@@ -61,8 +61,9 @@ TEST(DifferencesOfShares, AreSaidInOneWordingAtEveryWo) {
     for (const Verdict& v : r.verdicts())
         if (v.name == "density") {
             EXPECT_EQ(v.state, State::wrong);
-            EXPECT_TRUE(v.message.starts_with("Of the draws ")) << v.message;
-            EXPECT_THAT(v.message, HasSubstr("Draws are more concentrated than p"));
+            ASSERT_EQ(v.sentences.size(), 2u) << v.message();
+            EXPECT_EQ(v.sentences[0].what, "share of a region");
+            EXPECT_EQ(v.sentences[1].what, "more concentrated");
             EXPECT_TRUE(v.size > 0 && v.size < 1);
         }
 }

@@ -64,10 +64,8 @@ std::string expected_ones(const CheckResult& result) {
 
 std::string verdict_table(const CheckResult& result, bool with_right) {
     const std::string summary = summary_of(result);
-    const std::size_t details = std::min(summary.find("\n\n"), summary.size());
-    std::string out =
-        summary.substr(0, details) + (summary.empty() ? "" : "\n\n") + rows_of(result) + expected_ones(result);
-    if (details < summary.size()) out += summary.substr(details + 1);
+    std::string out = summary + (summary.empty() ? "" : "\n") + rows_of(result) + expected_ones(result);
+    out += details_of(result);
     for (const Verdict& v : result.verdicts)
         if (with_right)
             out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.check_case, v.name, word(v.state), describe(v));
@@ -93,8 +91,8 @@ std::string verdict_junit(const CheckResult& result) {
             : open                                 ? Case::skipped
                                                    : Case::passed;
         suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.check_case), state,
-            fmt::format("{}: {}", word(v.state), sentences_of(v.message).front()),
-            v.message + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " Next step: " + next),
+            fmt::format("{}: {}", word(v.state), v.first_sentence()),
+            v.message() + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " Next step: " + next),
             v.seconds});
     }
     for (const std::string& line : result.unmet)
@@ -115,7 +113,7 @@ std::string verdict_sarif(
         if (!fails && v.state != State::inconclusive) continue;
         const bool open = v.state == State::inconclusive;
         add(v.name, open ? "warning" : "error",
-            fmt::format("{} is {} at {}: {}{}", v.arm, word(v.state), v.check_case, v.message,
+            fmt::format("{} is {} at {}: {}{}", v.arm, word(v.state), v.check_case, v.message(),
                 v.cause.empty() ? "" : " " + v.cause),
             fmt::format("{} {} {}", v.arm, v.check_case, v.name));
     }

@@ -35,8 +35,7 @@ std::string next_step_text(const Verdict& verdict, FrontEnd front_end = FrontEnd
 /// How to check the sampler at a single w_o: theta and azimuth in degrees.
 std::string one_wo_text(std::pair<double, double> wo, FrontEnd front_end);
 
-// ---- The summary of a result: one line for each finding over all w_o, worst first; then the details, each sentence
-// once with its cases.
+// ---- The summary of a result: one line for each finding over all w_o, worst first.
 
 /// A verdict of one arm in one state other than right or skipped, over all its cases.
 struct Finding {
@@ -47,7 +46,7 @@ struct Finding {
     const char* cases = "w_o";       // unit of the counts
     const Verdict* worst = nullptr;  // largest deviation in the evidence, else the first
     std::vector<std::pair<std::string, std::vector<std::string>>>
-        sentences;              // in another wording than those of the worst, each with its cases
+        sentences;              // that state something else than those of the worst, each with its cases
     std::string range{};        // " (75 to 89 deg)": of the w_o, if it is not found at all of them
     std::string cause{};        // of the worst, or of another wrong verdict of the arm
     std::string named_cause{};  // of one of its verdicts: the summary has each cause once
@@ -58,6 +57,8 @@ struct Finding {
 std::vector<Finding> findings_of(const CheckResult& result);
 /// "density: wrong at 8 of 8 w_o, worst at w_o 60 deg az 250. The draws do not follow p ..."
 std::string describe(const Finding& finding, FrontEnd front_end = FrontEnd::command_line);
+/// Of an error, what follows its state: ": 72 of 72 verdicts could not be evaluated, the first at w_o 0 deg. ..."
+std::string failure_text(const Finding& finding, FrontEnd front_end = FrontEnd::command_line);
 /// "at 3 of 8 w_o (75 to 89 deg), worst at w_o 89 deg az 180"; "" for a sampler that is checked once, without w_o.
 std::string where_found(const Finding& finding);
 /// "Left out: all but valid at 3 of 8 w_o (w_o 0 deg; ...). ..."; "" if nothing was left out.
@@ -71,10 +72,12 @@ std::string nothing_drawn_text(const CheckResult& result);
 std::vector<std::string> closing_texts(const CheckResult& result);
 /// The sentences of a verdict: message, cause, next step and time.
 std::string describe(const Verdict& verdict, FrontEnd front_end = FrontEnd::command_line);
-/// Splits a text into sentences; each begins with a capital letter.
-std::vector<std::string> sentences_of(const std::string& text);
-/// All findings except expected ones, one line each, then what was left out, then the details.
+/// The text with a space for each line break.
+std::string in_one_line(std::string text);
+/// All findings except expected ones, one line each, then what was left out.
 std::string summary_of(const CheckResult& result);
+/// What the findings of the summary state at other w_o than the worst, each sentence once, with its cases.
+std::string details_of(const CheckResult& result);
 /// The findings in at most `most_lines` (5 or more), for a failing test: message, size, place and cause of the first
 /// ones, then the names of the others and the next step in calls of C++; "" if there are none.
 std::string what_is_wrong(const CheckResult& result, std::size_t most_lines = 8);

@@ -21,7 +21,7 @@ CheckResult every_state() {
         v.check_case = "w_o <45> deg";
         v.name = "density";
         v.state = state;
-        v.message = "What was found. And where.";
+        v.sentences = {{"size", "What was found."}, {"place", "And where."}};
         v.seconds = 2.5;
         v.expected = state == State::right || state == State::skipped;
         v.evidence["p"] = 0.25;
@@ -40,6 +40,8 @@ TEST(ResultAsJson, HasEachVerdictWithItsEvidence) {
     ASSERT_EQ(json["verdicts"].size(), 5u);
     EXPECT_EQ(json["verdicts"][2]["state"], "inconclusive");
     EXPECT_EQ(json["verdicts"][0]["evidence"]["p"], 0.25);
+    EXPECT_EQ(json["verdicts"][0]["message"], "What was found. And where.");
+    EXPECT_EQ(json["verdicts"][0]["sentences"][1], nlohmann::json({{"what", "place"}, {"text", "And where."}}));
     EXPECT_EQ(json["requested"].size(), 2u);  // arms and cases
 }
 
@@ -53,6 +55,7 @@ TEST(ResultAsJson, HasNoTimes) {
 TEST(ResultAsJunit, HasACaseForEachVerdict) {
     CheckResult result = every_state();
     EXPECT_THAT(verdict_junit(result), HasSubstr("tests=\"5\" failures=\"2\" errors=\"1\" skipped=\"1\""));
+    EXPECT_THAT(verdict_junit(result), HasSubstr("message=\"wrong: What was found.\""));
     Verdict& wrong = result.verdicts[1];
     wrong.waived = wrong.expected = true;
     wrong.why_expected = "it is known";

@@ -139,13 +139,26 @@ std::optional<ImpliedDensity> implied_in(const StoredJson& evidence) {
     return out;
 }
 
+/// Of a result without the list: its message as one sentence.
+Sentences sentences_in(const StoredJson& verdict) {
+    if (!verdict.contains("sentences")) return {{"", verdict.at("message").get<std::string>()}};
+    Sentences out;
+    for (const StoredJson& one : verdict.at("sentences").entries()) {
+        Sentence& sentence = out.emplace_back();
+        one.at("what").get_to(sentence.what);
+        one.at("text").get_to(sentence.text);
+        read_member(one, "technique", sentence.technique);
+    }
+    return out;
+}
+
 Verdict read_verdict(const StoredJson& json) {
     Verdict v;
     json.at("arm").get_to(v.arm);
     json.at("case").get_to(v.check_case);
     json.at("name").get_to(v.name);
     v.state = state_named(json.at("state"));
-    json.at("message").get_to(v.message);
+    v.sentences = sentences_in(json);
     json.at("expected").get_to(v.expected);
     v.evidence = json.at("evidence").value();
     const StoredJson evidence = json.at("evidence");
@@ -211,8 +224,12 @@ Json cases_of(const CheckResult& result) {
 }
 
 Json verdict_as_json(const Verdict& v) {
-    Json out = {
-        {"arm", v.arm}, {"case", v.check_case}, {"name", v.name}, {"state", word(v.state)}, {"message", v.message}};
+    Json out = {{"arm", v.arm}, {"case", v.check_case}, {"name", v.name}, {"state", word(v.state)},
+        {"message", v.message()}, {"sentences", Json::array()}};
+    for (const Sentence& sentence : v.sentences) {
+        Json& one = out["sentences"].emplace_back(Json{{"what", sentence.what}, {"text", sentence.text}});
+        if (sentence.technique > 0) one["technique"] = sentence.technique;
+    }
     if (!v.cause.empty()) out["cause"] = v.cause;
     if (const std::string next = next_step_text(v); !next.empty()) out["status"] = next;
     out["expected"] = v.expected;

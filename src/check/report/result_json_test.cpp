@@ -28,7 +28,7 @@ CheckResult full() {
         v.check_case = "w_o 45 deg az 0";
         v.name = "density";
         v.state = state;
-        v.message = "What was found. And where.";
+        v.sentences = {{"size", "What was found."}, {"place", "And where."}};
         v.expected = state != State::wrong;
         v.wo = {45, 0};
         v.size = 0.125;
@@ -43,6 +43,7 @@ CheckResult full() {
     wrong.integral = 0.5;
     wrong.place = "u = (0, 1)";
     wrong.why_expected = "known";
+    out.verdicts[3].sentences[0].technique = 2;
     out.verdicts[2].next = {NextStep::Kind::more_draws, 3, false};
     out.verdicts[4].first_failure = true;
     out.left_out = {{"made", "w_o 45 deg az 0", {"density"}, "No time was left."}};
@@ -90,6 +91,14 @@ TEST(StoredResult, HasThePageAndTableOfTheResult) {
     EXPECT_EQ(verdict_html(read.result, read.source), verdict_html(result, source));
     EXPECT_EQ(verdict_table(read.result, true), verdict_table(result, true));
     EXPECT_EQ(verdict_json(read.result, read.source), verdict_json(result, source));
+}
+
+TEST(StoredResult, TakesAMessageWithoutItsListAsOneSentence) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(verdict_json(full()));
+    json["verdicts"][1].erase("sentences");
+    const Verdict read = read_verdict_json(json.dump(), "check.json").result.verdicts[1];
+    EXPECT_EQ(read.sentences.size(), 1u);
+    EXPECT_EQ(read.message(), "What was found. And where.");
 }
 
 TEST(StoredResult, ReadsNumbersThatAreNotFinite) {

@@ -34,13 +34,8 @@ constexpr Layout layouts[] = {
     {.right_apart = false, .further_apart = false, .first_in_full = false},
 };
 
-std::string in_a_row(std::string text) {
-    std::ranges::replace(text, '\n', ' ');
-    return text;
-}
-
-std::string shortened(const std::string& message, bool in_full) {
-    return in_a_row(in_full ? message : sentences_of(message).front());
+std::string shortened(const Verdict& v, bool in_full) {
+    return in_one_line(in_full ? v.message() : v.first_sentence());
 }
 
 /// " as expected" or " as waived" with the reason; "" for a verdict that is not expected.
@@ -49,18 +44,18 @@ std::string expectation_of(const Finding& f) {
 }
 
 ScreenLine line_of(const Finding& f, bool in_full) {
-    if (f.state == State::error) return {f.state, "error", in_a_row(describe(f).substr(std::string("error").size()))};
+    if (f.state == State::error) return {f.state, "error", in_one_line(failure_text(f))};
     const std::string where = where_found(f);
     return {f.state, fmt::format("{}: {}{}", f.name, word(f.state), expectation_of(f)),
         fmt::format("{}{}{} {}", where.empty() ? "" : " ", where, f.expected ? ":" : ".",
-            f.expected ? f.worst->why_expected : shortened(f.worst->message, in_full))};
+            f.expected ? f.worst->why_expected : shortened(*f.worst, in_full))};
 }
 
 /// Cause and next step of the first finding, below it.
 void add_steps(const Finding& f, FrontEnd front_end, std::vector<ScreenLine>& out) {
     if (f.state == State::error || f.expected) return;
-    if (!f.cause.empty()) out.push_back({{}, "  Cause: ", in_a_row(f.cause)});
-    std::string next = in_a_row(next_step_text(*f.worst, front_end));
+    if (!f.cause.empty()) out.push_back({{}, "  Cause: ", in_one_line(f.cause)});
+    std::string next = in_one_line(next_step_text(*f.worst, front_end));
     if (next.empty() && f.worst->wo && f.total > 1 && f.state == State::wrong)
         next = one_wo_text(*f.worst->wo, front_end);
     if (!next.empty()) out.push_back({{}, "  Next step: ", next});
@@ -78,7 +73,7 @@ void add_findings(
         out.push_back(line_of(f, i == 0 ? layout.first_in_full : layout.further_in_full));
         if (i == 0) add_steps(f, front_end, out);
         else if (layout.further_in_full && !f.named_cause.empty() && f.named_cause != findings[0].cause)
-            out.back().text += " " + in_a_row(f.named_cause);
+            out.back().text += " " + in_one_line(f.named_cause);
     }
     for (const auto& [state, names] : others)
         out.push_back({{}, "", fmt::format("Also {}: {}", state, fmt::join(names, ", "))});
@@ -124,7 +119,7 @@ void add_skipped(const CheckResult& result, std::vector<ScreenLine>& out) {
     std::map<std::string, std::size_t> counts;
     for (const auto& [name, count] : names_in(result, State::skipped)) {
         const auto v = std::ranges::find(result.verdicts, name, &Verdict::name);
-        const std::string needed = shortened(v->message, false);
+        const std::string needed = shortened(*v, false);
         if (const std::size_t same = ++counts[needed]; same > counts[reason]) reason = needed;
         names += (names.empty() ? " " : ", ") + name;
     }
@@ -137,8 +132,8 @@ std::vector<ScreenLine> lines_by(
     add_findings(findings, layout, front_end, out);
     add_right(result, layout, out);
     add_skipped(result, out);
-    for (const std::string& line : result.unmet) out.push_back({{}, "", in_a_row(line)});
-    for (const std::string& text : closing_texts(result)) out.push_back({{}, "", in_a_row(text)});
+    for (const std::string& line : result.unmet) out.push_back({{}, "", in_one_line(line)});
+    for (const std::string& text : closing_texts(result)) out.push_back({{}, "", in_one_line(text)});
     return out;
 }
 

@@ -23,8 +23,8 @@ CheckResult in_states(std::initializer_list<State> states) {
             v.check_case = theta < 45 ? "w_o 30 deg" : "w_o 60 deg";
             v.wo = {theta, 0};
             v.state = i < states.size() ? states.begin()[i] : State::right;
-            v.message = std::string("What of ") + v.name + " is found. How large it is.";
-            if (v.state == State::skipped) v.message = "Needs f.";
+            v.sentences = {{"finding", std::string("What of ") + v.name + " is found."}, {"size", "How large it is."}};
+            if (v.state == State::skipped) v.sentences = {{"needs", "Needs f."}};
             if (v.state == State::wrong) {
                 v.cause = "The cause of " + v.name + ".";
                 v.size = theta;

@@ -14,24 +14,15 @@ namespace {
 
 constexpr double few_nodes = 16;  // fewer are not many places
 
-std::string u_text(const PrimarySample& u, int count) {
-    std::string out = "(";
-    for (int k = 0; k < count; ++k) out += fmt::format("{}{:.6g}", k ? ", " : "", u[k]);
-    return out + ")";
+/// "u = (0.25, 0), w_i = (0, 0, 1)".
+std::string place_text(const std::vector<double>& u, const Traits& traits, const Example& e) {
+    const std::string place = crescent::place_text(traits, e.draw.wi);
+    return u.empty() ? place : fmt::format("u = ({:.6g}), {}", fmt::join(u, ", "), place);
 }
-
-/// "first at u = (0.25, 0), w_i = (0, 0, 1)". of_draw: whether it is a draw even if all its numbers are 0.
-std::string first_at(const Example& e, const Traits& traits, bool of_draw = false) {
-    const int numbers = traits.own_numbers();
-    bool any = of_draw;
-    for (int k = 0; k < numbers; ++k) any = any || e.u[k] != 0;
-    std::string out = "first at ";
-    if (any && numbers > 0) out += "u = " + u_text(e.u, numbers) + ", ";
-    return out + place_text(traits, e.draw.wi);
-}
+std::string place_of(const Example& e, const Traits& traits) { return place_text(numbers_of(e, traits), traits, e); }
 
 /// Without a single draw at which p is positive.
-std::string empty_sentence(const DrawChecks& c, double mass) {
+Sentence empty_sentence(const DrawChecks& c, double mass) {
     const std::uint64_t empty = c.nothing - c.outside, unused = c.tested - c.nothing;
     std::vector<std::string> parts;
     const auto add = [&](std::uint64_t count, const char* what) {
@@ -41,21 +32,23 @@ std::string empty_sentence(const DrawChecks& c, double mass) {
     add(empty, "return no sample (their pdf is 0)");
     add(c.deltas, "are delta parts");
     add(unused > c.deltas ? unused - c.deltas : 0, "cannot be used");
-    return fmt::format("p integrates to {:.5g}, but no draw is a direction of p: of {} draws {}.", mass, c.tested,
-        crescent::listed(parts));
+    return {"no draw of p",
+        fmt::format("p integrates to {:.5g}, but no draw is a direction of p: of {} draws {}.", mass, c.tested,
+            crescent::listed(parts))};
 }
 
-std::string mass_sentence(const CheckAt& c, const Answer& a) {
+Sentences mass_sentences(const CheckAt& c, const Answer& a) {
     const double drawn = a.expected + a.difference, half = half_width_95 * a.sd;
-    if (!(drawn > 0)) return empty_sentence(c.observations.checks, a.expected);
+    if (!(drawn > 0)) return {empty_sentence(c.observations.checks, a.expected)};
     if (!(a.expected > 0))
-        return fmt::format(
-            "p is 0 at all {:.0f} points at which it is integrated, and {} % of the samples draw a "
-            "direction.",
-            c.integrals.points, crescent::figures(100 * drawn));
-    if (drawn > 1 - 1e-9) return fmt::format("p integrates to {}. Expected 1.", with_error(a.expected, half));
-    return fmt::format("p integrates to {}. Expected {:.6g}, the share of the samples that draw a direction.",
-        with_error(a.expected, half), drawn);
+        return {{"no integral",
+            fmt::format("p is 0 at all {:.0f} points at which it is integrated, and {} % of the samples draw a "
+                        "direction.",
+                c.integrals.points, crescent::figures(100 * drawn))}};
+    return {{"integral", fmt::format("p integrates to {}.", with_error(a.expected, half))},
+        {"expected",
+            drawn > 1 - 1e-9 ? "Expected 1."
+                             : fmt::format("Expected {:.6g}, the share of the samples that draw a direction.", drawn)}};
 }
 
 /// The sum of h p over the leaves below a node.
@@ -66,22 +59,25 @@ double claimed_below(const CheckAt& c, int node) {
 }
 
 /// The share of the draws at a node that are in its first half, or in the other one if p has less of that.
-std::string node_sentence(const CheckAt& c, const Answer& a) {
+Sentence node_sentence(const CheckAt& c, const Answer& a) {
     const std::vector<TreeNode>& nodes = c.plan->tree.nodes();
     const TreeNode& x = nodes[static_cast<std::size_t>(a.member)];
     const double first = claimed_below(c, x.child), both = first + claimed_below(c, x.child + 1);
     const bool is_first = first <= both - first;
     const double share = (is_first ? first : both - first) / both, per_draw = first / both / a.expected;
     const ChartRect& half = nodes[static_cast<std::size_t>(is_first ? x.child : x.child + 1)].rect;
-    if (!(share > 0)) return fmt::format("Draws fall where p expects none: {}.", region_text(half, c.traits));
+    if (!(share > 0))
+        return {"draws where p is 0", fmt::format("Draws fall where p expects none: {}.", region_text(half, c.traits))};
     const double difference = a.difference * per_draw;
-    return fmt::format("Of the draws{} {} % are {}, where p has {:.4g} %.",
-        x.depth == 0 ? "" : " " + region_text(x.rect, c.traits) + ",",
-        with_error(100 * (is_first ? share + difference : share - difference), 100 * half_width_95 * a.sd * per_draw),
-        region_text(half, c.traits), 100 * share);
+    return {"share of half a region",
+        fmt::format("Of the draws{} {} % are {}, where p has {:.4g} %.",
+            x.depth == 0 ? "" : " " + region_text(x.rect, c.traits) + ",",
+            with_error(
+                100 * (is_first ? share + difference : share - difference), 100 * half_width_95 * a.sd * per_draw),
+            region_text(half, c.traits), 100 * share)};
 }
 
-std::string band_sentence(int member, const Answer& a, const Traits& traits) {
+Sentence band_sentence(int member, const Answer& a, const Traits& traits) {
     const ChartRect r = rect_of_band(member);
     constexpr double degrees = 360 / two_pi;
     const bool of_phi = r.t0 == 0 && r.t1 == 2;
@@ -89,14 +85,17 @@ std::string band_sentence(int member, const Answer& a, const Traits& traits) {
         ? traits.domain->text(r)
         : fmt::format("at {} from {:.4g} to {:.4g} degrees", of_phi ? "azimuths" : "polar angles",
               degrees * (of_phi ? r.phi0 : angle_of(r.t0)), degrees * (of_phi ? r.phi1 : angle_of(r.t1)));
-    return fmt::format("{} {} draws than p expects {}.",
-        percent_with_error(std::fabs(a.difference) / a.expected, half_width_95 * a.sd / a.expected),
-        a.difference > 0 ? "more" : "fewer", where);
+    const char* compared = a.difference > 0 ? "more" : "fewer";
+    return {fmt::format("{} draws in a band", compared),
+        fmt::format("{} {} draws than p expects {}.",
+            percent_with_error(std::fabs(a.difference) / a.expected, half_width_95 * a.sd / a.expected), compared,
+            where)};
 }
 
-std::string pair_sentence(
+Sentence pair_sentence(
     const char* what, double share, const Example& e, const Traits& traits, const std::string& values) {
-    return fmt::format("{} for {:.3g} % of the draws, {}{}.", what, 100 * share, first_at(e, traits), values);
+    return {what,
+        fmt::format("{} for {:.3g} % of the draws, first at {}{}.", what, 100 * share, place_of(e, traits), values)};
 }
 
 std::string channel_of(const Answer& a, bool of_three) {
@@ -109,134 +108,155 @@ const char* integrand(const Traits& traits) {
     return traits.domain ? "f" : "f L cos";
 }
 
-std::string light_sentence(const Answer& a, Family family, const Traits& traits) {
+Sentences light_sentences(const Answer& a, Family family, const Traits& traits) {
     const double half = half_width_95 * a.sd;
     const bool of_three = traits.channels == 3;
     if (family == Family::support)
-        return fmt::format("p is 0 over {} that carry {} of {}.", traits.domain ? "points" : "directions",
-            percent_with_error(a.difference / a.expected, half / a.expected), integrand(traits));
+        return {{"support",
+            fmt::format("p is 0 over {} that carry {} of {}.", traits.domain ? "points" : "directions",
+                percent_with_error(a.difference / a.expected, half / a.expected), integrand(traits))}};
     if (family == Family::albedo)
-        return fmt::format("f returns {} times the power of a uniform light{}. Expected at most 1.",
-            with_error(1 + a.difference, half), channel_of(a, of_three));
+        return {{"albedo",
+                    fmt::format("f returns {} times the power of a uniform light{}.",
+                        with_error(1 + a.difference, half), channel_of(a, of_three))},
+            {"expected", "Expected at most 1."}};
+    const std::string ratio = with_error(1 + a.difference / a.expected, half / a.expected);
     if (traits.reciprocal_weight)
-        return fmt::format(
-            "The draws with their weights W give {} times the integral of {} over the support of the "
-            "target: light is {}. Expected 1.",
-            with_error(1 + a.difference / a.expected, half / a.expected), integrand(traits),
-            a.difference > 0 ? "gained" : "lost");
-    return fmt::format("The weighted draws give {} times the integral of {}{}. Expected 1.",
-        with_error(1 + a.difference / a.expected, half / a.expected), traits.domain ? "f" : "f cos",
-        channel_of(a, of_three));
+        return {{"weighted draws",
+                    fmt::format("The draws with their weights W give {} times the integral of {} over the support of "
+                                "the target: light is {}.",
+                        ratio, integrand(traits), a.difference > 0 ? "gained" : "lost")},
+            {"expected", "Expected 1."}};
+    return {{"weighted draws",
+                fmt::format("The weighted draws give {} times the integral of {}{}.", ratio,
+                    traits.domain ? "f" : "f cos", channel_of(a, of_three))},
+        {"expected", "Expected 1."}};
 }
 
 /// Sums of h = q / (p + q) weigh all directions; if the shares of all regions agree, the ratio is that of a constant.
-std::string bridge_sentence(const Answer& a) {
-    if (!(a.expected > 0)) return "Draws fall only where p is 0.";
+Sentence bridge_sentence(const Answer& a) {
+    if (!(a.expected > 0)) return {"draws only where p is 0", "Draws fall only where p is 0."};
     const double ratio = 1 + a.difference / a.expected;
-    return fmt::format("Draws are {} times what p expects, weighted by h = q / (p + q).",
-        with_error(std::max(ratio, 0.0), half_width_95 * a.sd / a.expected));
+    return {ratio > 0 ? "ratio of draws and p" : "no draw of p",
+        fmt::format("Draws are {} times what p expects, weighted by h = q / (p + q).",
+            with_error(std::max(ratio, 0.0), half_width_95 * a.sd / a.expected))};
 }
 
 /// The sentence of a whole sum.
-std::string sum_sentence(const Finding& f, const Answer& a, const Traits& traits) {
+Sentence sum_sentence(const Finding& f, const Answer& a, const Traits& traits) {
     const double half = half_width_95 * a.sd;
     switch (f.first.family) {
         case Family::slope:
         case Family::slope_sets:
-            return fmt::format("The mean of h ln p over the draws is {} than p expects, by {}; h = q / (p + q).",
-                a.difference > 0 ? "larger" : "smaller", with_error(std::fabs(a.difference), half));
+            return {"mean of h ln p",
+                fmt::format("The mean of h ln p over the draws is {} than p expects, by {}; h = q / (p + q).",
+                    a.difference > 0 ? "larger" : "smaller", with_error(std::fabs(a.difference), half))};
         case Family::centre:
         case Family::centre_sets:
-            if (traits.domain) return "The mean of the draws differs from that of p.";
-            return fmt::format("The mean direction of the draws is off that of p by {} in {}.",
-                with_error(2 * a.difference, 2 * half), "xyz"[std::clamp(f.first.member, 0, 2)]);
+            if (traits.domain) return {"mean", "The mean of the draws differs from that of p."};
+            return {"mean direction",
+                fmt::format("The mean direction of the draws is off that of p by {} in {}.",
+                    with_error(2 * a.difference, 2 * half), "xyz"[std::clamp(f.first.member, 0, 2)])};
         case Family::depth:
-            return a.expected < few_nodes
-                ? fmt::format(
-                      "Draws and p differ: chi^2 is {:.4g}, {:g} expected.", a.difference + a.expected, a.expected)
-                : fmt::format("Draws and p differ in many small places: chi^2 is {:.4g}, {:g} expected.",
-                      a.difference + a.expected, a.expected);
+            return {a.expected < few_nodes ? "chi^2" : "chi^2 of many places",
+                fmt::format("Draws and p differ{}: chi^2 is {:.4g}, {:g} expected.",
+                    a.expected < few_nodes ? "" : " in many small places", a.difference + a.expected, a.expected)};
         default: return bridge_sentence(a);
     }
 }
 
-std::string invalid_sentence(const InvalidAnswers& a, const Traits& traits) {
+Sentence invalid_sentence(const InvalidAnswers& a, const Traits& traits) {
     const bool of_pdf = a.first == InvalidAnswers::Function::pdf;
-    return fmt::format("{} is not a number >= 0 at {} of {} {}, first {:g} at {}.", of_pdf ? "pdf(w)" : "f(w)",
-        of_pdf ? a.pdf : a.f, of_pdf ? a.of_pdf : a.of_f, traits.domain ? "points" : "directions", a.value,
-        place_text(traits, a.wi));
+    return {of_pdf ? "unusable pdf(w)" : "unusable f(w)",
+        fmt::format("{} is not a number >= 0 at {} of {} {}, first {:g} at {}.", of_pdf ? "pdf(w)" : "f(w)",
+            of_pdf ? a.pdf : a.f, of_pdf ? a.of_pdf : a.of_f, traits.domain ? "points" : "directions", a.value,
+            place_text(traits, a.wi))};
 }
 
 }  // namespace
 
-std::string sentence_of(const CheckAt& c, const Finding& f) {
+std::vector<double> numbers_of(const Example& e, const Traits& traits, bool of_draw) {
+    std::vector<double> out;
+    for (int k = 0; k < traits.own_numbers(); ++k) out.push_back(e.u[k]);
+    if (!of_draw && std::ranges::all_of(out, [](double u) { return u == 0; })) return {};
+    return out;
+}
+
+std::vector<double> numbers_of(const SmallFault& f, const Traits& traits) {
+    return numbers_of(f.first, traits, f.family == Family::corners && !f.wo);
+}
+
+Sentences sentences_of(const CheckAt& c, const Finding& f) {
     const Answer& a = f.second.sd > 0 ? f.second : f.first;
     const DrawChecks& checks = c.observations.checks;
     const Traits& traits = c.traits;
     switch (f.first.family) {
         case Family::mass:
-        case Family::mass_sets: return mass_sentence(c, a);
+        case Family::mass_sets: return mass_sentences(c, a);
         case Family::node:
-        case Family::node_sets: return node_sentence(c, a);
+        case Family::node_sets: return {node_sentence(c, a)};
         case Family::bridge:
         case Family::bridge_sets:
         case Family::slope:
         case Family::slope_sets:
         case Family::centre:
         case Family::centre_sets:
-        case Family::depth: return sum_sentence(f, a, traits);
-        case Family::band: return band_sentence(f.first.member, a, traits);
+        case Family::depth: return {sum_sentence(f, a, traits)};
+        case Family::band: return {band_sentence(f.first.member, a, traits)};
         case Family::pointwise:
-            return pair_sentence("The pdf with a draw is not pdf(w)", a.difference, checks.pointwise.first, traits,
+            return {pair_sentence("The pdf with a draw is not pdf(w)", a.difference, checks.pointwise.first, traits,
                 fmt::format(": {:.5g} with the draw, pdf(w) {:.5g}",
                     traits.density(checks.pointwise.first.draw.wi, checks.pointwise.first.draw.pdf),
-                    traits.density(checks.pointwise.first.draw.wi, checks.pointwise.first.p)));
-        case Family::zero: return pair_sentence("pdf(w) is 0", a.difference, checks.zero.first, traits, "");
+                    traits.density(checks.pointwise.first.draw.wi, checks.pointwise.first.p)))};
+        case Family::zero: return {pair_sentence("pdf(w) is 0", a.difference, checks.zero.first, traits, "")};
         case Family::weight:
-            return pair_sentence("The weight is not f cos / pdf", a.difference, checks.weight.first, traits,
+            return {pair_sentence("The weight is not f cos / pdf", a.difference, checks.weight.first, traits,
                 fmt::format(": weight {:.5g}, f cos / pdf {:.5g}", checks.weight.first.draw.weight.value_or(0),
-                    checks.weight.first.expected));
+                    checks.weight.first.expected))};
         case Family::reference_f:
-            return pair_sentence("f is not the BRDF", a.difference, checks.reference_f.first, traits,
+            return {pair_sentence("f is not the BRDF", a.difference, checks.reference_f.first, traits,
                 fmt::format(
-                    ": f cos {:.5g}, expected {:.5g}", checks.reference_f.first.p, checks.reference_f.first.expected));
+                    ": f cos {:.5g}, expected {:.5g}", checks.reference_f.first.p, checks.reference_f.first.expected))};
         case Family::repeats:
-            return fmt::format("{:g} pairs of {:g} draws have the same {}. Expected {:.2g}.", a.difference,
-                c.observations.independent, traits.domain ? "point" : "direction", a.expected);
+            return {{"repeats",
+                        fmt::format("{:g} pairs of {:g} draws have the same {}.", a.difference,
+                            c.observations.independent, traits.domain ? "point" : "direction")},
+                {"expected", fmt::format("Expected {:.2g}.", a.expected)}};
         case Family::delta_share:
-            return fmt::format("A delta part is {} of the draws and states a probability of {:.5g}.",
-                with_error(a.expected + a.difference, half_width_95 * a.sd), a.expected);
+            return {{"share of a delta part",
+                fmt::format("A delta part is {} of the draws and states a probability of {:.5g}.",
+                    with_error(a.expected + a.difference, half_width_95 * a.sd), a.expected)}};
         case Family::delta_scatter:
-            return "Draws of delta parts have more than 16 directions: a distribution with a density is not a delta "
-                   "part.";
+            return {{"directions of delta parts",
+                "Draws of delta parts have more than 16 directions: a distribution with a density is not a delta "
+                "part."}};
         case Family::delta_weight:
-            return fmt::format("{:g} draws of a delta part have another weight than its first draw.", a.difference);
+            return {{"weights of a delta part",
+                fmt::format("{:g} draws of a delta part have another weight than its first draw.", a.difference)}};
         case Family::support:
         case Family::albedo:
-        case Family::mean: return light_sentence(a, f.first.family, traits);
+        case Family::mean: return light_sentences(a, f.first.family, traits);
         default:
             if (checks.invalid.times > 0)
-                return fmt::format("{:g} answers cannot be used: {}, {}.", a.difference,
-                    fault_of(checks.invalid.first.draw, traits).value_or("the pdf or the weight is not a number >= 0"),
-                    first_at(checks.invalid.first, traits));
-            return invalid_sentence(c.invalid, traits);
+                return {{"unusable answers",
+                    fmt::format("{}: {:g} answers cannot be used, first at {}.",
+                        fault_of(checks.invalid.first.draw, traits)
+                            .value_or("The pdf or the weight is not a number >= 0"),
+                        a.difference, place_of(checks.invalid.first, traits))}};
+            return {invalid_sentence(c.invalid, traits)};
     }
 }
 
-std::string sentence_of(const SmallFault& f, const Traits& traits) {
-    std::string what = f.what;
-    if (!what.empty() && what[0] >= 'a' && what[0] <= 'z' && what.compare(0, 2, "p ") != 0 &&
-        what.compare(0, 3, "pdf") != 0 && what.compare(0, 2, "f(") != 0)
-        what[0] = static_cast<char>(what[0] - 'a' + 'A');
-    std::string out = fmt::format("{}: {:g} of {:g}", what, f.times, f.of);
+Sentence sentence_of(const SmallFault& f, const Traits& traits) {
+    std::string out = fmt::format("{}: {:g} of {:g}", f.what, f.times, f.of);
     if (f.family == Family::jacobian) out += fmt::format(", by up to {:.3g} %", 100 * std::fabs(f.size));
     else if (f.family == Family::mis)
         out += fmt::format(" draws, by up to {:.3g}{}", std::fabs(f.size),
             f.first.expected > 0 ? fmt::format(" (sampler {:g})", f.first.expected) : "");
-    const std::string where = first_at(f.first, traits, f.family == Family::corners && !f.wo);
-    if (!f.place.empty()) return fmt::format("{} rows, first at {}: {}.", out, f.place, where.substr(9));
-    return out + ", " + (f.wo ? fmt::format("first at w_o = {}, {}", direction_text(*f.wo), where.substr(9)) : where) +
-        ".";
+    const std::string place = place_text(numbers_of(f, traits), traits, f.first);
+    if (!f.place.empty()) return {f.what, fmt::format("{} rows, first at {}: {}.", out, f.place, place)};
+    return {f.what,
+        fmt::format("{}, first at {}{}.", out, f.wo ? fmt::format("w_o = {}, ", direction_text(*f.wo)) : "", place)};
 }
 
 namespace {
@@ -253,50 +273,55 @@ std::pair<double, int> least_p(const CheckAt& c, std::string_view verdict) {
 }
 
 /// With none among n draws, a share of 3 / n would have been found with a probability of 95 %.
-std::string valid_sentence(const CheckAt& c) {
+Sentences valid_sentences(const CheckAt& c) {
     const double draws = c.observations.independent + c.observations.scrambled;
-    std::string out = fmt::format("{} evaluations can be used.", c.evaluations);
-    if (draws > 0) out += fmt::format(" NaN in one of {:.2g} draws would have been found.", draws / 3);
+    Sentences out = {{"usable", fmt::format("{} evaluations can be used.", c.evaluations)}};
+    if (draws > 0)
+        out.push_back({"detectable", fmt::format("NaN in one of {:.2g} draws would have been found.", draws / 3)});
     return out;
 }
 
-std::string albedo_sentence(const CheckAt& c) {
+Sentences albedo_sentence(const CheckAt& c) {
     double largest = 0, half = 0;
     for (const Answer& a : c.answers)
         if (a.family == Family::albedo && a.difference + a.expected > largest) {
             largest = a.difference + a.expected;
             half = half_width_95 * a.sd;
         }
-    return largest > 0 ? fmt::format("{} of a uniform light is reflected or transmitted.", with_error(largest, half))
-                       : "";
+    if (!(largest > 0)) return {};
+    return {{"albedo", fmt::format("{} of a uniform light is reflected or transmitted.", with_error(largest, half))}};
 }
 
-std::string mean_sentence(const CheckAt& c) {
+Sentences mean_sentence(const CheckAt& c) {
     for (const Answer& a : c.answers)
         if (a.family == Family::mean && a.expected > 0)
-            return fmt::format("Weights average to {} times the integral of {}.",
-                with_error(1 + a.difference / a.expected, half_width_95 * a.sd / a.expected), integrand(c.traits));
-    return "";
+            return {{"weighted draws",
+                fmt::format("Weights average to {} times the integral of {}.",
+                    with_error(1 + a.difference / a.expected, half_width_95 * a.sd / a.expected),
+                    integrand(c.traits))}};
+    return {};
 }
 
 }  // namespace
 
-std::string sentence_of_right(const CheckAt& c, std::string_view verdict) {
+Sentences sentences_of_right(const CheckAt& c, std::string_view verdict) {
     const Estimate& whole = c.integrals.sums[mass];
-    if (verdict == "valid") return valid_sentence(c);
+    if (verdict == "valid") return valid_sentences(c);
     if (verdict == "support")
-        return fmt::format("{} is 0 wherever p is 0, at {:.0f} points.", integrand(c.traits), c.integrals.light.points);
+        return {{"support",
+            fmt::format("{} is 0 wherever p is 0, at {:.0f} points.", integrand(c.traits), c.integrals.light.points)}};
     if (verdict == "normalised")
-        return fmt::format("p integrates to {}.", with_error(whole.value, half_interval(whole)));
+        return {{"integral", fmt::format("p integrates to {}.", with_error(whole.value, half_interval(whole)))}};
     if (verdict == "physics") return albedo_sentence(c);
     if (verdict == "mean") return mean_sentence(c);
     if (const auto [p, families] = least_p(c, verdict); families > 0 && verdict == "density")
-        return fmt::format("Draws follow p in {} families of tests; the least p-value is {:.2g}.", families, p);
-    if (verdict == "identity") return "The functions of the sampler agree.";
-    return "";
+        return {{"p-value",
+            fmt::format("Draws follow p in {} families of tests; the least p-value is {:.2g}.", families, p)}};
+    if (verdict == "identity") return {{"agreement", "The functions of the sampler agree."}};
+    return {};
 }
 
-std::string sentence_of_open(const CheckAt& c, std::string_view verdict) {
+Sentences sentences_of_open(const CheckAt& c, std::string_view verdict) {
     struct Open {
         const char* what;
         double size, target, ratio;
@@ -304,10 +329,10 @@ std::string sentence_of_open(const CheckAt& c, std::string_view verdict) {
     const Sizes& s = c.sizes;
     const Estimate& whole = c.integrals.sums[mass];
     if (verdict == "normalised" && s.integral && *s.integral > c.most_ratio() * target_constant)
-        return fmt::format(
-            "{:.0f} points do not determine the integral of p to {:g} %: they give about {:.2g}, and a "
-            "pole of p may have any integral.",
-            c.integrals.points, 100 * c.most_ratio() * target_constant, whole.value);
+        return {{"undetermined integral",
+            fmt::format("{:.0f} points do not determine the integral of p to {:g} %: they give about {:.2g}, and a "
+                        "pole of p may have any integral.",
+                c.integrals.points, 100 * c.most_ratio() * target_constant, whole.value)}};
     std::vector<Open> open;
     const auto add = [&](const char* what, std::optional<double> Sizes::* size, double target) {
         Sizes only;
@@ -327,10 +352,11 @@ std::string sentence_of_open(const CheckAt& c, std::string_view verdict) {
             target_rotation);
         add("relative change of an exponent", &Sizes::parameter, target_parameter);
     }
-    if (open.empty()) return "";
+    if (open.empty()) return {};
     const Open& worst = *std::ranges::max_element(open, {}, &Open::ratio);
-    return fmt::format("The least {} that would have been found is {:.2g}. Right requires at most {:g}.", worst.what,
-        worst.size, c.most_ratio() * worst.target);
+    return {{fmt::format("least {}", worst.what),
+                fmt::format("The least {} that would have been found is {:.2g}.", worst.what, worst.size)},
+        {"required", fmt::format("Right requires at most {:g}.", c.most_ratio() * worst.target)}};
 }
 
 // ---- Without pdf(w) only the weights of the draws are compared with f; if there are no weights either, the draws
@@ -346,8 +372,9 @@ void note_density(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     const bool of_deltas = static_cast<double>(c.observations.checks.deltas) == c.observations.independent;
     if (of_deltas || (sampler.has_f() && has_all_weights(c))) return;
     v.state = State::inconclusive;
-    v.message += fmt::format(" There is {}: whether the draws are right could not be examined.",
-        has_all_weights(c) ? "no f either" : "no weight with the draws either");
+    v.sentences.push_back({"not examined",
+        fmt::format("There is {}: whether the draws are right could not be examined.",
+            has_all_weights(c) ? "no f either" : "no weight with the draws either")});
     v.next_step = has_all_weights(c) ? "f(w), for a comparison with the mean of the weights."
                                      : "pdf(w), or f(w) and a weight, f |cos| / p, with each draw (weight=yes).";
 }
@@ -359,16 +386,16 @@ void note_mean(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
         c.integrals.light.all[1].value == 0 && c.integrals.light.all[2].value == 0;
     if (c.observations.weightless > 0) {
         v.state = State::skipped;
-        v.message = "The draws come with neither a pdf nor a weight.";
+        v.sentences = {{"no weights", "The draws come with neither a pdf nor a weight."}};
     } else if (dark) {
-        v.message = fmt::format("f is 0 at all {:.0f} points.", c.integrals.light.points);
+        v.sentences = {{"no light", fmt::format("f is 0 at all {:.0f} points.", c.integrals.light.points)}};
     } else if (has_all_weights(c) && (!sampler.traits().has_pdf || c.scatter.pdf() || c.scatter.f())) {
         v.state = State::inconclusive;
-        v.message = "The weights have a heavy tail: their mean has no known error.";
+        v.sentences = {{"heavy tail", "The weights have a heavy tail: their mean has no known error."}};
         v.next_step = "Draws whose weights are bounded.";
     } else {
         v.state = State::inconclusive;
-        v.message = "The mean of the weights was not measured.";
+        v.sentences = {{"not measured", "The mean of the weights was not measured."}};
     }
 }
 
@@ -376,8 +403,8 @@ void note_mean(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
 void note_rows(const CheckAt& c, Verdict& v) {
     if (v.name == "density") {
         v.evidence["rows_compared"] = c.observations.independent;
-        v.message += fmt::format("{}One row in eight shapes the tree, four are compared with p, three confirm.",
-            v.message.empty() ? "" : " ");
+        v.sentences.push_back(
+            {"use of rows", "One row in eight shapes the tree, four are compared with p, three confirm."});
     }
     if (v.state != State::inconclusive || c.sizes.constant == std::nullopt) return;
     v.next = {};
@@ -393,7 +420,7 @@ void note_limits(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     if (v.state == State::wrong) return;
     if (v.name == "density" && !sampler.traits().has_pdf) note_density(sampler, c, v);
     if (v.name == "mean" && sampler.has_f()) note_mean(sampler, c, v);
-    if (v.name == "valid") v.message += text_of(c.scatter);
+    if (v.name == "valid") std::ranges::move(sentences_of(c.scatter), std::back_inserter(v.sentences));
     if (!sampler.can_draw()) note_rows(c, v);
 }
 

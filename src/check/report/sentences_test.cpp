@@ -65,10 +65,10 @@ TEST(SentencesOfRightVerdicts, HaveTheMeasuredNumbers) {
     s.weights = [](Vec3d, Vec3d) { return Vec3d{0.5, 0, 0}; };
     const Explained r = checked(s);
     const CheckAt& at = r.outcomes.at(0).at.at(0).at(0);
-    EXPECT_THAT(sentence_of_right(at, "normalised"), HasSubstr("p integrates to 1.0000"));
-    EXPECT_NEAR(std::stod(sentence_of_right(at, "physics")), 0.5, 1e-3);
-    EXPECT_THAT(sentence_of_right(at, "mean"), HasSubstr("Weights average to 1.000"));
-    EXPECT_EQ(sentence_of_right(at, "tail"), "");
+    EXPECT_THAT(text_of(sentences_of_right(at, "normalised")), HasSubstr("p integrates to 1.0000"));
+    EXPECT_NEAR(std::stod(text_of(sentences_of_right(at, "physics"))), 0.5, 1e-3);
+    EXPECT_THAT(text_of(sentences_of_right(at, "mean")), HasSubstr("Weights average to 1.000"));
+    EXPECT_TRUE(sentences_of_right(at, "tail").empty());
 }
 
 TEST(SentencesOfFindings, HaveTheSizeOfTheFault) {
@@ -77,7 +77,11 @@ TEST(SentencesOfFindings, HaveTheSizeOfTheFault) {
     const auto mass_finding =
         std::ranges::find_if(at.findings, [](const Finding& f) { return f.first.family == Family::mass; });
     ASSERT_NE(mass_finding, at.findings.end());
-    EXPECT_THAT(sentence_of(at, *mass_finding), HasSubstr("1.25"));
+    const Sentences sentences = sentences_of(at, *mass_finding);
+    ASSERT_EQ(sentences.size(), 2u);
+    EXPECT_EQ(sentences[0].what, "integral");
+    EXPECT_THAT(sentences[0].text, HasSubstr("1.25"));
+    EXPECT_EQ(sentences[1].what, Sentence::expected);
 }
 
 /// The sentence has the share that the test measured: its interval does not contain that of p.
@@ -93,7 +97,7 @@ TEST(Sentences, OfANodeStateWhatItsTestMeasured) {
         [](const Finding& f) { return f.first.family == Family::node || f.first.family == Family::node_sets; });
     ASSERT_NE(node, c.findings.end());
     double drawn = 0, half = 0, claimed = 0;
-    const std::string text = sentence_of(c, *node);
+    const std::string text = text_of(sentences_of(c, *node));
     ASSERT_EQ(std::sscanf(text.c_str() + text.find(" +- ") - 6, "%lf +- %lf", &drawn, &half), 2) << text;
     ASSERT_EQ(std::sscanf(text.c_str() + text.find("p has ") + 6, "%lf", &claimed), 1) << text;
     EXPECT_GT(std::fabs(drawn - claimed), half) << text;

@@ -37,12 +37,14 @@ struct Count {
 
 std::map<std::string, Count> count_cases(const CheckResult& j) {
     std::map<std::string, std::set<std::string>> cases;
-    for (const Verdict& v : j.verdicts) cases[v.arm].insert(v.check_case);
+    std::map<std::string, std::set<std::pair<double, double>>> directions;
+    for (const Verdict& v : j.verdicts) {
+        cases[v.arm].insert(v.check_case);
+        if (v.wo) directions[v.arm].insert(*v.wo);
+    }
     std::map<std::string, Count> out;
     for (const auto& [arm, check_cases] : cases)
-        out[arm] = {check_cases.size(), std::all_of(check_cases.begin(), check_cases.end(), [](const std::string& t) {
-                        return t.starts_with("w_o") && t.find(',') == std::string::npos;
-                    })};
+        out[arm] = {check_cases.size(), directions[arm].size() == check_cases.size()};
     return out;
 }
 
@@ -51,45 +53,28 @@ void add(Finding& f, const Verdict& v) {
     if (!f.worst || v.size > f.worst->size) f.worst = &v;
 }
 
-/// The begin of a sentence without its numbers: sentences of one form at several w_o are one finding.
-std::string wording_of(const std::string& sentence) {
-    constexpr std::size_t compared = 28;
-    std::string out;
-    for (char c : sentence) {
-        const bool digit = c >= '0' && c <= '9', in_number = !out.empty() && out.back() == '#';
-        const bool joins = in_number && (c == '.' || c == 'e' || c == '+' || c == '-');
-        if (digit && !in_number) out += '#';
-        else if (!digit && !joins) out += c;
-        if (out.size() == compared) break;
-    }
-    return out;
-}
-
-/// Lists the wordings that the worst verdict does not have, each once: that of the largest size, with its cases.
+/// Lists what the worst verdict does not state, each once: the sentence of the largest size, with its cases.
 void list_sentences(Finding& f, const std::vector<const Verdict*>& verdicts) {
-    std::set<std::string> already;
-    for (const std::string& sentence : sentences_of(describe(*f.worst))) already.insert(wording_of(sentence));
-    struct Wording {
-        std::string key, message;
+    struct Stated {
+        const Sentence* sentence;
         double size = 0;
-        std::vector<std::string> cases;  // first that of the message
+        std::vector<std::string> cases{};  // first that of the sentence
     };
-    std::vector<Wording> wordings;
-    for (const Verdict* v : verdicts) {
-        for (const std::string& sentence : sentences_of(v->message)) {
-            const std::string key = wording_of(sentence);
-            if (already.contains(key) || sentence.starts_with("Expected")) continue;
-            auto same = std::ranges::find(wordings, key, &Wording::key);
-            if (same == wordings.end()) same = wordings.insert(wordings.end(), {key, sentence, v->size, {}});
+    std::vector<Stated> others;
+    for (const Verdict* v : verdicts)
+        for (const Sentence& sentence : v->sentences) {
+            const auto states_same = [&](const Sentence& s) { return s.states_same(sentence); };
+            if (sentence.what == Sentence::expected || std::ranges::any_of(f.worst->sentences, states_same)) continue;
+            auto same = std::ranges::find_if(others, [&](const Stated& other) { return states_same(*other.sentence); });
+            if (same == others.end()) same = others.insert(others.end(), {&sentence, v->size});
             const bool larger = !same->cases.empty() && v->size > same->size;
             if (larger) {
-                same->message = sentence;
+                same->sentence = &sentence;
                 same->size = v->size;
             }
             same->cases.insert(larger ? same->cases.begin() : same->cases.end(), v->check_case);
         }
-    }
-    for (Wording& w : wordings) f.sentences.emplace_back(std::move(w.message), std::move(w.cases));
+    for (Stated& other : others) f.sentences.emplace_back(other.sentence->text, std::move(other.cases));
 }
 
 /// Where the verdicts are wrong, if not at all w_o: "30 to 60 deg"; what their integrals are; the cause that one of
@@ -133,25 +118,13 @@ namespace {
 /// The message with a cause, which may be that of another w_o.
 std::string described(const Verdict& v, const std::string& cause, FrontEnd front_end) {
     const std::string next = next_step_text(v, front_end);
-    return v.message + (cause.empty() ? "" : " " + cause) + (next.empty() ? "" : " Next step: " + next) +
+    return v.message() + (cause.empty() ? "" : " " + cause) + (next.empty() ? "" : " Next step: " + next) +
         (v.timed_message.empty() ? "" : " " + v.timed_message);
 }
 
 }  // namespace
 
 std::string describe(const Verdict& v, FrontEnd front_end) { return described(v, v.cause, front_end); }
-
-std::vector<std::string> sentences_of(const std::string& text) {
-    std::vector<std::string> out;
-    std::size_t from = 0;
-    for (std::size_t end = text.find(". "); end != std::string::npos; end = text.find(". ", end + 1)) {
-        if (end + 2 >= text.size() || text[end + 2] < 'A' || text[end + 2] > 'Z') continue;
-        out.push_back(text.substr(from, end + 1 - from));
-        from = end + 2;
-    }
-    out.push_back(text.substr(from));
-    return out;
-}
 
 std::vector<Finding> findings_of(const CheckResult& j) {
     const auto left_out = left_out_of(j);
@@ -203,15 +176,18 @@ std::string where_found(const Finding& f) {
     return fmt::format("at {} of {} {}{}, {} {}", f.count, f.total, f.cases, f.range, as, f.worst->check_case);
 }
 
-std::string describe(const Finding& f, FrontEnd front_end) {
+std::string failure_text(const Finding& f, FrontEnd front_end) {
     const std::string message = described(*f.worst, f.named_cause, front_end);
-    if (f.state == State::error && f.worst->check_case == before_any_case) return "error. " + message;
-    if (f.state == State::error)
-        return fmt::format("error: {} of {} verdicts could not be evaluated, the first at {}. {}", f.count, f.total,
-            f.worst->check_case, message);
+    if (f.worst->check_case == before_any_case) return ". " + message;
+    return fmt::format(": {} of {} verdicts could not be evaluated, the first at {}. {}", f.count, f.total,
+        f.worst->check_case, message);
+}
+
+std::string describe(const Finding& f, FrontEnd front_end) {
+    if (f.state == State::error) return "error" + failure_text(f, front_end);
     const std::string where = where_found(f);
-    std::string out = fmt::format("{}: {}{}. {}", f.name, word(f.state), where.empty() ? "" : " " + where, message);
-    return out;
+    return fmt::format("{}: {}{}. {}", f.name, word(f.state), where.empty() ? "" : " " + where,
+        described(*f.worst, f.named_cause, front_end));
 }
 
 std::string skipped_text(const CheckResult& j) {
@@ -240,30 +216,36 @@ std::string listed_cases(const std::vector<std::string>& cases) {
 }  // namespace
 
 std::string summary_of(const CheckResult& j) {
-    std::string out, details, arm;
-    for (const Finding& f : findings_of(j)) {
-        if (f.expected) continue;
-        out += fmt::format("{}{}\n", f.arm.empty() ? "" : f.arm + ", ", describe(f));
-        if (f.sentences.empty()) continue;
-        details += fmt::format("\n{}, {}: {}\n", f.arm, f.name, word(f.state));
-        for (const auto& [message, check_cases] : f.sentences)
-            details += fmt::format("  [{}] {}\n", listed_cases(check_cases), message);
-    }
+    std::string out;
+    for (const Finding& f : findings_of(j))
+        if (!f.expected) out += fmt::format("{}{}\n", f.arm.empty() ? "" : f.arm + ", ", describe(f));
     if (const std::string skipped = skipped_text(j); !skipped.empty()) out += skipped + "\n";
-    return out + details;
+    return out;
 }
 
-namespace {
+std::string details_of(const CheckResult& j) {
+    std::string out;
+    for (const Finding& f : findings_of(j)) {
+        if (f.expected || f.sentences.empty()) continue;
+        out += fmt::format("\n{}, {}: {}\n", f.arm, f.name, word(f.state));
+        for (const auto& [sentence, check_cases] : f.sentences)
+            out += fmt::format("  [{}] {}\n", listed_cases(check_cases), sentence);
+    }
+    return out;
+}
 
 std::string in_one_line(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     return text;
 }
 
+namespace {
+
 /// One line each for the message, the place and the cause.
 std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
     if (f.state == State::error) return {in_one_line(describe(f, FrontEnd::cpp))};
-    std::vector<std::string> out = {in_one_line(fmt::format("{} is {}: {}", f.name, word(f.state), f.worst->message))};
+    std::vector<std::string> out = {
+        in_one_line(fmt::format("{} is {}: {}", f.name, word(f.state), f.worst->message()))};
     if (const std::string where = where_found(f); !where.empty()) out.push_back("  " + where);
     if (with_cause && !f.cause.empty()) out.push_back("  " + in_one_line(f.cause));
     return out;
@@ -350,7 +332,7 @@ std::string what_was_tested(const CheckResult& result) {
     std::map<std::string, std::vector<std::string>> skipped;  // verdicts by reason
     for (const Verdict& v : result.verdicts) {
         if (v.state != State::skipped) continue;
-        std::vector<std::string>& names = skipped[in_one_line(v.message)];
+        std::vector<std::string>& names = skipped[in_one_line(v.message())];
         if (std::ranges::find(names, v.name) == names.end()) names.push_back(v.name);
     }
     std::string out;

@@ -18,7 +18,7 @@ CheckResult of_verdicts(std::initializer_list<std::tuple<const char*, State, dou
         v.cause = cause;
         v.check_case = "w_o " + std::to_string(static_cast<int>(theta)) + " deg";
         v.wo = {theta, 0};
-        v.message = std::string("What of ") + name + ".\nHow large.";
+        v.sentences = {{"finding", std::string("What of ") + name + ".\nHow large."}};
         j.verdicts.push_back(v);
     }
     return j;
@@ -59,22 +59,32 @@ TEST(WhatIsWrong, HasAtMostEightLinesForManyFaults) {
     EXPECT_EQ(what_is_wrong(of_verdicts({{"valid", State::right, 0, ""}})), "");
 }
 
-TEST(Summaries, HaveEachWordingOnce) {
+TEST(Summaries, HaveWhatIsStatedOnce) {
     CheckResult j = of_verdicts({{"normalised", State::wrong, 30, ""}, {"normalised", State::wrong, 60, "A cause."},
         {"normalised", State::right, 0, ""}, {"normalised", State::wrong, 89, ""}});
-    const char* message[] = {"p integrates to 1.2 +- 0.1. Expected 1.", "p integrates to 1.5 +- 0.1. Expected 1.", "",
-        "Nothing else is like it."};
+    const auto integral = [](const std::string& size) {
+        return Sentences{{"integral", "p integrates to " + size + "."}, {"expected", "Expected 1."}};
+    };
+    const Sentences sentences[] = {integral("1.2 +- 0.1"), integral("1.5 +- 0.1"), {},
+        {{"no integral", "Nothing else is like it."}, {"expected", "Expected 0.9."}}};
     const double size[] = {0.2, 0.5, 0, 0.1};
     for (std::size_t i = 0; i < 4; ++i) {
-        j.verdicts[i].message = message[i];
+        j.verdicts[i].sentences = sentences[i];
         j.verdicts[i].size = size[i];
     }
     const auto message_lines = lines(summary_of(j));
     EXPECT_EQ(message_lines.at(0),
         "sampler, normalised: wrong at 3 of 4 w_o (30 to 89 deg), worst at w_o 60 deg. p integrates to 1.5 +- 0.1. "
         "Expected 1. A cause.");
-    EXPECT_EQ(message_lines.back(), "  [w_o 89 deg] Nothing else is like it.");
+    EXPECT_EQ(details_of(j), "\nsampler, normalised: wrong\n  [w_o 89 deg] Nothing else is like it.\n");
     EXPECT_EQ(summary_of(j).find("1.2"), std::string::npos);
+}
+
+TEST(Summaries, TellWhatEachOfSeveralTechniquesStates) {
+    CheckResult j = of_verdicts({{"normalised", State::wrong, 30, ""}, {"normalised", State::wrong, 60, ""}});
+    j.verdicts[0].sentences = {{"integral", "Sampler 1 of 2: p integrates to 1.5.", 1}};
+    j.verdicts[1].sentences = {{"integral", "Sampler 2 of 2: p integrates to 1.2.", 2}};
+    EXPECT_EQ(details_of(j), "\nsampler, normalised: wrong\n  [w_o 60 deg] Sampler 2 of 2: p integrates to 1.2.\n");
 }
 
 TEST(Summaries, NameThePlaceOfAFaultThatIsNotAtAWo) {

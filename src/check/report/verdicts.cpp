@@ -36,6 +36,13 @@ void add_sizes(const Sizes& s, bool of_points, Verdict& v) {
 /// The share of the answers or tests that fail, as the size of a fault.
 double share_of(const SmallFault& f) { return std::max(std::fabs(f.size), f.times / std::max(f.of, 1.0)); }
 
+/// Adds a fault of the answers or of one test, and the random numbers of its first place.
+void add_fault(const SmallFault& f, const Traits& traits, Verdict& v) {
+    v.state = State::wrong;
+    v.size = std::max(v.size, share_of(f));
+    if (const std::vector<double> u = numbers_of(f, traits); !u.empty()) v.evidence.emplace("first_u", u);
+}
+
 bool compares_densities(Family f) {
     return info(f).verdict == "density" && f != Family::delta_share && f != Family::delta_scatter;
 }
@@ -65,26 +72,30 @@ double share_of(const CheckAt& c, const Answer& a) {
 
 /// The sentence of the worst finding. For densities: where the shares of draws and p differ most, and whether the draws
 /// are more concentrated, for any test that failed; the same wording at each w_o.
-void describe_worst(const CheckAt& c, const Finding& worst, Verdict& v) {
+Sentences describe_worst(const CheckAt& c, const Finding& worst, Verdict& v) {
     const Answer& a = worst.second.sd > 0 ? worst.second : worst.first;
-    std::string sentence;
+    Sentences out;
     double size = share_of(c, a);
     if (compares_densities(worst.first.family))
         if (const std::optional<ShareDifference> place = largest_difference(c)) {
-            sentence = sentence_of(*place, c.traits);
+            out.push_back(sentence_of(*place, c.traits));
             size = std::fabs(place->difference());
             if (const auto spread = concentration_of(c))
-                if (const std::string more = sentence_of(*spread, c.traits); !more.empty()) sentence += " " + more;
+                if (std::optional<Sentence> more = sentence_of(*spread, c.traits)) out.push_back(std::move(*more));
             v.evidence["largest_difference"] = {{"drawn", place->drawn}, {"drawn_error", place->drawn_error},
                 {"p", place->claimed}, {"p_error", place->claimed_error}};
         }
-    if (sentence.empty()) sentence = sentence_of(c, worst);
+    if (out.empty()) out = sentences_of(c, worst);
+    if (const Count& invalid = c.observations.checks.invalid; a.family == Family::values && invalid.times > 0)
+        v.evidence.emplace("first_u", numbers_of(invalid.first, c.traits));
     if (a.family == Family::mass || a.family == Family::mass_sets) v.integral = a.expected;
     v.size = std::max(v.size, size);
-    v.message += (v.message.empty() ? "" : " ") + sentence;
+    return out;
 }
 
-void decide_at(const CheckAt& c, Verdict& v) {
+/// Sets the state and the numbers of the verdict; returns what it states of this technique.
+Sentences decide_at(const CheckAt& c, Verdict& v) {
+    Sentences out;
     const DrawChecks& checks = c.observations.checks;
     if (v.name == verdict_names[0] && checks.tested > 0) {
         const auto tested = static_cast<double>(checks.tested);
@@ -93,9 +104,8 @@ void decide_at(const CheckAt& c, Verdict& v) {
     }
     for (const SmallFault& f : c.small)
         if (info(f.family).verdict == v.name) {
-            v.state = State::wrong;
-            v.size = std::max(v.size, share_of(f));
-            v.message += (v.message.empty() ? "" : " ") + sentence_of(f, c.traits);
+            add_fault(f, c.traits, v);
+            out.push_back(sentence_of(f, c.traits));
         }
     const Finding* worst = nullptr;
     for (const Finding& f : c.findings)
@@ -106,28 +116,26 @@ void decide_at(const CheckAt& c, Verdict& v) {
         }
     if (worst) {
         v.state = State::wrong;
-        describe_worst(c, *worst, v);
+        std::ranges::move(describe_worst(c, *worst, v), std::back_inserter(out));
     }
     for (const Answer& a : c.answers)
         if (info(a.family).verdict == v.name && v.state != State::wrong)
             v.evidence["p"][std::string(info(a.family).name)] = a.p;
-    if (v.state == State::wrong) return;
+    if (v.state == State::wrong) return out;
     add_sizes(c.sizes, c.traits.domain != nullptr, v);
     if (v.name == "density" && c.moved_by_resolution > 0) {
         v.state = State::inconclusive;
-        v.message = fmt::format(
-            "A step of 2^-24 of one random number moves {:.2g} % of the draws to another place. The "
-            "draws differ from p by no more than that.",
-            100 * c.moved_by_resolution);
         v.next_step = "Random numbers of 53 bits (u_bits=53).";
-        return;
+        return {{"resolution",
+                    fmt::format("A step of 2^-24 of one random number moves {:.2g} % of the draws to another place.",
+                        100 * c.moved_by_resolution)},
+            {"difference", "The draws differ from p by no more than that."}};
     }
     if (v.name == "mean" && c.sizes.bias && *c.sizes.bias > c.most_ratio() * target_bias_of_weights) {
         v.state = State::inconclusive;
-        v.message = fmt::format("Only a bias of {:.2g} % would have been found. Right requires at most {:g} %.",
-            100 * *c.sizes.bias, 100 * c.most_ratio() * target_bias_of_weights);
         v.next = {NextStep::Kind::more_draws, sqr(*c.sizes.bias / (c.most_ratio() * target_bias_of_weights))};
-        return;
+        return {{"detectable", fmt::format("Only a bias of {:.2g} % would have been found.", 100 * *c.sizes.bias)},
+            {"required", fmt::format("Right requires at most {:g} %.", 100 * c.most_ratio() * target_bias_of_weights)}};
     }
     if (v.name == "density" || v.name == "normalised") {
         Sizes only;
@@ -139,20 +147,23 @@ void decide_at(const CheckAt& c, Verdict& v) {
             only.constant.reset();
             only.integral.reset();
         }
-        if (worst_ratio(only) <= c.most_ratio()) return;
+        if (worst_ratio(only) <= c.most_ratio()) return out;
         v.state = State::inconclusive;
-        v.message = sentence_of_open(c, v.name);
         v.next = {NextStep::Kind::more_draws, worst_ratio(only) * worst_ratio(only) / 25};
+        return sentences_of_open(c, v.name);
     }
+    return out;
 }
 
-/// Puts the name of the technique before its sentence, if several techniques are combined. `from`: its begin.
-void name_technique(const CheckCase& check_case, const CheckAt& c, std::size_t from, Verdict& v) {
+/// Names the technique in the first of its sentences, if several techniques are combined.
+void name_technique(const CheckCase& check_case, const CheckAt& c, Sentences& sentences) {
     const int techniques = check_case.adapter->techniques();
-    if (techniques < 2 || v.message.size() <= from) return;
+    if (techniques < 2 || sentences.empty()) return;
     const std::string name = check_case.adapter->technique_name(c.technique);
-    v.message.insert(from > 0 ? from + 1 : 0,
-        fmt::format("Sampler {} of {}{}: ", c.technique + 1, techniques, name.empty() ? "" : ", " + name));
+    Sentence& first = sentences.front();
+    first.technique = c.technique + 1;
+    first.text =
+        fmt::format("Sampler {} of {}{}: {}", first.technique, techniques, name.empty() ? "" : ", " + name, first.text);
 }
 
 /// Faults of the sampler as a whole are reported with its first w_o, but have places of their own.
@@ -160,9 +171,8 @@ void add_faults_of_sampler(const CheckOutcome& outcome, const Traits& traits, Ve
     const bool here = v.state == State::wrong;
     for (const SmallFault& f : outcome.small) {
         if (info(f.family).verdict != v.name) continue;
-        v.state = State::wrong;
-        v.size = std::max(v.size, share_of(f));
-        v.message += (v.message.empty() ? "" : " ") + sentence_of(f, traits);
+        add_fault(f, traits, v);
+        v.sentences.push_back(sentence_of(f, traits));
         if (!here) v.place = f.wo ? "w_o = " + direction_text(*f.wo) : "pairs of directions";
     }
 }
@@ -180,8 +190,9 @@ void note_nothing_drawn(const CheckAt& c, bool elsewhere, bool has_f, Verdict& v
     if (v.name == "valid" || v.name == "physics" || v.state == State::wrong) return;
     const bool dark = has_f && c.integrals.light.lit.value == 0;
     v.state = elsewhere || dark ? State::skipped : State::inconclusive;
-    v.message = fmt::format(
-        "Not tested: none of {} samples is a direction, and p is 0 everywhere.", c.observations.checks.tested);
+    v.sentences = {{"not tested",
+        fmt::format(
+            "Not tested: none of {} samples is a direction, and p is 0 everywhere.", c.observations.checks.tested)}};
     v.next = {};
     if (v.state == State::inconclusive) v.next_step = "A sampler that draws directions.";
 }
@@ -189,7 +200,7 @@ void note_nothing_drawn(const CheckAt& c, bool elsewhere, bool has_f, Verdict& v
 void withhold(const CheckAt& c, Verdict& v) {
     if (!c.is_withheld(v.name)) return;
     v.state = State::skipped;
-    v.message = "Not given, since too many of the answers are not numbers: see valid.";
+    v.sentences = {{"withheld", "Not given, since too many of the answers are not numbers: see valid."}};
     v.next = {};
     v.next_step.clear();
 }
@@ -229,15 +240,14 @@ std::vector<Verdict> verdicts_of(
             if (v.check_case != without_wo) v.wo = {check_case.theta_deg, check_case.azimuth_deg};
             if (!kind.applies(*check_case.adapter)) {
                 v.state = State::skipped;
-                v.message = kind.needs;
+                v.sentences = {{"needs", kind.needs}};
                 out.push_back(std::move(v));
                 continue;
             }
             for (const CheckAt& c : outcome.at[k]) {
-                const std::size_t before = v.message.size();
-                const State state = v.state;
-                decide_at(c, v);
-                if (v.message.size() > before || v.state != state) name_technique(check_case, c, before, v);
+                Sentences found = decide_at(c, v);
+                name_technique(check_case, c, found);
+                std::ranges::move(found, std::back_inserter(v.sentences));
                 if (kind.add) kind.add(c, v);
                 v.seconds += c.seconds / static_cast<double>(verdict_names.size());
             }
@@ -248,8 +258,8 @@ std::vector<Verdict> verdicts_of(
             if (!outcome.at[k].empty() && std::ranges::all_of(outcome.at[k], &CheckAt::nothing_drawn))
                 note_nothing_drawn(outcome.at[k][0], draws_elsewhere(outcome), check_case.adapter->has_f(), v);
             if (k == 0) add_faults_of_sampler(outcome, check_case.adapter->traits(), v);
-            if (v.state == State::right && v.message.empty() && !outcome.at[k].empty())
-                v.message = sentence_of_right(outcome.at[k][0], name);
+            if (v.state == State::right && v.sentences.empty() && !outcome.at[k].empty())
+                v.sentences = sentences_of_right(outcome.at[k][0], name);
             out.push_back(std::move(v));
         }
     }

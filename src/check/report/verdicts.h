@@ -13,13 +13,16 @@
 
 namespace crescent::check {
 
-std::string sentence_of(const CheckAt& check, const Finding& finding);
-std::string sentence_of(const SmallFault& fault, const Traits& traits);
-/// The measurement of a right verdict; "" for a verdict without one.
-std::string sentence_of_right(const CheckAt& check, std::string_view verdict);
+Sentences sentences_of(const CheckAt& check, const Finding& finding);
+Sentence sentence_of(const SmallFault& fault, const Traits& traits);
+/// The random numbers of an example; none if it is no draw. `of_draw`: whether it is one even if all its numbers are 0.
+std::vector<double> numbers_of(const Example& example, const Traits& traits, bool of_draw = false);
+std::vector<double> numbers_of(const SmallFault& fault, const Traits& traits);
+/// The measurement of a right verdict; none for a verdict without one.
+Sentences sentences_of_right(const CheckAt& check, std::string_view verdict);
 
 /// What a verdict lacks that was not decided: the size, and how small it has to be.
-std::string sentence_of_open(const CheckAt& check, std::string_view verdict);
+Sentences sentences_of_open(const CheckAt& check, std::string_view verdict);
 
 // ---- Where draws and p differ (report/places.cpp).
 
@@ -34,7 +37,7 @@ struct ShareDifference {
 /// The largest difference that is clear, in the smallest node that has most of it; none if no node differs clearly.
 std::optional<ShareDifference> largest_difference(const CheckAt& check);
 /// "Of the draws 12.3 % +- 0.4 % are at polar angles 0 to 30 deg, where p has 6.1 % +- 0.1 %."
-std::string sentence_of(const ShareDifference& difference, const Traits& traits);
+Sentence sentence_of(const ShareDifference& difference, const Traits& traits);
 std::string region_text(const ChartRect& rect, const Traits& traits);
 
 /// The solid angles over which draws and p are spread: exp(entropy) over the same cells, sr. A uniform density has the
@@ -46,8 +49,8 @@ struct Concentration {
 };
 /// None over an infinite line.
 std::optional<Concentration> concentration_of(const CheckAt& check);
-/// "" if unknown.
-std::string sentence_of(const Concentration& concentration, const Traits& traits);
+/// None if unknown.
+std::optional<Sentence> sentence_of(const Concentration& concentration, const Traits& traits);
 
 // ---- Tests that were not possible for a sampler at one w_o, and the reason: no pdf(w), no weights, answers that are
 // random estimates, a file of draws.
@@ -61,8 +64,8 @@ void note_limits(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v);
 /// Adds it to the verdict on the density: by cells of the tree, by rings about n, and at its maximum.
 void note_implied_density(const CheckAt& c, Verdict& v);
 
-// ---- Results of a check as verdicts: names and states, a sentence each, and the numbers of evidence. No code reads
-// the sentences.
+// ---- Results of a check as verdicts: names and states, sentences, and the numbers of evidence. No code reads the
+// texts of the sentences.
 
 /// The verdicts of one sampler, for each of its w_o in the order of the verdict list.
 std::vector<Verdict> verdicts_of(

@@ -198,7 +198,7 @@ TEST(PointFiles, RowsThatAreNoPointsAreNamed) {
     const std::string table = write_file("set_table.csv", "x1,pdf\n0,0.25\n1,0.25\n2,0.25\n3,0.25\n");
     const CheckResult j = check_file("set:4", write_file("half.csv", draws + "1.5,0.25\n"), table);
     ASSERT_EQ(state_of(j, "valid"), State::wrong);
-    EXPECT_THAT(j.verdicts[0].message, HasSubstr("half.csv:4002: entry 1.5, which is not an integer"));
+    EXPECT_THAT(j.verdicts[0].message(), HasSubstr("half.csv:4002: entry 1.5, which is not an integer"));
     EXPECT_THAT(error_of("set:4", write_file("text.csv", draws + "one,0.25\n"), table),
         HasSubstr("text.csv:4002:1: expected a number, not 'one'"));
     EXPECT_THAT(error_of("set:4", write_file("header.csv", "i,pdf\n1,1\n"), table),

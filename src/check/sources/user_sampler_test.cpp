@@ -244,7 +244,7 @@ TEST(UserSamplers, AreInconclusiveAfterTheLimitOfTime) {
     EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), 20);
     EXPECT_EQ(j.state, State::inconclusive);
     ASSERT_FALSE(j.verdicts.empty());
-    EXPECT_EQ(j.verdicts[0].message,
+    EXPECT_EQ(j.verdicts[0].message(),
         "Not examined: 0.3 s (TestSettings::seconds) are not enough for this sampler at every w_o.");
     EXPECT_EQ(j.left_out.size(), 2u);
 }
@@ -259,7 +259,7 @@ TEST(UserSamplers, HaveTheSameResultWithAndWithoutALimitOfTime) {
     ASSERT_EQ(a.verdicts.size(), b.verdicts.size());
     for (std::size_t k = 0; k < a.verdicts.size(); ++k) {
         if (a.verdicts[k].name == "efficiency") continue;  // it is timed
-        EXPECT_EQ(a.verdicts[k].message, b.verdicts[k].message);
+        EXPECT_EQ(a.verdicts[k].message(), b.verdicts[k].message());
     }
 }
 
