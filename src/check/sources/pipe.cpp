@@ -61,11 +61,9 @@ public:
         : connection_(command, limits, label), neighbours_(neighbours) {
         try {
             handshake_with_program(label, domain);
-        } catch (const SamplerError&) {
-            const std::string& broken = connection_.broken();
-            const bool unknown =
-                broken.find("exit code 127") != std::string::npos || broken.find("exit code 126") != std::string::npos;
+        } catch (const ProgramEnded& error) {
             connection_.stop();
+            const bool unknown = error.end.code == 126 || error.end.code == 127;  // of the shell
             if (unknown && hello_.name.empty())
                 throw InputError({"--exec", 0, 0}, "the shell cannot start '" + printable(command) + "'");
             throw;
@@ -758,9 +756,8 @@ std::shared_ptr<const SamplerAdapter> start_python_module(const char* module, co
         python_command(module, words) + "; code=$?; [ $code -lt 126 ] || [ $code -gt 127 ] || code=1; exit $code";
     try {
         return start_pipe(command, limits, label, {}, neighbours);
-    } catch (const SamplerTimeout&) { throw; } catch (const SamplerError& error) {
-        if (std::string_view(error.what()).find("exit code 1") == std::string_view::npos) throw;
-        if (can_import(module)) throw;  // what the user's file did
+    } catch (const ProgramEnded& error) {
+        if (error.end.code != 1 || can_import(module)) throw;  // what the user's file did
         throw OutputError(fmt::format(
             "{}: '{}' cannot run the module {}: install the package with `pip install {}`, or set CRESCENT_PYTHON to "
             "an interpreter that has it",

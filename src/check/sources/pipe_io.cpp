@@ -19,6 +19,7 @@ void PipeConnection::fault(
     const std::string& request, std::size_t i, const std::string& what, std::string_view expected) {
     program_.wait_ready(false, false, 0);  // its output precedes the error
     broken_ = fmt::format("request {} ({}): expected {}, {}", requests_ + i + 1, shown(request), expected, what);
+    if (const std::optional<ProcessEnd> end = program_.ended(0)) throw ProgramEnded(broken_, *end);
     throw SamplerError(broken_);
 }
 

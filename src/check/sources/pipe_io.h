@@ -13,6 +13,7 @@
 
 #include "base/process.h"
 #include "check/sources/external.h"
+#include "samplers/sampler_adapter.h"
 
 namespace crescent {
 
@@ -78,6 +79,12 @@ inline void append(std::string& to, double v) {
 
 // ---- Requests to a program and its answers, as text lines or blocks of numbers. Requests are sent far ahead of the
 // answers, without blocking, so that neither side waits for the other.
+
+/// A program that ended before it answered.
+struct ProgramEnded : SamplerError {
+    ProgramEnded(const std::string& message, const ProcessEnd& how) : SamplerError(message), end(how) {}
+    ProcessEnd end;
+};
 
 class PipeConnection {
 public:
