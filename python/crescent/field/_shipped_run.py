@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Iterator
 
@@ -27,15 +26,13 @@ def checked(it: Shipped) -> crescent.CheckResult:
     return crescent.check(sampler, wo_deg=ABOVE + (BELOW if sampler.wo == "both" else []))
 
 
-def _wo_of(case: str) -> tuple[float, float, float]:
-    found = re.match(r"w_o ([\d.]+) deg(?: az ([\d.]+))?", case)
-    theta, azimuth = (np.radians(float(v or 0)) for v in found.groups()) if found else (0.0, 0.0)
+def _wo_of(verdict: crescent.Verdict) -> tuple[float, float, float]:
+    theta, azimuth = np.radians(verdict.wo_deg or (0.0, 0.0))
     return float(np.sin(theta) * np.cos(azimuth)), float(np.sin(theta) * np.sin(azimuth)), float(np.cos(theta))
 
 
-def _corner(message: str) -> tuple[float, float, float] | None:
-    found = re.search(r"u = \(([^)]*)\)", message)
-    numbers = [float(v) for v in found.group(1).split(",")] if found else []
+def _corner(verdict: crescent.Verdict) -> tuple[float, float, float] | None:
+    numbers = verdict.evidence.get("first_u", [])
     return (numbers[0], numbers[1], numbers[2]) if len(numbers) == 3 else None
 
 
@@ -64,8 +61,8 @@ def _findings(it: Shipped, result: crescent.CheckResult, shown: set[str]) -> Ite
         )
         own = note.script if note else ""
         if key not in shown and (own or (it.kind == "bsdf" and first.name != "identity")):
-            corner = _corner(first.message) if first.name == "valid" else None
-            finding.script = own or script_for(it, first.name, _wo_of(first.case), corner)
+            corner = _corner(first) if first.name == "valid" else None
+            finding.script = own or script_for(it, first.name, _wo_of(first), corner)
             finding.output = output_of(finding.script)
         shown.add(key)
         yield finding
