@@ -129,16 +129,22 @@ void conclude(const ComparePlan& plan, CompareResult& result) {
                       "An assertion fails: {}: measured {} and {}.", a.text, shortest(a.measured), shortest(a.bound));
         }
     if (plan.expect != Expectation::same) return;
-    for (const BiasResult& bias : result.bias)
-        if (bias.differs()) {
+    const auto state_pair = [&](std::size_t pair) {
+        result.sentence = result.bias[pair].sentence;
+        result.stated_pair = pair;
+    };
+    for (std::size_t k = 0; k < result.bias.size(); ++k)
+        if (result.bias[k].differs()) {
             result.state = State::fails;
-            result.sentence = bias.sentence;
+            state_pair(k);
         }
-    for (const BiasResult& bias : result.bias) {
+    for (std::size_t k = 0; k < result.bias.size(); ++k) {
+        const BiasResult& bias = result.bias[k];
         const std::string why = bias.identical ? "" : why_inconclusive(plan, bias);
         if (why.empty() || result.state != State::holds) continue;
         result.state = State::inconclusive;
-        result.sentence = bias.single ? bias.sentence : "Equality cannot be stated: " + why + ".";
+        if (bias.single) state_pair(k);
+        else result.sentence = "Equality cannot be stated: " + why + ".";
     }
 }
 

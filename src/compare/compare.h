@@ -51,8 +51,9 @@ std::string sentence_of(const RenderStats& stats, const BiasResult& bias, double
 /// Describes the pixels of a pair that differ because they are not finite; "" if there are none.
 std::string failing_pixels(const RenderStats& stats, const BiasResult& bias);
 
-/// Returns the sentences of all pairs; of many pairs, those without a difference share one sentence.
-std::vector<std::string> found_about_means(const CompareResult& result);
+/// Returns the sentences of all pairs, or of all but that of the result; of many pairs, those without a difference
+/// share one sentence.
+std::vector<std::string> found_about_means(const CompareResult& result, bool with_stated_pair = true);
 
 /// Finds where the variance of arm a differs from that of b.
 NoiseResult compare_noise(

@@ -22,14 +22,21 @@ void FileWarnings::add(
 
 std::vector<std::string> FileWarnings::lines() const {
     std::vector<std::string> out;
-    for (const Kind& k : kinds_) {
-        const std::string file = k.files > 1 ? fmt::format("{} (the first of {} files)", k.file, k.files) : k.file;
-        const std::string pixels = k.most == 0 ? ""
-            : k.fewest == k.most               ? fmt::format("{} pixel{} ", k.most, k.most == 1 ? "" : "s")
-                                               : fmt::format("{} to {} pixels ", k.fewest, k.most);
-        out.push_back(fmt::format("{}: {}{}", file, pixels, k.text));
-    }
+    for (const Kind& k : kinds_) out.push_back(k.line());
     return out;
+}
+
+std::string FileWarnings::line(const std::string& kind) const {
+    const auto found = std::ranges::find(kinds_, kind, &Kind::kind);
+    return found == kinds_.end() ? "" : found->line();
+}
+
+std::string FileWarnings::Kind::line() const {
+    const std::string name = files > 1 ? fmt::format("{} (the first of {} files)", file, files) : file;
+    const std::string pixels = most == 0 ? ""
+        : fewest == most                 ? fmt::format("{} pixel{} ", most, most == 1 ? "" : "s")
+                                         : fmt::format("{} to {} pixels ", fewest, most);
+    return fmt::format("{}: {}{}", name, pixels, text);
 }
 
 // ---- Counts come from the first pass (each pixel over renders) and the second pass (groups in each render and

@@ -15,11 +15,14 @@ public:
     void add(const std::string& file, const std::string& text, std::uint64_t pixels = 0, const std::string& kind = "");
     /// Returns the lines in the order of their first file, each with that file and the number of files.
     std::vector<std::string> lines() const;
+    /// Returns the line of one kind; "" if it has no file.
+    std::string line(const std::string& kind) const;
 
 private:
     struct Kind {
         std::string kind, file, text;  // of the first file
         std::uint64_t files = 0, fewest = 0, most = 0;
+        std::string line() const;
     };
     std::vector<Kind> kinds_;
 };

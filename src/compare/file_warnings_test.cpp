@@ -22,6 +22,8 @@ TEST(FileWarnings, OfOneKindShareALine) {
     EXPECT_THAT(warnings.lines(),
         ElementsAre("a (the first of 2 files): 1 to 3 pixels not finite", "b: constant",
             "d (the first of 2 files): copy of a"));
+    EXPECT_EQ(warnings.line("not finite"), warnings.lines()[0]);
+    EXPECT_EQ(warnings.line("negative"), "");
     FileWarnings one;
     one.add("a", "not finite", 1);
     EXPECT_THAT(one.lines(), ElementsAre("a: 1 pixel not finite"));

@@ -301,8 +301,7 @@ std::string compare_summary(
         }
     }
     out += "\n";
-    for (const std::string& sentence : found_about_means(result))
-        if (sentence != result.sentence) out += sentence + "\n";
+    for (const std::string& sentence : found_about_means(result, false)) out += sentence + "\n";
     if (!result.rankings.empty()) out += "\n";
     for (const Ranking& r : result.rankings) out += r.sentence + "\n";
     return out + "\n" + out_dir + "/report.html has all results.\n";

@@ -32,6 +32,8 @@ Box Tiles::box(std::size_t tile, int width, int height) const {
 
 namespace {
 
+constexpr const char* not_finite = "not finite: left out of every metric";
+
 std::vector<std::string> matching(const std::string& pattern, const SourceLocation& place) {
     std::error_code ignored;
     if (std::filesystem::exists(pattern, ignored)) return {pattern};  // "render[1].exr" may be a name
@@ -124,7 +126,7 @@ void FirstPass::check_pixels(const Render& render, ArmStats& to) {
         negative += finite && (render.r[i] < 0 || render.g[i] < 0 || render.b[i] < 0);
     }
     for (const std::string& note : render.notes) warnings_.add(render.file, note);
-    if (bad) warnings_.add(render.file, "not finite: left out of every metric", bad);
+    if (bad) warnings_.add(render.file, not_finite, bad);
     if (negative) warnings_.add(render.file, "with a negative channel", negative);
     if (render.size() > 1 && bad < render.size() && render.is_uniform())
         warnings_.add(render.file, "all pixels are equal");
@@ -146,6 +148,7 @@ void FirstPass::count_clipped(const Render& render) {
 
 void FirstPass::report_warnings() {
     all_.warnings = warnings_.lines();
+    all_.bad_files = warnings_.line(not_finite);
     if (!all_.display_referred) return;
     all_.warnings.push_back(
         "The files are pictures for display: their tone curve may hide a change of radiance, or make it smaller.");

@@ -222,6 +222,7 @@ struct RenderStats {
     bool display_referred = false;  // some render is a picture for display
     std::vector<bool> clipped;      // pixels with a channel at the largest number of every file; empty: none is known
     std::vector<std::string> warnings;
+    std::string bad_files;  // of the warnings: which files have pixels that are not finite, and how many
     Box frame() const { return {0, 0, width - 1, height - 1}; }
 };
 

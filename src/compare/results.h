@@ -180,7 +180,8 @@ struct CompareResult {
     /// Returns whether some pair of arms, or an arm and the reference, differs.
     bool differs() const;
     enum class State { holds, fails, inconclusive } state = State::holds;
-    std::string sentence;  // describes the state
+    std::string sentence;                      // describes the state
+    std::optional<std::size_t> stated_pair{};  // of `bias`, if the sentence is that of a pair
 };
 
 }  // namespace crescent

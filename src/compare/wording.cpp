@@ -530,7 +530,7 @@ std::string sentence_of(const RenderStats& stats, const BiasResult& b, double al
     return out + "." + notes;
 }
 
-std::vector<std::string> found_about_means(const CompareResult& result) {
+std::vector<std::string> found_about_means(const CompareResult& result, bool with_stated_pair) {
     constexpr std::size_t few = 6;
     const auto quiet = [](const BiasResult& b) {
         return !b.differs() && !b.identical && !b.non_finite.any() && b.shared.empty() &&
@@ -540,11 +540,13 @@ std::vector<std::string> found_about_means(const CompareResult& result) {
     std::vector<std::string> out;
     std::size_t rest = 0;
     double smallest = 0;
-    for (const BiasResult& b : result.bias) {
-        if (result.bias.size() <= few || !quiet(b)) out.push_back(b.sentence);
-        else {
+    for (std::size_t k = 0; k < result.bias.size(); ++k) {
+        const BiasResult& b = result.bias[k];
+        if (result.bias.size() > few && quiet(b)) {
             ++rest;
             smallest = std::max(smallest, b.regions.back().smallest);
+        } else if (with_stated_pair || result.stated_pair != k) {
+            out.push_back(b.sentence);
         }
     }
     if (rest)

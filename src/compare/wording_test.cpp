@@ -90,6 +90,19 @@ TEST(TwoSides, OnePixelThatDecidesATileIsFound) {
     EXPECT_TRUE(four.pair().lone_pixel_in(0));
 }
 
+TEST(WhatWasFound, HasTheSentenceOfTheResultOnceInTheSummary) {
+    CompareResult result;
+    for (const char* sentence : {"A differs from B.", "A differs from C."}) {
+        BiasResult& bias = result.bias.emplace_back();
+        bias.sentence = sentence;
+        bias.regions.emplace_back().differs = true;
+    }
+    EXPECT_EQ(found_about_means(result).size(), 2u);
+    result.stated_pair = 1;
+    EXPECT_EQ(found_about_means(result, false), std::vector<std::string>{"A differs from B."});
+    EXPECT_EQ(found_about_means(result).size(), 2u);
+}
+
 TEST(Roughness, IsTheErrorOfAReferenceOfOneFile) {
     RenderStats all;
     all.width = 4;

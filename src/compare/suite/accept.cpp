@@ -209,13 +209,9 @@ std::string check_reason(
     std::vector<std::string> found;
     if (const std::size_t before = former_renders(suite, view); view.candidate.size() < before)
         found.push_back(fmt::format("fewer renders than the {} of the former baseline", before));
-    if (stats.bad_pixels > 0) {
-        const std::vector<std::string>& lines = stats.warnings;
-        const auto where = std::find_if(lines.begin(), lines.end(),
-            [](const std::string& line) { return line.find("not finite") != std::string::npos; });
+    if (stats.bad_pixels > 0)
         found.push_back(fmt::format("{} not finite in some render{}", plural(stats.bad_pixels, "pixel"),
-            where == lines.end() ? "" : " (" + *where + ")"));
-    }
+            stats.bad_files.empty() ? "" : " (" + stats.bad_files + ")"));
     const std::string text = fmt::format("{}", fmt::join(found, "; "));
     if (!text.empty() && acceptance.because.empty())
         throw InputError({"--accept " + view.name, 0, 0}, text + ": expected --because TEXT with it");

@@ -312,12 +312,13 @@ std::string changed_headline(const ViewResult& view) {
     return "Changed: less noise, and the same is asked.";
 }
 
+/// "" without a variance that is larger.
 std::string noisier_headline(const ViewResult& view) {
     for (const VarianceTest& t : view.variances)
         if (t.different && t.candidate > t.baseline)
             return fmt::format("Noisier: the variance is {} times the baseline's (p = {:.1g}); the mean held.",
                 figures(t.candidate / t.baseline, 3), t.welch.p);
-    return view.sentence;
+    return "";
 }
 
 std::string too_few_headline(const ViewResult& view) {
@@ -326,17 +327,22 @@ std::string too_few_headline(const ViewResult& view) {
     return fmt::format("Undecided: {} of each side would do.", plural(*view.renders_needed, "render"));
 }
 
-/// The result of a view in one sentence of at most `longest_headline` characters.
-std::string headline_of(const ViewResult& view) {
+/// The result in a shorter form than that of the sentence; "" if there is none.
+std::string brief_result(const ViewResult& view) {
     const bool exact = view.exact_difference && view.non_finite.empty() &&
         (view.state == ViewState::changed || view.state == ViewState::same);
-    std::string out = exact                ? exact_headline(view)
+    return exact                           ? exact_headline(view)
         : view.state == ViewState::changed ? changed_headline(view)
         : view.state == ViewState::noisier ? noisier_headline(view)
         : view.state == ViewState::too_few ? too_few_headline(view)
-                                           : view.sentence;
-    const std::string samples = samples_sentence(view);
-    if (!samples.empty() && !out.starts_with(samples)) out = samples + " " + out;
+                                           : "";
+}
+
+/// The result of a view in one sentence of at most `longest_headline` characters, after its samples.
+std::string headline_of(const ViewResult& view) {
+    std::string out = brief_result(view);
+    if (out.empty()) out = view.sentence;
+    else if (const std::string samples = samples_sentence(view); !samples.empty()) out = samples + " " + out;
     constexpr std::size_t dots = 3;  // that printable() puts behind what it cuts
     const std::string line = printable(out);
     return line.size() <= longest_headline ? line : printable(line, longest_headline - dots);
