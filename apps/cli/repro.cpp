@@ -635,16 +635,17 @@ std::string why_not_shown(const CheckFlags& flags, const Traits& traits, std::st
 }  // namespace
 
 std::string why_no_repro(const CheckFlags& flags, std::span<const CheckCase> check_cases, const CheckResult& result) {
-    std::string out;
+    std::vector<std::pair<std::string, std::string>> reasons;  // verdicts in a row with the same reason
     for (const Finding& finding : findings_of(result)) {
         if (finding.state != State::wrong) continue;
         const auto worst = std::ranges::find(check_cases, finding.worst->check_case, &CheckCase::text);
-        const std::string why = worst == check_cases.end()
-            ? "it is a result of all w_o together, and a script has one"
-            : why_not_shown(flags, worst->adapter->traits(), finding.name);
-        if (out.ends_with(": " + why)) out.insert(out.size() - why.size() - 2, fmt::format(", {}", finding.name));
-        else out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", finding.name, why);
+        std::string why = worst == check_cases.end() ? "it is a result of all w_o together, and a script has one"
+                                                     : why_not_shown(flags, worst->adapter->traits(), finding.name);
+        if (!reasons.empty() && reasons.back().second == why) reasons.back().first += ", " + finding.name;
+        else reasons.emplace_back(finding.name, std::move(why));
     }
+    std::string out;
+    for (const auto& [names, why] : reasons) out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", names, why);
     return out.empty() ? "no verdict is wrong" : out;
 }
 

@@ -105,8 +105,7 @@ std::string message_of(const ordered_json& v) {
     const auto name = v.at("name").get<std::string>(), state = v.at("state").get<std::string>(),
                respond = v.at("message").get<std::string>();
     if (respond.empty()) return fmt::format("{}: {}{}", name, state, least_p(v));
-    return respond.starts_with(state) ? fmt::format("{}: {}", name, respond)
-                                      : fmt::format("{}: {}. {}", name, state, respond);
+    return fmt::format("{}: {}. {}", name, state, respond);
 }
 std::string state_of(const ordered_json& v) { return v.at("state").get<std::string>(); }
 

@@ -344,7 +344,7 @@ export class Workshop implements Viewer {
     const rows = result.verdicts.map((v) => el("tr", { "data-verdict": v.name, "data-state": v.state },
       el("th", { scope: "row" }, el("button", { type: "button", class: "plain", title: v.question, onclick: () => this.picture(v) }, v.name)),
       el("td", { class: v.state === "wrong" || v.state === "error" ? "bad" : v.state === "right" ? "good" : "" }, v.state),
-      el("td", {}, minus(plusMinus(v.message)), power(v), ...(v.cause && !v.message.includes(v.cause) ? [` ${minus(plusMinus(v.cause))}`] : []))));
+      el("td", {}, minus(plusMinus(v.message)), power(v), ...(v.cause ? [` ${minus(plusMinus(v.cause))}`] : []))));
     const where = this.drawsPoints ? `over ${this.domain}` : `at w_o of ${four.map(([theta]) => `${theta}°`).join(", ")}`;
     const first = result.verdicts.find(({ state }) => state === "wrong" || state === "error");
     this.verdicts.replaceChildren(

@@ -67,19 +67,23 @@ std::string percent(double fraction, int digits) {
     return (is_whole ? fmt::format("{:.0f}", value) : text) + " %";
 }
 
-std::string with_error(double value, double half) {
-    if (!(half > 0) || !std::isfinite(half)) return fmt::format("{:.5g}", value);
+namespace {
+
+/// "2.61 +- 0.02" with a unit behind each number; a value alone if its error is not known.
+std::string with_error_and_unit(double value, double half, std::string_view unit) {
+    if (!(half > 0) || !std::isfinite(half)) return fmt::format("{:.5g}{}", value, unit);
     const double exponent = std::floor(math::log10(half) + 1e-9);
     const int digits = -static_cast<int>(exponent) + (half < 1.95 * math::pow(10, exponent) ? 1 : 0);
-    if (digits > 12 || digits < -3) return fmt::format("{:.5g} +- {:.1g}", value, half);
-    return fmt::format("{:.{}f} +- {:.{}f}", value, std::max(digits, 0), half, std::max(digits, 0));
+    if (digits > 12 || digits < -3) return fmt::format("{:.5g}{} +- {:.1g}{}", value, unit, half, unit);
+    const int shown = std::max(digits, 0);
+    return fmt::format("{:.{}f}{} +- {:.{}f}{}", value, shown, unit, half, shown, unit);
 }
 
-std::string percent_with_error(double share, double half) {
-    const std::string both = with_error(100 * share, 100 * half);
-    const std::size_t sign = both.find(" +-");
-    return sign == std::string::npos ? both + " %" : both.substr(0, sign) + " %" + both.substr(sign) + " %";
-}
+}  // namespace
+
+std::string with_error(double value, double half) { return with_error_and_unit(value, half, ""); }
+
+std::string percent_with_error(double share, double half) { return with_error_and_unit(100 * share, 100 * half, " %"); }
 
 std::string direction_text(Vec3<double> w) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", w.x, w.y, w.z); }
 

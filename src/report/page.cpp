@@ -250,7 +250,7 @@ std::string ray_words(const Experiment& experiment) {
     const auto names = names_where(experiment, [](const ArmPlan& arm) { return techniques_of(arm) > 1; });
     if (names.empty()) return {};
     return fmt::format(
-        " {} {} two techniques: {} <i>N</i> counts pairs, and at equal <i>N</i> {} two rays for each one "
+        "{} {} two techniques: {} <i>N</i> counts pairs, and at equal <i>N</i> {} two rays for each one "
         "of the others.",
         listed(names), names.size() == 1 ? "joins" : "join", names.size() == 1 ? "its" : "their",
         names.size() == 1 ? "it sends" : "they send");
@@ -261,11 +261,13 @@ std::string bias_words(const Experiment& experiment) {
     for (const ArmPlan& arm : experiment.arms)
         if (const std::string missed = missed_light(arm, experiment); !missed.empty())
             out += fmt::format(
-                " <b>{}</b> is biased in this scene: it cannot reach {}. More samples do not bring that light, so "
+                "{}<b>{}</b> is biased in this scene: it cannot reach {}. More samples do not bring that light, so "
                 "that its RMSE stops falling.",
-                escape(arm.name), escape(missed));
+                out.empty() ? "" : " ", escape(arm.name), escape(missed));
     return out;
 }
+
+std::string after_space(const std::string& text) { return text.empty() ? "" : " " + text; }
 
 // ---- Sentences that compare two arms are made from the values and follow their order; they rank nothing if intervals
 // overlap or a heavy tail leaves no interval.
@@ -398,8 +400,7 @@ Json limits(const Page& page) {
     const auto& bands = page.in.metrics.bands;
     const auto heavy = std::ranges::count_if(bands, [](const SeedSpread& b) { return b.band.heavy; });
     const double chance = chance_of_parted_bands(e.seeds);
-    const std::string bias = bias_words(e);
-    Json out = {{"bands", false}, {"rays", ray_words(e)}, {"bias", bias.empty() ? "" : bias.substr(1)},
+    Json out = {{"bands", false}, {"rays", after_space(ray_words(e))}, {"bias", bias_words(e)},
         {"remedies", remedies(e)}, {"one_seed", e.seeds < 2}, {"few_seeds", e.seeds >= 2 && e.seeds < 20},
         {"heavy", heavy > 0 ? std::to_string(heavy) : ""}, {"metrics", bands.size()}};
     if (e.seeds > 1) out["bands"] = {{"chance", chance > 1e-3 ? percent(chance, 2) : "less than 0.1 %"}};

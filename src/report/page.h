@@ -134,5 +134,7 @@ std::string run_html(const RunKey& key, const Experiment& experiment);
 /// Returns remarks on arms whose N counts pairs, and on those that cannot reach all light; "" if there are none.
 std::string ray_words(const Experiment& experiment);
 std::string bias_words(const Experiment& experiment);
+/// The text after a space, for what follows a sentence; "" if it is empty.
+std::string after_space(const std::string& text);
 
 }  // namespace crescent

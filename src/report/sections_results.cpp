@@ -82,14 +82,14 @@ Json results(Page& page) {
     if (n == 0) return false;
     const Experiment& e = page.in.experiment;
     const ArmPair pair = arm_pair(page);
-    const std::string remarks = ray_words(e) + bias_words(e);
+    const std::string rays = ray_words(e), bias = bias_words(e);
     const std::uint64_t bad = page.find.bad_samples();
     Json regions = Json::array();
     for (const Region& region : e.regions)
         if (pair) regions.push_back(ordering_html(page, pair.broad->name, pair.narrow->name, pair.n, region.name));
     return {{"plates", page.figures.plates(PlateKind::columns)}, {"table", headline_table(page, n)}, {"n", n},
         {"exponent", any_tells_s(e) ? shortest(page.find.s()) : ""}, {"regions", regions},
-        {"remarks", remarks.empty() ? "" : remarks.substr(1)}, {"pair_n", pair.n},
+        {"remarks", rays.empty() ? bias : rays + after_space(bias)}, {"pair_n", pair.n},
         {"not_seen", pair && !e.regions.empty() ? failures_not_seen(page, pair) : Json::array()},
         {"bad_samples", bad ? plural(bad, "sample") : ""}, {"heat_plates", page.figures.plates(PlateKind::heat)},
         {"frame", frame_errors(page, n)}};

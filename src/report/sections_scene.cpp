@@ -184,8 +184,8 @@ Json question(const Page& page) {
     std::vector<Json> names, regions;
     for (const ArmPlan& arm : e.arms) names.push_back({{"name", arm.name}});
     for (const Region& r : e.regions) regions.push_back({{"name", r.name}, {"pixels", pixels_of(page, r)}});
-    return {{"count_of_arms", spelled(names.size())}, {"names", separated(names)}, {"rays", ray_words(e)},
-        {"bias", bias_words(e)}, {"one_region", regions.size() == 1}, {"regions", separated(regions)}};
+    return {{"count_of_arms", spelled(names.size())}, {"names", separated(names)}, {"rays", after_space(ray_words(e))},
+        {"bias", after_space(bias_words(e))}, {"one_region", regions.size() == 1}, {"regions", separated(regions)}};
 }
 
 Json estimator_equation(const Page& page) {
