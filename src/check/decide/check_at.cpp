@@ -214,7 +214,8 @@ private:
     bool regrown() {
         const Estimate& claimed = first_.integrals.sums[mass];
         const double worse = regrow_from * regrow_points / first_.integrals.points;
-        if (key_.stage != 1 || !(std::sqrt(claimed.variance) > worse * std::max(claimed.value, 1e-3))) return false;
+        const double error = std::sqrt(claimed.variance) + unresolved_error(first_.integrals, first_.observations);
+        if (key_.stage != 1 || !(error > worse * std::max(claimed.value, 1e-3))) return false;
         std::vector<DensityPoint> hints = first_.integrals.heavy;
         const std::vector<DensityPoint>& drawn = first_.observations.unmet_at;
         hints.insert(hints.end(), drawn.begin(), drawn.end());
@@ -328,7 +329,9 @@ private:
             out_.sizes = {};
             out_.inconclusive = false;
             const Estimate& p = first_.integrals.sums[mass];
-            if (source_.has_density() && p.value > 0) out_.sizes.integral = half_interval(p) / p.value;
+            if (source_.has_density() && p.value > 0)
+                out_.sizes.integral =
+                    (half_interval(p) + unresolved_error(first_.integrals, first_.observations)) / p.value;
         }
         out_.integrals = std::move(first_.integrals);
         out_.observations = std::move(first_.observations);

@@ -5,6 +5,7 @@
 
 #include "check/constants.h"
 #include "math/functions.h"
+#include "math/simd/frame.h"
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {
@@ -244,6 +245,31 @@ TEST(CheckAtOneWo, HasNoFiniteIntervalForAnInfiniteIntegral) {
         EXPECT_TRUE(has(c, "normalised") || *c.sizes.integral > inconclusive_at * target_constant) << power;
     }
     EXPECT_LT(*integral(-1).sizes.integral, inconclusive_at * target_constant);
+}
+
+/// The front of a sphere by area: at its rim p has a pole of d^(-1/2), whose square has no finite integral.
+TEST(CheckAtOneWo, DecidesTheIntegralOfADensityWithAPole) {
+    constexpr double radius = 0.25;
+    const Vec3d centre{0.36, 0.48, 0.8};
+    FunctionSampler s;
+    s.of.wo = Traits::WoDomain::none;
+    s.draw = [=](Vec3d, const PrimarySample& u) {
+        const double z = radius + (1 - radius) * u.x, r = std::sqrt(1 - z * z);
+        const Frame<double> frame = frame_about(-centre);
+        const double phi = two_pi * u.y;
+        return normalize(centre + radius * (r * std::cos(phi) * frame.t + r * std::sin(phi) * frame.b - z * centre));
+    };
+    s.p = [=](Vec3d, Vec3d w) {
+        const double along = dot(centre, w), h2 = radius * radius - 1 + along * along;
+        if (!(along > 0 && h2 > 0)) return 0.0;
+        const double h = std::sqrt(h2), distance = along - h;
+        return distance * distance / (h / radius) / (two_pi * (1 - radius) * radius * radius);
+    };
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        const CheckAt c = check_sampler_at(s, 0, {0, 0, 1}, {}, CheckBudget::limited(), seed);
+        EXPECT_FALSE(c.wrong()) << seed;
+        EXPECT_FALSE(c.inconclusive) << seed;
+    }
 }
 
 TEST(CheckAtOneWo, DrawsOfALightBelowTheHorizonNeedADensityThere) {

@@ -576,7 +576,8 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
     const std::vector<NodeSums> sums = node_sums(e);
     const std::vector<NodeTest> nodes = node_tests(e, sums, level);
     const Estimate& whole_p = e.integrals.sums[mass];
-    if (whole_p.value > 0) out.integral = half_interval(whole_p) / whole_p.value;
+    if (whole_p.value > 0)
+        out.integral = (half_interval(whole_p) + unresolved_error(e.integrals, e.observations)) / whole_p.value;
     for (const SumTest& t : whole)
         if (t.of == mass || t.of == bridge) take_less(out.constant, t.needed.size(e.integrals.sums[t.of].value));
     // No density is uniform over an infinite line, and powers of p per length are not those of p over the chart.
@@ -592,6 +593,11 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
     if (out.cap && source.traits.domain && !source.is_line()) out.cap = std::min(*out.cap * box_over_cap, 1.0);
     by_turning(source, e, whole, nodes, sample, out);
     return out;
+}
+
+double unresolved_error(const Integrals& integrals, const Observations& o) {
+    const double drawn = o.share_at_poles(), held = integrals.unresolved.value;
+    return std::min(std::max(drawn, held), std::fabs(drawn - held) + half_interval(integrals.unresolved));
 }
 
 double half_interval(const Estimate& integral) {

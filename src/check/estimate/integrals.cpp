@@ -60,24 +60,18 @@ struct Grid {
     std::size_t points() const { return 2 * static_cast<std::size_t>(cells()); }
 };
 
-/// Distributes the points of a pass: two or four to each leaf, a part evenly, and the rest by the spread of p, with
-/// more points at edges. At most `points` in all if that is at least two for each leaf.
+/// Distributes the points of a pass: two or four to each leaf, and the rest by their shares. At most `points` in all if
+/// that is at least two for each leaf.
 std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
     const std::vector<Leaf>& leaves = plan.tree.leaves();
-    const auto weight_of = [&](const Leaf& leaf) {
-        return leaf.spread + worth_of_score * leaf.score + (leaf.edge ? plan.tree.rect(leaf).area() * leaf.q / 4 : 0);
-    };
-    double sum = 1e-300;
-    for (const Leaf& leaf : leaves) sum += weight_of(leaf);
+    const std::vector<double> shares = plan.tree.shares_of_points();
     const int least = points < 8 * leaves.size() ? 1 : 2;  // pairs in each leaf
     const double rest = std::max(points / 2.0 - least * static_cast<double>(leaves.size()), 0.0);
     std::vector<Grid> out(leaves.size());
     double carry = 0;  // accumulated fractions of a pair
     for (std::size_t l = 0; l < leaves.size(); ++l) {
         const ChartRect& rect = plan.tree.rect(leaves[l]);
-        const double share =
-            even_points / static_cast<double>(leaves.size()) + (1 - even_points) * weight_of(leaves[l]) / sum;
-        carry += rest * share;
+        carry += rest * shares[l];
         const int pairs = least + static_cast<int>(carry);
         carry -= static_cast<int>(carry);
         Grid& g = out[l];
@@ -241,7 +235,7 @@ private:
         bool lit = false;
         for (int j = 0; j < g.cells(); ++j, index += 2) {
             Values h[2];
-            double second[2];
+            double second[2], beyond[2];
             for (std::size_t a = 0; a < 2; ++a) {
                 const double p = p_[index + a];
                 h[a] = plan_.values(leaf, w_[index + a], p);
@@ -260,8 +254,10 @@ private:
                     }
                 }
                 if (tabulated_) allow_tabulation(h[a], w_[index + a], k, to);
+                beyond[a] = h[a][mass] > 0 ? 0 : p;
                 for (double& v : h[a]) v *= p;
             }
+            out_.unresolved.add_pair(beyond[0], beyond[1], k);
             for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
             to.mass.add_pair(h[0][mass], h[1][mass], k);
             to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
@@ -340,6 +336,7 @@ private:
 
 void scale(Integrals& x, double factor) {
     for (Estimate& e : x.sums) e.scale(factor);
+    x.unresolved.scale(factor);
     for (Estimate& e : x.bridge_by_band) e.scale(factor);
     for (double& v : x.second_by_band) v *= factor;
     x.domain *= factor;
@@ -375,6 +372,7 @@ void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f
     }
     scale(to, to.points / total);
     scale(pass, pass.points / total);
+    to.unresolved.add(pass.unresolved);
     for (std::size_t q = 0; q < integrands; ++q) {
         to.sums[q].add(pass.sums[q]);
         to.known_to[q] += pass.known_to[q];

@@ -67,6 +67,7 @@ struct LightIntegrals {
 
 struct Integrals {
     std::array<Estimate, integrands> sums;
+    Estimate unresolved;  // of p where it exceeds what the points of its leaf resolve
     std::vector<LeafIntegral> leaves;
     ByBand<Estimate> bridge_by_band;  // of h p
     ByBand<double> second_by_band{};  // of h^2 p

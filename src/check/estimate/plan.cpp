@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "check/estimate/sort.h"
 #include "check/constants.h"
@@ -307,9 +308,32 @@ private:
 
 Tree::Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t draws, std::vector<DensityPoint> hints,
     double step, const CheckBudget& budget, const StreamKey& key) {
+    const double drawn = static_cast<double>(pilots.size()) / std::max(draws, 1u);
     TreeGrowth(*this, source, std::move(pilots), draws, step, budget, key).grow(std::move(hints));
     StartGrids{*this};
     find_edges();
+    set_resolved(drawn, budget.points());
+}
+
+std::vector<double> Tree::shares_of_points() const {
+    std::vector<double> out;
+    for (const Leaf& leaf : leaves_)
+        out.push_back(leaf.spread + worth_of_score * leaf.score + (leaf.edge ? rect(leaf).area() * leaf.q / 4 : 0));
+    const double sum = std::accumulate(out.begin(), out.end(), 1e-300);
+    for (double& x : out) x = even_points / static_cast<double>(out.size()) + (1 - even_points) * x / sum;
+    return out;
+}
+
+void Tree::set_resolved(double drawn, double points) {
+    double held = 0;
+    for (const Leaf& leaf : leaves_) held += leaf.q * rect(leaf).area();
+    const double whole = std::max(drawn, held);  // of a p that is too large, what the leaves hold
+    const std::vector<double> shares = shares_of_points();
+    for (std::size_t l = 0; l < leaves_.size(); ++l) {
+        Leaf& leaf = leaves_[l];
+        const double point = heaviest_point * whole * (points * shares[l] + 2) / rect(leaf).area();
+        leaf.resolved = std::max(point, far_above * leaf.q);
+    }
 }
 
 void Tree::find(std::span<const ChartPoint> at, std::span<std::uint32_t> leaves) const {

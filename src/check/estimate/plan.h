@@ -47,6 +47,7 @@ struct Leaf {
     double step = 0;    // of its node
     bool met = false;   // p > 0 at a point or draw while the tree grew; otherwise q is that of half a draw in the pilot
     bool edge = false;  // it is met, and a neighbour has a q that differs by more than `alike`
+    double resolved = 0;  // the largest p that its points resolve, see `heaviest_point`
 };
 
 class Tree {
@@ -68,6 +69,9 @@ public:
     /// for those of another.
     void find(std::span<const ChartPoint> points, std::span<std::uint32_t> leaves) const;
     const ChartRect& rect(const Leaf& leaf) const { return nodes_[static_cast<std::size_t>(leaf.node)].rect; }
+    /// The share of the points of an integral that each leaf gets: a part evenly, the rest by the spread of p, with
+    /// more at edges.
+    std::vector<double> shares_of_points() const;
     int depth() const { return depth_; }
     std::size_t rows() const { return rows_; }
 
@@ -112,6 +116,7 @@ private:
     friend class StartGrids;
     void number_leaves();
     void find_edges();
+    void set_resolved(double drawn, double points);
     friend class TreeGrowth;
 };
 
@@ -133,11 +138,13 @@ struct Plan {
     bool estimates = false;           // p is a random estimate, so h does not depend on it
     std::uint32_t drawn = 0, of = 0;  // pilot draws that are directions; all pilot draws
 
-    /// h = q / (p + q), in [0, 1] (the bridge of Meng and Wong 1996), and h times the quantities of the other sums.
+    /// h = q / (p + q), in [0, 1] (the bridge of Meng and Wong 1996), and h times the quantities of the other sums. The
+    /// mass is that where points resolve p: about a pole the integral of p^2 is infinite.
     Values values(const Leaf& leaf, Vec3d w, double p) const {
         const double density = estimates ? leaf.q : p;
         const double h = leaf.q / (density + leaf.q);
-        return {1, h, density > 0 ? h * (log_of(density) - median_log_p) : 0, h * (w.x - middle.x),
+        const double at_most_resolved = density > leaf.resolved ? 0 : 1;
+        return {at_most_resolved, h, density > 0 ? h * (log_of(density) - median_log_p) : 0, h * (w.x - middle.x),
             h * (w.y - middle.y), h * (w.z - middle.z)};
     }
     /// Whether the sampler computes in single precision, as it declares or as the step of its directions shows: that of

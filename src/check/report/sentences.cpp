@@ -37,6 +37,18 @@ Sentence empty_sentence(const DrawChecks& c, double mass) {
             crescent::listed(parts))};
 }
 
+/// Whether p is larger somewhere than its points resolve.
+bool has_poles(const CheckAt& c) { return c.observations.share_at_poles() > 0 || c.integrals.unresolved.value > 0; }
+
+/// The integral of p, without the neighbourhood of its poles if it has some.
+Sentence integral_of_p(const CheckAt& c, double value, double half) {
+    const std::string whole = with_error(value, half);
+    if (!has_poles(c)) return {"integral", fmt::format("p integrates to {}.", whole)};
+    return {"integral",
+        fmt::format("p integrates to {} besides its poles, near which {} % of the draws are.", whole,
+            crescent::figures(100 * c.observations.share_at_poles()))};
+}
+
 Sentences mass_sentences(const CheckAt& c, const Answer& a) {
     const double drawn = a.expected + a.difference, half = half_width_95 * a.sd;
     if (!(drawn > 0)) return {empty_sentence(c.observations.checks, a.expected)};
@@ -45,10 +57,12 @@ Sentences mass_sentences(const CheckAt& c, const Answer& a) {
             fmt::format("p is 0 at all {:.0f} points at which it is integrated, and {} % of the samples draw a "
                         "direction.",
                 c.integrals.points, crescent::figures(100 * drawn))}};
-    return {{"integral", fmt::format("p integrates to {}.", with_error(a.expected, half))},
+    const char* where = has_poles(c) ? " elsewhere" : "";
+    return {integral_of_p(c, a.expected, half),
         {"expected",
-            drawn > 1 - 1e-9 ? "Expected 1."
-                             : fmt::format("Expected {:.6g}, the share of the samples that draw a direction.", drawn)}};
+            drawn > 1 - 1e-9
+                ? "Expected 1."
+                : fmt::format("Expected {:.6g}, the share of the samples that draw a direction{}.", drawn, where)}};
 }
 
 /// The sum of h p over the leaves below a node.
@@ -310,8 +324,7 @@ Sentences sentences_of_right(const CheckAt& c, std::string_view verdict) {
     if (verdict == "support")
         return {{"support",
             fmt::format("{} is 0 wherever p is 0, at {:.0f} points.", integrand(c.traits), c.integrals.light.points)}};
-    if (verdict == "normalised")
-        return {{"integral", fmt::format("p integrates to {}.", with_error(whole.value, half_interval(whole)))}};
+    if (verdict == "normalised") return {integral_of_p(c, whole.value, half_interval(whole))};
     if (verdict == "physics") return albedo_sentence(c);
     if (verdict == "mean") return mean_sentence(c);
     if (const auto [p, families] = least_p(c, verdict); families > 0 && verdict == "density")
