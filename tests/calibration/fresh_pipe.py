@@ -738,16 +738,16 @@ class Case:
     wo: Array
 
 
-def case_of(of_set: str, seed: int, number: int) -> Case:
-    families = list(FAMILIES)
+def case_of(of: dict[Family, tuple[str, ...]], of_set: str, seed: int, number: int) -> Case:
+    families = list(of)
     family = families[number % len(families)]
     rng = np.random.default_rng([zlib.crc32(of_set.encode()), seed, number])
     real = (np.float32, np.float64)[int(rng.integers(2))]
     wo = random_direction(rng, 0.05)
     fault = ""
     if of_set == "faults":
-        of_family = FAMILIES[family]
-        common = () if family in (own_rejection, only_weights) else tuple(COMMON)
+        of_family = of[family]
+        common = () if "pdf=no" in family(np.random.default_rng(0), real, "").hello else tuple(COMMON)
         faults = of_family + common
         fault = faults[number // len(families) % len(faults)]
     sampler = family(rng, real, "" if fault in COMMON else fault)
@@ -859,7 +859,7 @@ def print_table(records: list[dict[str, Any]], key: str) -> None:
     print(f"\nReported wrong: at most {100 * upper(wrong, len(records)):.2g} % (95 %, one-sided).")
 
 
-def main() -> None:
+def main(families: dict[Family, tuple[str, ...]]) -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("task", choices=["right", "faults", "verify", "table", "serve"])
     parser.add_argument("rest", nargs="*", help="of serve: right or faults, the seed, the number; of table: files")
@@ -870,7 +870,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="file to which a line for each check is appended")
     a = parser.parse_args()
     if a.task == "serve":
-        serve(case_of(a.rest[0], int(a.rest[1]), int(a.rest[2])), sys.stdin.buffer, sys.stdout.buffer)
+        serve(case_of(families, a.rest[0], int(a.rest[1]), int(a.rest[2])), sys.stdin.buffer, sys.stdout.buffer)
         return
     if a.task == "table":
         records = [json.loads(line) for name in a.rest for line in Path(name).read_text().splitlines()]
@@ -880,7 +880,7 @@ def main() -> None:
     np.seterr(all="ignore")
     records = []
     for number in range(*(int(v) for v in a.cases.split(":"))):
-        c = case_of("right" if a.task == "verify" else a.task, a.seed, number)
+        c = case_of(families, "right" if a.task == "verify" else a.task, a.seed, number)
         known = {"family": c.family, "real": c.real.__name__, "case": number, "seed": a.seed, "fault": c.fault}
         if a.task == "verify":
             z, length = verify(c, np.random.default_rng([a.seed, number]))
@@ -898,4 +898,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(FAMILIES)
