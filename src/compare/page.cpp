@@ -398,10 +398,11 @@ std::string compare_html(const Json& json, const std::map<std::string, std::vect
         {"command", provenance.at("command")}, {"sentence", sentence}, {"fails", result.at("state") == "fails"},
         {"all_hold", sentence.empty() && !result.at("assertions").empty()}, {"found", found},
         {"trimmed", trim > 0 ? percent(trim) : ""}, {"has_reference", !reference.is_null()},
-        {"reference_error", reference.is_null() ? Json("") : reference.at("standard_error_from").value()},
+        {"reference_error", reference.is_null() ? Json("") : Json(reference.at("standard_error_from"))},
         {"rankings", rankings}, {"pairs", pairs_of(result)}, {"pictures", pictures_of(plates)},
         {"noise", noise_of(result)}, {"ladders", ladder_charts(result)}, {"spectra", spectra_of(result)},
-        {"assertions", assertions_of(result)}, {"files", files_of(result)}, {"warnings", result.at("warnings")}};
+        {"assertions", assertions_of(result)}, {"files", files_of(result)},
+        {"warnings", result.at("warnings").get<std::vector<std::string>>()}};
     add_numbers(result, model);
     return render_page(compare_templates(), "compare.html", model);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "compare/compare.h"
+#include "output/stored_json.h"
 #include "tests/support/memory_renders.h"
 #include "tests/support/wellformed.h"
 
@@ -83,6 +84,11 @@ TEST(ComparePages, EscapeNamesAndListFiles) {
     EXPECT_THAT(page, Not(HasSubstr("a<i>0")));
     EXPECT_THAT(page, HasSubstr("AQID"));  // the bytes of the picture, base64
     EXPECT_THAT(page, Not(HasSubstr("<script src")));
+    for (const char* key : {"warnings", "title", "message"}) {
+        Json damaged = result;
+        damaged[key] = Json::object();
+        EXPECT_THROW((void)compare_html(damaged, {}), StoredJsonError) << key;
+    }
 }
 
 }  // namespace plates_test

@@ -98,8 +98,11 @@ public:
     /// The members of an object.
     std::vector<std::pair<std::string, StoredJson>> items() const;
 
-    /// As a part of other JSON.
-    friend void to_json(Json& to, const StoredJson& from) { to = from.value(); }
+    /// As a part of other JSON: a single value, since a list or an object has a type of its own.
+    friend void to_json(Json& to, const StoredJson& from) {
+        if (from.json_->is_structured()) from.refuse("expected a text, a number, true, false or null");
+        to = from.value();
+    }
 
     /// Throws with the place: "runs[3]: expected a picture, found 7".
     [[noreturn]] void refuse(const std::string& message) const;

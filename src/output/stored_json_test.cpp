@@ -42,6 +42,16 @@ TEST(StoredJson, NamesTheFieldAndWhatWasExpected) {
     EXPECT_EQ(second.value("none", std::string("otherwise")), "otherwise");
 }
 
+TEST(StoredJson, GoesIntoOtherJsonAsASingleValue) {
+    const Json json = parse_json(R"({"name": "a", "empty": null, "holds": true, "list": [1], "object": {}})");
+    const StoredJson stored(json);
+    EXPECT_EQ(Json({{"x", stored.at("name")}, {"y", stored.at("empty")}, {"z", stored.at("holds")}}),
+        Json({{"x", "a"}, {"y", nullptr}, {"z", true}}));
+    EXPECT_EQ(error_of([&] { (void)Json({{"x", stored.at("list")}}); }),
+        "list: expected a text, a number, true, false or null, found a list of 1");
+    EXPECT_THAT(error_of([&] { (void)Json({{"x", stored.at("object")}}); }), HasSubstr("object: expected a text"));
+}
+
 TEST(StoredJson, HidesTheCodesOfTheLibrary) {
     for (const char* text : {"{", "[1, 2", "{\"a\": nan}", ""}) try {
             (void)parse_json(text, "file.json", "a result");
