@@ -191,6 +191,12 @@ def test_a_truncated_result_is_computed_again(tmp_path):
     again = run()
     assert again.computed > 0
     assert again.measured().metrics["runs"] == first["runs"]
+    files = sorted((tmp_path / "out" / "points").glob("*/*"))
+    texts = [file.read_bytes() for file in files]
+    for file in files:
+        file.write_bytes(file.read_bytes()[:100])
+    assert run().computed == 0
+    assert [file.read_bytes() for file in files] == texts
 
 
 def test_a_folder_has_one_sweep_and_no_unfinished_files(tmp_path):

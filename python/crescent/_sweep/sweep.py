@@ -341,7 +341,7 @@ class Run:
             identity = digest(point.experiment.hash, self.seeds, names)
             if studies is None or not complete:
                 continue
-            if known.get(point.folder, [""])[0] == identity and (folder / "metrics.json").is_file():
+            if known.get(point.folder, [""])[0] == identity and known[point.folder][2:] == [_digest_of_run(folder)]:
                 failing += known[point.folder][1]
                 continue
             for arm in point.arms.values():
@@ -350,12 +350,23 @@ class Run:
                     parts += [found["json"]] if found else []
             core = _crescent.parse(point.experiment.text, point.experiment._core.file, point.changes)
             run = _crescent.assemble(core, 1, self.seeds, parts, studies)
-            for name, text in (("metrics.json", run.json), ("metrics.csv", run.csv), ("junit.xml", run.junit)):
+            for name, text in zip(RUN_FILES, (run.json, run.csv, run.junit), strict=True):
                 write_whole(folder / name, text)
-            known[point.folder] = [identity, int(not run.holds)]
+            known[point.folder] = [identity, int(not run.holds), _digest_of_run(folder)]
             failing += not run.holds
         write_whole(self.store.root / "joined.json", json.dumps(known))
         return failing
+
+
+RUN_FILES = ("metrics.json", "metrics.csv", "junit.xml")
+
+
+def _digest_of_run(folder: Path) -> str:
+    """Of the files of a finished point; "" if one is missing."""
+    try:
+        return digest(*((folder / name).read_bytes().hex() for name in RUN_FILES))
+    except OSError:
+        return ""
 
 
 def _estimate(run: Run, plan: Plan) -> list[str]:
