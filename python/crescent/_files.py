@@ -28,6 +28,8 @@ def names_a_file(text: str) -> bool:
 
 def _module_in(path: Path) -> ModuleType:
     """Returns the module of a file."""
+    if path.exists() and not path.is_file():
+        raise ValueError(f"{path}: expected a regular file")
     if not path.is_file():
         near = _crescent.nearest(path.name, [at.name for at in path.parent.glob("*.py")])
         raise ValueError(f"{path}: no such file" + (f"; did you mean '{path.with_name(near)}'?" if near else ""))

@@ -189,6 +189,8 @@ def constant(word: str) -> Constant:
 
 def _read(path: Path, what: str) -> str:
     try:
+        if path.exists() and not path.is_file():
+            raise BadInput(f"{path}: expected a regular file")
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise BadInput(f"{path}: has {size} bytes: expected at most {LARGEST_FILE}")

@@ -162,6 +162,8 @@ def test_a_sampler_with_a_context_is_checked_by_the_program(run):
     "lines, code, said",
     [
         ('python = "mine.py:sampel"', 2, r"arm.toml:\d+:\d+: arms.mine.python: .*did you mean 'sampler'"),
+        ('python = "/dev/zero"', 2, r"arm.toml:\d+:\d+: arms.mine.python: "),
+        ('plugin = "/dev/zero"', 2, r"arm.toml:\d+:\d+: arms.mine.plugin: expected a regular file"),
         ('python = "mien.py:sampler"', 2, r"arm.toml:\d+:\d+: arms.mine.python: .*no such file.*mine.py"),
         ('python = "mine"', 2, r"arm.toml:\d+:\d+: arms.mine.python: expected .FILE.py:NAME"),
         ('python = ""', 2, r"arms.mine.python"),

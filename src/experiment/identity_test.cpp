@@ -1,6 +1,8 @@
 // An experiment's identity is computed from its values: every value that changes an output changes it, and nothing else
 // does.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -213,6 +215,21 @@ TEST(Identity, ChangesWithTheFileOfASampler) {
     const std::uint64_t before = hash_with("x = 1\n");
     EXPECT_NE(hash_with("x = 2\n"), before);
     EXPECT_EQ(hash_with("x = 1\n"), before);
+    std::filesystem::remove(file);
+}
+
+TEST(Identity, RefusesAFileOfASamplerThatIsNoRegularFile) {
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + "_pipe.py");
+    ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+    Experiment e = with_everything();
+    for (const std::string& name : {file.string(), std::string("/dev/zero")}) {
+        e.arms[0].plugin = name;
+        EXPECT_THROW((void)hash(e), InputError) << name;
+        e.arms[0].plugin.reset();
+    }
+    e.arms[0].python = file.string() + ":sampler";
+    EXPECT_THROW((void)hash(e), InputError);
     std::filesystem::remove(file);
 }
 

@@ -81,11 +81,31 @@ std::string sampler_file(const ArmPlan& arm) {
     return python ? std::string(python_file(*python)) : std::string{};
 }
 
+namespace {
+
+/// The key of an arm that names what another program evaluates.
+std::string key_of_code(const ArmPlan& arm) {
+    return fmt::format("arms.{}.{}", arm.name,
+        arm.exec         ? "exec"
+            : arm.plugin ? "plugin"
+            : arm.python ? "python"
+                         : "weights_python");
+}
+
+}  // namespace
+
 std::string sampler_file_hashes(const Experiment& experiment) {
     std::string marks;
     for (const ArmPlan& arm : experiment.arms) {
         const std::string file = sampler_file(arm);
         if (file.empty()) continue;
+        std::error_code unknown;
+        const std::filesystem::file_status status = std::filesystem::status(file, unknown);
+        if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+            const std::string key = key_of_code(arm);
+            throw InputError(experiment.place_of(key),
+                fmt::format("{}: expected a regular file, found something else at '{}'", key, file));
+        }
         const std::string bytes = contents_of(file);
         marks += fmt::format(" {}={:016x}", arm.name, bytes.empty() ? 0 : XXH3_64bits(bytes.data(), bytes.size()));
     }
@@ -97,8 +117,7 @@ void refuse_code(const Experiment& experiment) {
     for (const ArmPlan& arm : experiment.arms) {
         const std::optional<std::string>& weights = arm.combination.weights_python;
         if (!arm.is_external() && !weights) continue;
-        const char* key = arm.exec ? "exec" : arm.plugin ? "plugin" : arm.python ? "python" : "weights_python";
-        const std::string path = fmt::format("arms.{}.{}", arm.name, key);
+        const std::string path = key_of_code(arm);
         found.push_back({experiment.place_of(path),
             fmt::format("{}: with --no-code, expected a built-in sampler (key 'sampler'); found code to run: '{}'",
                 path,

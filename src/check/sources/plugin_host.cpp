@@ -9,6 +9,7 @@
 #include <poll.h>
 #include <pthread.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #ifdef __linux__
 #include <sys/prctl.h>
 #endif
@@ -134,6 +135,9 @@ struct Library {
     explicit Library(const std::string& path) {
         // For a name without a slash dlopen would search the system's libraries.
         const std::string file = path.find('/') == std::string::npos ? "./" + path : path;
+        struct stat info{};
+        if (::stat(file.c_str(), &info) == 0 && !S_ISREG(info.st_mode))  // dlopen() of a named pipe waits for a writer
+            throw Fault{"expected a regular file"};
         void* library = called("dlopen", [&] { return ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL); });
         if (!library) throw Fault{::dlerror()};
         const auto find = [&]<class F>(const char* symbol, F& to) {
