@@ -89,7 +89,7 @@ void Progress::draw() {
 }
 
 void Progress::log(std::string_view line) {
-    if (style_ == Style::silent) return;
+    if (style_ == Style::silent && !line.starts_with("warning: ")) return;
     clear();
     const std::lock_guard lock(drawing_);
     print_to_stderr(std::string(line) + "\n");

@@ -20,6 +20,7 @@ public:
     void begin(std::string_view what, double total) override;
     void advance(double units) override;
     void skip(double units) override;
+    /// Silent, it shows only lines that begin with "warning: ".
     void log(std::string_view line) override;
     /// Removes the bar from the terminal.
     void clear();

@@ -157,6 +157,7 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
         run.plan.references = beside.references;
         run.engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         run.prepared = look(run.plan, run.engine);
+        log_warnings(run.plan, *run.prepared, monitor);
         const Stopwatch start;
         add_references(run.plan, *run.prepared, run.engine, monitor);
         monitor.check();
@@ -195,19 +196,21 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
 /// Writes metrics.json, metrics.csv, junit.xml, films/*.exr and `more`, all at once; only the program writes plates.
 void write_folder(
     const RunResult& r, const std::string& folder, const std::vector<std::pair<std::string, nb::bytes>>& more) {
-    ProgressMonitor monitor;
-    const Work here(&monitor);
-    Staging staging(folder);
-    staging.write("metrics.json", r.json);
-    staging.write("metrics.csv", r.csv);
-    staging.write("junit.xml", r.junit);
-    std::map<std::string, std::vector<std::pair<std::string, const Film*>>> files;
-    for (const auto& [key, film] : r.films)
-        files[film_file(key.arm, key.s, r.s)].emplace_back(fmt::format("n={}", key.n), &film);
-    for (const auto& [name, bytes] : more)
-        staging.write(name, std::span(static_cast<const unsigned char*>(bytes.data()), bytes.size()));
-    for (const auto& [name, parts] : files) write_exr(staging.path("films/" + name + ".exr"), parts, r.attributes);
-    staging.commit(monitor);
+    PolledMonitor monitor;
+    Raised raised(monitor);
+    watched(monitor, raised, nb::none(), true, [&] {
+        Staging staging(folder);
+        staging.write("metrics.json", r.json);
+        staging.write("metrics.csv", r.csv);
+        staging.write("junit.xml", r.junit);
+        std::map<std::string, std::vector<std::pair<std::string, const Film*>>> files;
+        for (const auto& [key, film] : r.films)
+            files[film_file(key.arm, key.s, r.s)].emplace_back(fmt::format("n={}", key.n), &film);
+        for (const auto& [name, bytes] : more)
+            staging.write(name, std::span(static_cast<const unsigned char*>(bytes.data()), bytes.size()));
+        for (const auto& [name, parts] : files) write_exr(staging.path("films/" + name + ".exr"), parts, r.attributes);
+        staging.commit(monitor);
+    });
 }
 
 /// Returns the metrics whose values are integers.

@@ -22,6 +22,17 @@ void look_around(PolledMonitor& monitor, Raised& raised, const nb::object& progr
     } catch (...) { raised.keep(); }
 }
 
+/// Warnings become those of Python, which may raise them.
+void show_warnings(PolledMonitor& monitor, Raised& raised) {
+    constexpr std::string_view begin = "warning: ";
+    try {
+        for (const std::string& line : monitor.take_lines()) {
+            if (!line.starts_with(begin)) continue;
+            if (PyErr_WarnEx(PyExc_UserWarning, line.substr(begin.size()).c_str(), 2) != 0) throw nb::python_error();
+        }
+    } catch (...) { raised.keep(); }
+}
+
 }  // namespace
 
 void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress, bool on_this_thread,
@@ -37,6 +48,7 @@ void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress,
             guarded();
         }
         look_around(monitor, raised, progress);
+        show_warnings(monitor, raised);
         return raised.throw_again();
     }
     std::mutex lock;
@@ -63,6 +75,7 @@ void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress,
         worker.join();
     }
     look_around(monitor, raised, progress);
+    show_warnings(monitor, raised);
     raised.throw_again();
 }
 

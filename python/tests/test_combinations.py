@@ -32,6 +32,12 @@ def agrees(measured, arm, n):
     return abs(film.y.sum(dtype=float) - reference.sum(dtype=float)) < 4 * error
 
 
+def test_a_run_warns_of_weights_of_mis_that_lose_light():
+    e = with_samplers(both=crescent.mis("cosine", "light-area", weights=[0.5, 0.5]))
+    with pytest.warns(UserWarning, match="both: 'light-area' has MIS weight where its density is 0"):
+        crescent.run(e)
+
+
 def test_mis_of_a_sampler_in_python_with_the_lights_agrees_with_the_reference():
     e = with_samplers(mine=MINE)
     e.samplers["both"] = crescent.mis("mine", "cosine", "light-area", heuristic="power")

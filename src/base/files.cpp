@@ -425,7 +425,9 @@ void Staging::finish() {
     if (!is_there(fresh_outputs) && !is_there(old)) {
         remove_entry(work_ / "one-by-one");
         remove_entry(work_ / "moving");
-    } else messages_.push_back(fmt::format("not all of the earlier outputs could be removed: see {}", work_.string()));
+    } else
+        messages_.push_back(
+            fmt::format("warning: not all of the earlier outputs could be removed: see {}", work_.string()));
 }
 
 /// Makes new/ the folder OUT by one rename or exchange, else by two; returns false if OUT is unchanged.
@@ -486,7 +488,7 @@ bool Staging::keep_aside(const Path& from, const Path& name) {
     const Path backup = free_backup_name(out_ / name);
     if (!move_to(from, backup)) return false;
     messages_.push_back(fmt::format(
-        "{}/{} was not written by crescent: it is now {}", shown_, name.string(), backup.filename().string()));
+        "warning: {}/{} was not written by crescent: it is now {}", shown_, name.string(), backup.filename().string()));
     return true;
 }
 

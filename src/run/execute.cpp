@@ -16,6 +16,7 @@
 #include "render/kernel.h"
 #include "render/reference/reference.h"
 #include "run/checkpoint.h"
+#include "run/mis_warnings.h"
 #include "run/plan.h"
 
 namespace crescent {
@@ -188,6 +189,10 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
     if (can_keep_points(plan, out.scene, available_memory())) view.keep_points();
     out.views = views_at(view, plan.exponents);
     return out;
+}
+
+void log_warnings(const RunPlan& plan, const Prepared& prepared, ProgressMonitor& monitor) {
+    for (const std::string& line : mis_warnings(plan.experiment, prepared.outside)) monitor.log(line);
 }
 
 void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor) {

@@ -58,6 +58,8 @@ std::vector<std::uint64_t> count_in_view(const Experiment& experiment, const Sha
 /// Prepares what the camera sees, and the samplers that are not built in. Throws InputError if it sees nothing,
 /// OutputError if memory is insufficient or a sampler does not start.
 Prepared look(const RunPlan& plan, const Engine& engine = {});
+/// Logs a warning for each arm whose films will be wrong although they can be made: weights of MIS that lose light.
+void log_warnings(const RunPlan& plan, const Prepared& prepared, ProgressMonitor& monitor);
 /// Adds the references that the experiment requests, unless the plan has none.
 void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor);
 /// Does both steps.

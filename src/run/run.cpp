@@ -15,7 +15,6 @@
 #include "base/progress.h"
 #include "run/checkpoint.h"
 #include "run/execute.h"
-#include "run/mis_warnings.h"
 #include "run/plan.h"
 
 namespace crescent {
@@ -105,7 +104,7 @@ RunResult run(const Experiment& experiment, const RunOptions& options, ProgressM
     const RunPlan plan = plan_of(experiment, options);
     if (options.parts.draws()) check_font(plan.experiment);
     Prepared prepared = look(plan, engine);
-    for (const std::string& line : mis_warnings(plan.experiment, prepared.outside)) monitor.log(line);
+    log_warnings(plan, prepared, monitor);
     Staging staging(out);
     staging.expect(outputs_of(plan, options.parts));
     std::optional<Checkpoint> checkpoint;  // a program may draw differently in the next run
@@ -125,7 +124,9 @@ RunResult run(const Experiment& experiment, const RunOptions& options, ProgressM
 Measured measure_in_memory(const Experiment& experiment, const RunOptions& options, ProgressMonitor& monitor) {
     const Engine engine = engine_of(options);
     const RunPlan plan = plan_of(experiment, options);
-    return measured(plan, look(plan, engine), engine, options, monitor, nullptr);
+    Prepared prepared = look(plan, engine);
+    log_warnings(plan, prepared, monitor);
+    return measured(plan, std::move(prepared), engine, options, monitor, nullptr);
 }
 
 }  // namespace crescent

@@ -7,6 +7,20 @@ expect 0 "$CRESCENT" run "$tiny" --quiet
 [ -f out/tiny/metrics.json ] || die "the default folder is not out/ and the file's name"
 awk 'length > 80 { exit 1 }' printed || die "the summary is wider than 80 columns"
 
+# What makes a film wrong is said all the same.
+sed '/^\[arms.uniform\]/,$d' "$tiny" >lossy.toml
+cat >>lossy.toml <<'TOML'
+[arms.both]
+kind = "mis"
+of = ["phong", "light-area"]
+weights = [0.5, 0.5]
+n = 4
+[regions.all]
+box = [0, 0, 95, 53]
+TOML
+expect 0 "$CRESCENT" run lossy.toml --quiet --only metrics
+[ "$(wc -l <said)" -eq 1 ] && grep -q "^warning: both: .*MIS weight where its density is 0" said || die "--quiet: $(cat said)"
+
 expect 0 "$CRESCENT" run "$tiny" --out lines
 [ -s said ] || die "no progress in a log"
 grep -q $'[\r\e]' said && die "a log has terminal codes in it: $(cat -v said)"
