@@ -49,7 +49,7 @@ if(CRESCENT_FUZZ)
   if(NOT CRESCENT_SANITIZE OR NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
     message(FATAL_ERROR "CRESCENT_FUZZ needs clang and CRESCENT_SANITIZE: cmake --preset sanitize has both")
   endif()
-  set(crescent_fuzzed base scene experiment compare run)  # counts what it covers; where no fuzzer listens, ASan's runtime ignores it
+  set(crescent_fuzzed base images scene experiment compare report run)  # counts what it covers; where no fuzzer listens, ASan's runtime ignores it
 endif()
 
 # Headers used by nearly every file: parsing them takes two thirds of the compile time. Libraries with equal lists and
