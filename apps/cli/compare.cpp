@@ -169,17 +169,19 @@ int compare(const CompareFlags& flags) {
         return print(flags.schema_as_json ? compare_schema_json() : compare_schema_text() + "\n" + suite_schema_text()),
                passed;
     const bool folders = !flags.baseline.empty() || !flags.candidate.empty();
-    if (folders || flags.makes_renders() || (!flags.file.empty() && is_suite(flags.file))) return compare_suite(flags);
-    forbid_suite_flags(flags);
-    if (flags.file.empty() && flags.arms.empty())
-        throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
-    const std::string out = flags.out.empty() ? "out/compare" : flags.out, junit = out + "/junit.xml";
+    const std::string out = flags.out.empty() ? "out/compare" : flags.out;
+    std::string junit = flags.junit;
     try {
+        if (folders || flags.makes_renders() || (!flags.file.empty() && is_suite(flags.file)))
+            return compare_suite(flags);
+        forbid_suite_flags(flags);
+        if (flags.file.empty() && flags.arms.empty())
+            throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
+        std::error_code ignored;  // that of an earlier call says nothing about this one
+        if (std::filesystem::is_regular_file(out + "/junit.xml", ignored)) junit = out + "/junit.xml";
         return compare_arms(flags, out);
     } catch (const Interrupted&) { throw; } catch (const std::exception& e) {
-        std::error_code ignored;  // that of an earlier call says nothing about this one
-        const bool is_stale = std::filesystem::is_regular_file(junit, ignored);
-        report_failure(is_stale ? junit : "", flags.sarif, flags.file, e);
+        report_failure(junit, flags.sarif, flags.file, e);
         throw;
     }
 }

@@ -172,15 +172,10 @@ void report_failure(
 int compare_suite(const CompareFlags& flags) {
     forbid_other_flags(flags);
     keep_freed_memory();
-    try {
-        if (!flags.accept) return test_suite(flags);
-        Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
-        const StopOnSignal stop(progress);
-        return accept_suite(flags, progress);
-    } catch (const Interrupted&) { throw; } catch (const std::exception& e) {
-        report_failure(flags.junit, flags.sarif, flags.file, e);
-        throw;
-    }
+    if (!flags.accept) return test_suite(flags);
+    Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
+    const StopOnSignal stop(progress);
+    return accept_suite(flags, progress);
 }
 
 }  // namespace crescent::cli

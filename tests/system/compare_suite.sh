@@ -167,6 +167,12 @@ rm out/same-9.pfm out/few-9.pfm
 cp all.xml stale.xml
 bad "did you mean 'alpha'?" wrong-key.toml --junit stale.xml --out nowhere
 grep -q '<error' stale.xml && ! grep -q 'name="same"' stale.xml || die "the JUnit file of an earlier call stayed"
+printf '[suite\n' >broken.toml
+for file in absent.toml broken.toml; do
+    cp all.xml stale.xml
+    bad "$file" "$file" --junit stale.xml --out nowhere
+    grep -q '<error' stale.xml && grep -q "$file" stale.xml || die "$file: the JUnit file of an earlier call stayed"
+done
 
 # So does a SARIF file, which names the line; one of arms too.
 bad "did you mean 'alpha'?" wrong-key.toml --sarif stale.sarif --out nowhere
