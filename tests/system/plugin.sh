@@ -51,7 +51,7 @@ told() {
 told 'plugin = "libnowhere.so"' 3 "the arm 'mine' does not start: cannot open the plugin"
 told 'plugin = "mine.toml"' 3 "cannot open the plugin"
 mkfifo pipe.so
-told 'plugin = "pipe.so"' 3 "pipe.so: expected a regular file"
+told 'plugin = "pipe.so"' 2 "arms.mine.plugin: expected a regular file"
 expect 3 "$CRESCENT" check --plugin ./pipe.so --quiet
 told 'exec = "./nowhere"' 2 "arms.mine.exec: the shell cannot start"
 told 'exec = "read hello; echo hello 2 x; exit 3"' 3 "exit code 3"
