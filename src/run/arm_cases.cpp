@@ -28,14 +28,20 @@ namespace {
 /// The shading points of one pixel.
 using Point = std::shared_ptr<const ShadingPoints>;
 
+SurfaceSetup surface_at(const ShadingPoints& point) {
+    const bool has_lobe = point.lobe >= 0;
+    return {.lobe = has_lobe ? static_cast<LobeKind>(point.lobe) : LobeKind::none,
+        .rho_d = double(point.diffuse[0]),
+        .rho_s = has_lobe ? point.rho_s_exact[0] : 0,
+        .s = double(point.s[0]),
+        .alpha = double(point.alpha[0])};
+}
+
 /// What all samplers at one point share: f of its surface.
 class AtPoint : public InProcessAdapter {
 public:
     AtPoint(std::string name, Point point, bool limited)
-        : name_(std::move(name)), point_(std::move(point)), limited_(limited) {
-        surface_ = {point_->lobe < 0 ? LobeKind::none : static_cast<LobeKind>(point_->lobe), double(point_->diffuse[0]),
-            point_->lobe < 0 ? 0 : point_->rho_s_exact[0], double(point_->s[0]), double(point_->alpha[0])};
-    }
+        : name_(std::move(name)), point_(std::move(point)), surface_(surface_at(*point_)), limited_(limited) {}
     std::string name() const override { return name_; }
     bool limited() const override { return limited_; }
     bool has_f() const override { return true; }
@@ -325,6 +331,7 @@ private:
         if (lobe && lobe->parameter == LobeParameter::s) t.parameters.emplace_back("s", double(point->s[0]));
         if (lobe && lobe->parameter == LobeParameter::alpha)
             t.parameters.emplace_back("alpha", double(point->alpha[0]));
+        t.surface = surface_at(*point);
         t.light = lighting_at(scene_, *point);
         for (const char* peer : {"uniform", "cosine"}) {
             if (sampler_ == peer) continue;

@@ -157,17 +157,7 @@ double brdf_value(const SurfaceSetup& f, Vec3d wo, Vec3d wi) {
 
 std::shared_ptr<const SamplerAdapter> sampler_on(const std::string& name, const CheckCase& check_case) {
     CaseSetup on;
-    const auto value = [&](const char* key, double& to) {
-        for (const auto& [known, v] : check_case.parameters)
-            if (known == key) to = v;
-    };
-    value("s", on.surface.s);
-    value("alpha", on.surface.alpha);
-    on.surface.rho_d = check_case.brdf.empty() || check_case.brdf.starts_with("Lambert") ? 0.5 : 0;
-    for (const LobeInfo& lobe : lobe_infos())
-        if (check_case.brdf == lobe.label || check_case.brdf == "Lambert + " + std::string(lobe.label))
-            on.surface.lobe = lobe.kind;
-    on.surface.rho_s = on.surface.lobe == LobeKind::none ? 0 : 0.4;
+    on.surface = check_case.surface;
     on.light = check_case.light;
     return make_adapter(name, on, check_case.wo);
 }
@@ -209,6 +199,7 @@ CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std
     t.azimuth_deg = azimuth;
     if (setup.has_s) t.parameters.emplace_back("s", setup.surface.s);
     if (setup.has_alpha) t.parameters.emplace_back("alpha", setup.surface.alpha);
+    t.surface = setup.surface;
     t.light = setup.light;
     t.adapter = std::move(adapter);
     return t;

@@ -13,13 +13,6 @@
 
 namespace crescent {
 
-/// The surface of a case.
-struct SurfaceSetup {
-    LobeKind lobe = LobeKind::none;
-    double rho_d = 0, rho_s = 0;
-    double s = 32, alpha = 0.3;
-};
-
 /// f of the surface, 1/sr, without the cosine.
 double brdf_value(const SurfaceSetup& surface, Vec3d wo, Vec3d wi);
 

@@ -68,6 +68,11 @@ TEST(CasesAgainst, HaveTheSurfaceOfTheOther) {
     double f = 0;
     cosine->f({&at, 1}, {&f, 1});
     EXPECT_NEAR(f, brdf_value({lobe_named("phong"), 0.5, 0.4, 20, 0}, at.wo, at.wi), 1e-9);
+    CaseSetup bright = case_setup(LobeKind::none, true, "fill", 20);
+    bright.surface.rho_d = 0.9;
+    const CheckCase c = make_case_on(bright, 40, 10, "made", nullptr);
+    sampler_on("cosine", c)->f({&at, 1}, {&f, 1});
+    EXPECT_NEAR(f, 0.9 / pi, 1e-9);
     FunctionSampler owner;
     owner.f_value = check::lambert(0.25);
     CheckCase user = a;

@@ -11,6 +11,7 @@
 #include "check/sources/case_lighting.h"
 #include "samplers/info.h"
 #include "samplers/sampler_adapter.h"
+#include "scene/lobes/all.h"
 
 namespace crescent {
 
@@ -23,6 +24,13 @@ std::string place_text(const Traits& traits, Vec3d w);
 /// Adds the device of a sampler, if it names one that is not in the list.
 void add_device(const std::string& arm, const SamplerAdapter& sampler, DevicesByArm& to);
 
+/// The surface of a case: f = rho_d / pi + rho_s lobe.
+struct SurfaceSetup {
+    LobeKind lobe = LobeKind::none;
+    double rho_d = 0, rho_s = 0;
+    double s = 32, alpha = 0.3;
+};
+
 /// Named parameter values, in the order in which they are printed.
 using Parameters = std::vector<std::pair<std::string, double>>;
 
@@ -32,6 +40,7 @@ struct CheckCase {
     Vec3d wo{};
     double theta_deg = 0, azimuth_deg = 0;
     Parameters parameters;
+    SurfaceSetup surface{.rho_d = 0.5};  // on which a built-in sampler draws
     CaseLighting light;
     ExpectedBehaviour theory;
     bool baseline = false;  // used only for ranks of efficiency
