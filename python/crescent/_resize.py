@@ -42,12 +42,12 @@ def _scaled(ends: Sequence[int], old: int, new: int, scale: float) -> tuple[int,
     return max(first, 0), min(max(round(high) - 1, first), new - 1)
 
 
-def resize_hint(before: Mapping[str, Any], changed: Source, error: str) -> str:
+def resize_hint(before: Mapping[str, Any], changed: Source, kinds: Sequence[str]) -> str:
     """How to change the size of the picture together with its boxes, if only these are wrong; else nothing."""
     old, new = before["image"], changed.tree().get("image", {})
     if not isinstance(new, Mapping):
         return ""
     sizes = [(image.get("width"), image.get("height")) for image in (old, new)]
-    if sizes[0] == sizes[1] or not all("expected a box on the image" in line for line in error.splitlines()):
+    if sizes[0] == sizes[1] or set(kinds) != {"box off image"}:
         return ""
     return f"e.resize({sizes[1][0]}, {sizes[1][1]}) also scales regions and crops"

@@ -125,10 +125,18 @@ _ROUNDS = 4  # of messages: each names the tables that became wrong by the remov
 _MEASURED = ("plates", "assertions", "furnaces", "regions")  # they need others, and no scene needs them
 
 
-def _in_message(tree: Mapping[str, Any], message: str) -> list[Steps]:
-    """The tables that a message finds wrong."""
+def mistakes_of(error: ValueError) -> list[tuple[str, str]]:
+    """The kind and the path of each mistake in an experiment that the core found; none of another error."""
+    return list(getattr(error, "mistakes", ()))
+
+
+def _wrong_tables(tree: Mapping[str, Any], error: ValueError) -> list[Steps]:
+    """The tables that an error finds wrong."""
+    paths = [path for _, path in mistakes_of(error)]
     named = [(family, name) for family in _MEASURED for name in tree.get(family, {})]
-    return [steps for steps in named if f": {'.'.join(steps)}." in message or f": {path_of(steps)}." in message]
+    return [
+        steps for steps in named if any(path.startswith((f"{'.'.join(steps)}.", f"{path_of(steps)}.")) for path in paths)
+    ]
 
 
 def taken_out(
@@ -148,7 +156,7 @@ def taken_out(
             break
         except ValueError as error:
             remains = error
-            wrong = [steps for steps in _in_message(before.tree(), str(error)) if steps not in needed]
+            wrong = [steps for steps in _wrong_tables(before.tree(), error) if steps not in needed]
             if not wrong:
                 raise
             needed += wrong

@@ -34,7 +34,7 @@ from ._paths import found, inside, nearest_key, overrides, path_of, quoted, step
 from ._progress import bar
 from ._resize import resize_hint, resized
 from ._sampler import whole
-from ._source import Source, taken_out
+from ._source import Source, mistakes_of, taken_out
 from ._summaries import Summary
 
 Progress = Callable[[str, float, float], None]
@@ -218,12 +218,13 @@ class Experiment:
         try:
             source, core, removed = taken_out(source, lost, self._source)
         except ValueError as error:
-            if "no key or name" in str(error):
+            kinds = [kind for kind, _ in mistakes_of(error)]
+            if "unknown name" in kinds or "misspelt name" in kinds:
                 near = [nearest_key(self._tree(), steps_of(path)[-1]) for path in changes]
                 hint = f"did you mean {' or '.join(map(repr, filter(None, near)))}?" if any(near) else ""
-                hint = "" if "did you mean" in str(error) else hint
+                hint = "" if "misspelt name" in kinds else hint
             else:
-                hint = resize_hint(self._tree(), source, str(error))
+                hint = resize_hint(self._tree(), source, kinds)
             raise (ValueError(f"{error}\n{hint}") if hint else error) from None
         return Experiment(core, self.samplers, source), [path_of(steps) for steps in removed]
 

@@ -22,8 +22,12 @@ std::string to_string(const SourceLocation& place);
 
 /// One mistake in the input: where, and what was expected.
 struct Diagnostic {
+    /// Mistakes for which a front end knows a remedy in its own terms.
+    enum class Kind { other, unknown_name, misspelt_name, box_off_image };
     SourceLocation at;
     std::string message;
+    Kind kind = Kind::other;
+    std::string path{};  // of the key or the table in an experiment
 };
 
 /// The input is wrong. Contains every mistake found, in file order.

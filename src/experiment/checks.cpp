@@ -52,7 +52,8 @@ void check_box_on_image(ParseContext& context, const std::string& path, const Bo
     if (box.x0 >= 0 && box.y0 >= 0 && box.x1 < image.width && box.y1 < image.height) return;
     context.report(path,
         fmt::format("{}: expected a box on the image, x from 0 to {} and y from 0 to {}, found [{}, {}, {}, {}]", path,
-            image.width - 1, image.height - 1, box.x0, box.y0, box.x1, box.y1));
+            image.width - 1, image.height - 1, box.x0, box.y0, box.x1, box.y1),
+        Diagnostic::Kind::box_off_image);
 }
 
 /// Checks the parameters of a kind against each other, if all of them could be read.

@@ -92,7 +92,9 @@ public:
     }
 
 private:
-    void fail(const std::string& message) { draft_.report(written_, place_, message); }
+    void fail(const std::string& message, Diagnostic::Kind kind = Diagnostic::Kind::other) {
+        draft_.report(written_, place_, message, kind);
+    }
 
     /// Parses a value as TOML if it is TOML, else as bare text.
     bool parse_value(const std::string& text, Node& value) {
@@ -135,11 +137,14 @@ private:
             return fail(fmt::format("'{}' is ambiguous: expected {}.{} or {}.{}", written_, valid[0][0], written_,
                        valid[1][0], written_)),
                    false;
-        if (valid.empty() && !top && paths.empty())
-            return fail(fmt::format(
-                       "no key or name '{}': expected a key of the schema or the name of a shape, disk, arm, ...{}",
-                       path[0], hint(path[0], words))),
-                   false;
+        if (valid.empty() && !top && paths.empty()) {
+            const std::string near = hint(path[0], words);
+            fail(fmt::format(
+                     "no key or name '{}': expected a key of the schema or the name of a shape, disk, arm, ...{}",
+                     path[0], near),
+                near.empty() ? Diagnostic::Kind::unknown_name : Diagnostic::Kind::misspelt_name);
+            return false;
+        }
         if (!valid.empty()) path = valid[0];
         else if (!top) path = paths[0];  // the parser reports what is wrong with its key
         return true;

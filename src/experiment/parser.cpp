@@ -14,13 +14,14 @@
 
 namespace crescent {
 
-void ParseContext::report(const std::string& path, const SourceLocation& place, const std::string& message) {
-    diagnostics.push_back({place, message});
+void ParseContext::report(
+    const std::string& path, const SourceLocation& place, const std::string& message, Diagnostic::Kind kind) {
+    diagnostics.push_back({.at = place, .message = message, .kind = kind, .path = path});
     invalid_paths.insert(path);
 }
 
-void ParseContext::report(const std::string& path, const std::string& message) {
-    report(path, e.place_of(path), message);
+void ParseContext::report(const std::string& path, const std::string& message, Diagnostic::Kind kind) {
+    report(path, e.place_of(path), message, kind);
 }
 
 // ---- Walks the table over the tree: which tables and keys there are, which are missing, the type of each value.

@@ -59,8 +59,9 @@ struct ParseContext {
     std::set<std::string> invalid_paths;  // paths whose values cannot be used
     std::vector<Reference> references;
 
-    void report(const std::string& path, const std::string& message);
-    void report(const std::string& path, const SourceLocation& place, const std::string& message);
+    void report(const std::string& path, const std::string& message, Diagnostic::Kind kind = Diagnostic::Kind::other);
+    void report(const std::string& path, const SourceLocation& place, const std::string& message,
+        Diagnostic::Kind kind = Diagnostic::Kind::other);
     bool is_valid(const std::string& path) const { return !invalid_paths.contains(path); }
 };
 
