@@ -89,7 +89,12 @@ void Progress::draw() {
 }
 
 void Progress::log(std::string_view line) {
-    if (style_ == Style::silent && !line.starts_with("warning: ")) return;
+    if (style_ != Style::silent) print_line(line);
+}
+
+void Progress::warn(std::string_view line) { print_line("warning: " + std::string(line)); }
+
+void Progress::print_line(std::string_view line) {
     clear();
     const std::lock_guard lock(drawing_);
     print_to_stderr(std::string(line) + "\n");

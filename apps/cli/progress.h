@@ -20,8 +20,9 @@ public:
     void begin(std::string_view what, double total) override;
     void advance(double units) override;
     void skip(double units) override;
-    /// Silent, it shows only lines that begin with "warning: ".
     void log(std::string_view line) override;
+    /// Shown by a silent one too.
+    void warn(std::string_view line) override;
     /// Removes the bar from the terminal.
     void clear();
 
@@ -32,6 +33,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void draw();
+    void print_line(std::string_view line);
     double seconds() const;
 
     Style style_;

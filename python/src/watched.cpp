@@ -24,12 +24,9 @@ void look_around(PolledMonitor& monitor, Raised& raised, const nb::object& progr
 
 /// Warnings become those of Python, which may raise them.
 void show_warnings(PolledMonitor& monitor, Raised& raised) {
-    constexpr std::string_view begin = "warning: ";
     try {
-        for (const std::string& line : monitor.take_lines()) {
-            if (!line.starts_with(begin)) continue;
-            if (PyErr_WarnEx(PyExc_UserWarning, line.substr(begin.size()).c_str(), 2) != 0) throw nb::python_error();
-        }
+        for (const std::string& line : monitor.take_warnings())
+            if (PyErr_WarnEx(PyExc_UserWarning, line.c_str(), 2) != 0) throw nb::python_error();
     } catch (...) { raised.keep(); }
 }
 

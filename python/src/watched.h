@@ -33,7 +33,7 @@ private:
 
 /// Calls `work` without the interpreter's lock. on_this_thread: for callables that require the caller's thread; else in
 /// a thread of its own, while this one checks for Ctrl-C and calls progress(what, done, total) several times a second.
-/// Lines of the log that begin with "warning: " become warnings of Python.
+/// Warnings of the work become warnings of Python.
 void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress, bool on_this_thread,
     const std::function<void()>& work);
 

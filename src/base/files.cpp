@@ -388,8 +388,8 @@ void Staging::commit(ProgressMonitor& monitor) {
     moving_ = false;
     monitor.outputs = Outputs::complete;
     names_.clear();
-    for (const std::string& line : messages_) monitor.log(line);
-    messages_.clear();
+    for (const std::string& line : warnings_) monitor.warn(line);
+    warnings_.clear();
 }
 
 /// Makes a second name in new/ for each file of the user next to the outputs; what cannot be linked is moved later.
@@ -425,9 +425,7 @@ void Staging::finish() {
     if (!is_there(fresh_outputs) && !is_there(old)) {
         remove_entry(work_ / "one-by-one");
         remove_entry(work_ / "moving");
-    } else
-        messages_.push_back(
-            fmt::format("warning: not all of the earlier outputs could be removed: see {}", work_.string()));
+    } else warnings_.push_back(fmt::format("not all of the earlier outputs could be removed: see {}", work_.string()));
 }
 
 /// Makes new/ the folder OUT by one rename or exchange, else by two; returns false if OUT is unchanged.
@@ -487,8 +485,8 @@ void Staging::clear(const Path& old, const Path& below, const Names& ours, const
 bool Staging::keep_aside(const Path& from, const Path& name) {
     const Path backup = free_backup_name(out_ / name);
     if (!move_to(from, backup)) return false;
-    messages_.push_back(fmt::format(
-        "warning: {}/{} was not written by crescent: it is now {}", shown_, name.string(), backup.filename().string()));
+    warnings_.push_back(fmt::format(
+        "{}/{} was not written by crescent: it is now {}", shown_, name.string(), backup.filename().string()));
     return true;
 }
 

@@ -73,7 +73,7 @@ private:
     Path out_, work_;             // absolute, links followed
     std::shared_ptr<void> lock_;  // its destruction removes an empty work folder
     bool moving_ = false;         // outputs are being moved to their places
-    Names names_, messages_, adopted_;
+    Names names_, warnings_, adopted_;
 };
 
 /// For tests: a function called before each change that moves outputs, and missing features of the file system.

@@ -33,6 +33,8 @@ public:
     virtual void skip(double /*units*/) {}
     /// A line for the log.
     virtual void log(std::string_view /*line*/) {}
+    /// A line that the user needs although the work goes on: what will be wrong, lost or moved aside.
+    virtual void warn(std::string_view line) { log("warning: " + std::string(line)); }
 
     /// Polled by kernels; set from a signal handler.
     std::atomic<bool> stop{false};
@@ -66,6 +68,12 @@ public:
         return std::exchange(lines_, {});
     }
 
+    /// Returns the warnings since the last call, which are among the lines too; from any thread.
+    std::vector<std::string> take_warnings() {
+        const Guard guard(lock_);
+        return std::exchange(warnings_, {});
+    }
+
     void begin(std::string_view what, double total) override {
         const Guard guard(lock_);
         state_ = {std::string(what), 0, total};
@@ -82,11 +90,16 @@ public:
         const Guard guard(lock_);
         lines_.emplace_back(line);
     }
+    void warn(std::string_view line) override {
+        ProgressMonitor::warn(line);
+        const Guard guard(lock_);
+        warnings_.emplace_back(line);
+    }
 
 private:
     mutable Mutex lock_;
     State state_;
-    std::vector<std::string> lines_;
+    std::vector<std::string> lines_, warnings_;
 };
 
 // ---- Elapsed wall-clock time, in seconds.

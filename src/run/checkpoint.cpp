@@ -107,9 +107,9 @@ void Checkpoint::read(const Experiment& experiment) {
     if (!bytes) return;
     CheckpointContent content = read_items(*bytes, key_, experiment);
     if (content.bytes < bytes->size())
-        monitor_.log(fmt::format(
-            "warning: the checkpoint {} is incomplete or damaged from byte {} on: what it held there is computed again",
-            file_, content.bytes));
+        monitor_.warn(fmt::format(
+            "the checkpoint {} is incomplete or damaged from byte {} on: what it held there is computed again", file_,
+            content.bytes));
     if (!content.has_key) {
         fs::remove(file_, ignored);
         return;
@@ -148,9 +148,8 @@ void Checkpoint::add(const std::vector<RunMetrics>& metrics) {
         written_ = metrics_.size();
         return;
     }
-    monitor_.log(
-        fmt::format("warning: cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", file_,
-            std::strerror(errno)));
+    monitor_.warn(fmt::format("cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", file_,
+        std::strerror(errno)));
     fs::remove(file_, ignored);
     disabled_ = true;
 }

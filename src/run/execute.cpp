@@ -192,7 +192,7 @@ Prepared look(const RunPlan& plan, const Engine& engine) {
 }
 
 void log_warnings(const RunPlan& plan, const Prepared& prepared, ProgressMonitor& monitor) {
-    for (const std::string& line : mis_warnings(plan.experiment, prepared.outside)) monitor.log(line);
+    for (const std::string& line : mis_warnings(plan.experiment, prepared.outside)) monitor.warn(line);
 }
 
 void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor) {

@@ -37,7 +37,7 @@ std::vector<std::string> mis_warnings(const Experiment& experiment, const Extern
         }
         if (sampler == 0) continue;
         out.push_back(fmt::format(
-            "warning: {}: '{}' has MIS weight where its density is 0: at {:.3g} % of the directions the weights of the "
+            "{}: '{}' has MIS weight where its density is 0: at {:.3g} % of the directions the weights of the "
             "samplers that draw there sum to less than 1, down to {:.3g}. The image is too dark; a weight must be 0 "
             "where p is 0.",
             arm.name, arm.combination.of[static_cast<std::size_t>(sampler) - 1], 100 * lost / directions, least));
