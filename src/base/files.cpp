@@ -257,7 +257,7 @@ void Staging::complete(const Path& work) {
 bool Staging::take_lock() {
     const fs::path path = work_ / "lock";
     const std::lock_guard one_at_a_time(lock_mutex);
-    const OutputError in_use(fmt::format(
+    const FolderInUse in_use(fmt::format(
         "{} is in use by another run; wait for it{}", shown_, kind_ == "outputs" ? " or choose another --out" : ""));
     if (locked_here().contains(work_)) throw in_use;
     const std::vector<std::string> present = entries(work_);

@@ -25,12 +25,18 @@
 #include <utility>
 #include <vector>
 
+#include "base/errors.h"
 #include "base/progress.h"
 
 namespace crescent {
 
+/// Another run writes into the folder.
+struct FolderInUse : OutputError {
+    using OutputError::OutputError;
+};
+
 /// A folder of unfinished outputs. Nothing appears under a final name before commit(). Throws OutputError if something
-/// cannot be written, or if another process is writing into the same folder.
+/// cannot be written, FolderInUse if another process is writing into the same folder.
 class Staging {
 public:
     /// Resolves `folder` once: a later chdir does not move the outputs. Completes or clears the work of a killed run.

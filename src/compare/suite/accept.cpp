@@ -3,10 +3,13 @@
 #include "compare/suite/suite.h"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "base/files.h"
 #include "base/text.h"
@@ -323,6 +326,21 @@ void check_others(const Suite& suite, const std::vector<const SuiteView*>& accep
     throw_if_any(std::move(mistakes));
 }
 
+/// Waits for another call that accepts views of the same baseline.
+std::unique_ptr<Staging> stage_baseline(const std::string& folder, ProgressMonitor& monitor) {
+    constexpr std::chrono::milliseconds step(50), longest = std::chrono::minutes(10);
+    for (std::chrono::milliseconds waited(0);; waited += step) {
+        try {
+            return std::make_unique<Staging>(folder, "baseline");
+        } catch (const FolderInUse&) {
+            if (waited >= longest) throw;
+        }
+        if (waited.count() == 0) monitor.log(folder + " is in use by another run: waiting for it");
+        monitor.check();
+        std::this_thread::sleep_for(step);
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> accept_views(
@@ -330,13 +348,13 @@ std::vector<std::string> accept_views(
     const Suite before = read();
     const std::string folder = baseline_folder(before);
     wanted_views(before, acceptance);
-    Staging staging(folder, "baseline");
+    const std::unique_ptr<Staging> staging = stage_baseline(folder, monitor);
     const Suite suite = read();  // another call may have accepted views before this one had the lock
     if (baseline_folder(suite) != folder)
         throw InputError({suite.file, 0, 0}, "the suite file was changed while it was read");
     const std::vector<const SuiteView*> views = wanted_views(suite, acceptance);
     check_others(suite, views);
-    Accepting accepting(suite, acceptance, folder, staging);
+    Accepting accepting(suite, acceptance, folder, *staging);
     monitor.begin("accepting views", static_cast<double>(views.size()));
     for (const SuiteView* view : views) {
         monitor.check();

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <functional>
+#include <memory>
 #include <set>
 
 #include "base/files.h"
@@ -142,6 +143,22 @@ TEST_F(Accepting, TheBaselineIsReadAgainUnderTheLock) {
     EXPECT_THAT(baseline(),
         UnorderedElementsAre("a-0.exr", "a-1.exr", "b-0.exr", "b-1.exr", "baseline.json", ".crescent-baseline"));
     for (const ViewResult& each : compare().views) EXPECT_EQ(each.state, ViewState::same) << each.sentence;
+}
+
+TEST_F(Accepting, WaitsForAnotherCallOnTheSameBaseline) {
+    renders("out/a-", noise, 30, 2);
+    struct EndsTheOther : ProgressMonitor {
+        std::unique_ptr<Staging> other;
+        void log(std::string_view line) override {
+            EXPECT_THAT(std::string(line), HasSubstr("in use by another run"));
+            other.reset();
+        }
+    };
+    EndsTheOther monitor;
+    monitor.other = std::make_unique<Staging>(path("base"), "baseline");
+    accept_views([&] { return suite(); }, {{"a"}, "", "", ""}, monitor);
+    EXPECT_EQ(monitor.other, nullptr);
+    EXPECT_EQ(manifest()["views"].size(), 1u);
 }
 
 TEST_F(Accepting, ABaselineThatDiffersFromItsManifestIsUnreadable) {
