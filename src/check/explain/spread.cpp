@@ -239,15 +239,19 @@ std::optional<Cause> unreached_cause(std::span<const Place> places) {
         }
     }
     if (!worst) return {};
-    const double total = worst->at->integrals.sums[mass].value,
-                 part = total * least_reached.unreached / (least_reached.unreached + least_reached.reached);
+    const Integrals& integrals = worst->at->integrals;
+    const double share = least_reached.unreached / (least_reached.unreached + least_reached.reached),
+                 total = integrals.sums[mass].value;
+    const bool has_poles = integrals.unresolved.value > 0;  // where it integrates to more, perhaps to infinity
+    const std::string part = has_poles
+        ? fmt::format("{:.3g} % of it besides its poles", 100 * share)
+        : fmt::format("{:.3g} of the {:.3g} that it integrates to", total * share, total);
     return Cause{.factor = "unreached",
-        .exponent = part,
+        .exponent = total * share,
         .error = 0,
         .text = fmt::format(
-            "p is positive where no draw falls: {:.3g} of the {:.3g} that it integrates to{}. Combined with "
-            "another sampler by MIS the image is too dark.",
-            part, total, worst->where())};
+            "p is positive where no draw falls: {}{}. Combined with another sampler by MIS the image is too dark.",
+            part, worst->where())};
 }
 
 }  // namespace crescent::check

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "check/explain/causes.h"
+#include "math/functions.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {
@@ -38,6 +39,12 @@ TEST(PlacesOfDraws, MayNotCoverWherePIsPositive) {
     const auto draw = [](Vec3d, const PrimarySample& u) { return from_chart({0.05 * u[0], two_pi * u[1]}); };
     const Explained r = explained(made(draw, [density](Vec3d, Vec3d) { return density; }, 2, Traits::WoDomain::none));
     expect_cause(r, "unreached");
+    const auto with_pole = [density](Vec3d, Vec3d w) {
+        return w.z > 0.95 ? density : 1e-3 / math::pow(std::max(1 + w.z, 1e-30), 1.5);
+    };
+    const Explained infinite = explained(made(draw, with_pole, 2, Traits::WoDomain::none));
+    expect_cause(infinite, "unreached");
+    EXPECT_NE(infinite.text().find("besides its poles"), std::string::npos) << infinite.text();
 }
 
 TEST(PlacesOfDraws, ALeakOverTheSphereIsDistinguished) {
