@@ -104,6 +104,8 @@ std::string read_input(const std::string& path, std::size_t /*limit*/, std::stri
     throw InputError(
         {path, 0, 0}, "expected " + std::string(what) + " that can be read: there are no files in a browser");
 }
+bool is_no_regular_file(const std::string& /*path*/) { return false; }
+
 bool leads_out(const std::string& /*folder*/, const std::string& /*path*/) { return false; }
 std::shared_ptr<const RgbImage> texture_in_file(const std::string& path) { return web::image(path, why_no_texture_of); }
 

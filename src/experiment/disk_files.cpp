@@ -60,6 +60,12 @@ PacksInUse packs_in_use;
 
 }  // namespace
 
+bool is_no_regular_file(const std::string& path) {
+    std::error_code unknown;
+    const std::filesystem::file_status status = std::filesystem::status(path, unknown);
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
 bool leads_out(const std::string& folder, const std::string& path) {
     std::error_code error;
     const std::filesystem::path inside = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error),

@@ -99,9 +99,7 @@ std::string sampler_file_hashes(const Experiment& experiment) {
     for (const ArmPlan& arm : experiment.arms) {
         const std::string file = sampler_file(arm);
         if (file.empty()) continue;
-        std::error_code unknown;
-        const std::filesystem::file_status status = std::filesystem::status(file, unknown);
-        if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        if (is_no_regular_file(file)) {
             const std::string key = key_of_code(arm);
             throw InputError(experiment.place_of(key),
                 fmt::format("{}: expected a regular file, found something else at '{}'", key, file));

@@ -46,6 +46,9 @@ std::shared_ptr<const RgbImage> texture_in_file(const std::string& path);
 /// Whether a path below `folder` leads out of it by a link.
 bool leads_out(const std::string& folder, const std::string& path);
 
+/// Whether the path is that of a pipe, a device or a folder.
+bool is_no_regular_file(const std::string& path);
+
 // ---- The files of the samplers that an experiment names: shared libraries and Python files.
 
 /// FILE.py of "FILE.py" and "FILE.py:NAME"; "" for "module:NAME".
