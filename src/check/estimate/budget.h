@@ -99,9 +99,9 @@ inline constexpr double even_points = 0.2;
 inline constexpr double wider_side = 1.5;
 /// A point with this much mass indicates that the tree missed something: a typical point has 1 / 2^15.
 inline constexpr double heavy_point = 1e-3;
-/// The points of a leaf resolve p where one of them has at most this share of all p, or where p is at most so many times
-/// its mean in the leaf. Beyond, p may have a pole, such as p ~ d^(-1/2) at the rim of a sphere sampled by area: p^2 has
-/// no finite integral there, so points alone have no finite variance.
+/// The points of a leaf resolve p where one of them has at most this share of all p, or where p is at most so many
+/// times its mean in the leaf. Beyond, p may have a pole, such as p ~ d^(-1/2) at the rim of a sphere sampled by area:
+/// p^2 has no finite integral there, so points alone have no finite variance.
 inline constexpr double heaviest_point = 0x1p-9, far_above = 16;
 /// The tree is built a second time, from all points and draws so far, if the relative error of the integral of p with
 /// `regrow_points` points is above `regrow_from`. With fewer points, whose error decreases as 1 / n, the limit is

@@ -57,12 +57,10 @@ Sentences mass_sentences(const CheckAt& c, const Answer& a) {
             fmt::format("p is 0 at all {:.0f} points at which it is integrated, and {} % of the samples draw a "
                         "direction.",
                 c.integrals.points, crescent::figures(100 * drawn))}};
-    const char* where = has_poles(c) ? " elsewhere" : "";
     return {integral_of_p(c, a.expected, half),
         {"expected",
-            drawn > 1 - 1e-9
-                ? "Expected 1."
-                : fmt::format("Expected {:.6g}, the share of the samples that draw a direction{}.", drawn, where)}};
+            drawn > 1 - 1e-9 ? "Expected 1."
+                             : fmt::format("Expected {:.6g}, the share of the samples that draw a direction.", drawn)}};
 }
 
 /// The sum of h p over the leaves below a node.
