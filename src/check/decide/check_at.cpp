@@ -214,7 +214,7 @@ private:
     bool regrown() {
         const Estimate& claimed = first_.integrals.sums[mass];
         const double worse = regrow_from * regrow_points / first_.integrals.points;
-        const double error = std::sqrt(claimed.variance) + unresolved_error(first_.integrals, first_.observations);
+        const double error = std::sqrt(claimed.variance + first_.integrals.unresolved.variance);
         if (key_.stage != 1 || !(error > worse * std::max(claimed.value, 1e-3))) return false;
         std::vector<DensityPoint> hints = first_.integrals.heavy;
         const std::vector<DensityPoint>& drawn = first_.observations.unmet_at;

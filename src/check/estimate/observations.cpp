@@ -367,7 +367,7 @@ private:
         leaf.second += v[bridge] * v[bridge] / draws;
         add(leaf.bridge, v[bridge]);
         for (std::size_t q = 0; q < integrands; ++q)
-            if (q != mass || !at_pole) add(integrals_.sums[q], v[q]);
+            add(at_pole && q == mass ? integrals_.unresolved : integrals_.sums[q], v[q]);
     }
 };
 

@@ -242,9 +242,9 @@ std::optional<Cause> unreached_cause(std::span<const Place> places) {
     const Integrals& integrals = worst->at->integrals;
     const double share = least_reached.unreached / (least_reached.unreached + least_reached.reached),
                  total = integrals.sums[mass].value;
-    const bool has_poles = integrals.unresolved.value > 0;  // where it integrates to more, perhaps to infinity
-    const std::string part = has_poles
-        ? fmt::format("{:.3g} % of it besides its poles", 100 * share)
+    const bool is_partly_unresolved = integrals.unresolved.value > 0;  // it integrates to more, perhaps to infinity
+    const std::string part = is_partly_unresolved
+        ? fmt::format("{:.3g} % of it where its points resolve it", 100 * share)
         : fmt::format("{:.3g} of the {:.3g} that it integrates to", total * share, total);
     return Cause{.factor = "unreached",
         .exponent = total * share,

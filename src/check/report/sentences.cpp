@@ -37,15 +37,17 @@ Sentence empty_sentence(const DrawChecks& c, double mass) {
             crescent::listed(parts))};
 }
 
-/// Whether p is larger somewhere than its points resolve.
-bool has_poles(const CheckAt& c) { return c.observations.share_at_poles() > 0 || c.integrals.unresolved.value > 0; }
+/// Whether p is larger somewhere than its points resolve, as near a pole.
+bool is_partly_unresolved(const CheckAt& c) {
+    return c.observations.share_at_poles() > 0 || c.integrals.unresolved.value > 0;
+}
 
-/// The integral of p, without the neighbourhood of its poles if it has some.
+/// The integral of p where its points resolve it.
 Sentence integral_of_p(const CheckAt& c, double value, double half) {
     const std::string whole = with_error(value, half);
-    if (!has_poles(c)) return {"integral", fmt::format("p integrates to {}.", whole)};
+    if (!is_partly_unresolved(c)) return {"integral", fmt::format("p integrates to {}.", whole)};
     return {"integral",
-        fmt::format("p integrates to {} besides its poles, near which {} % of the draws are.", whole,
+        fmt::format("p integrates to {} where its points resolve it; {} % of the draws are elsewhere.", whole,
             crescent::figures(100 * c.observations.share_at_poles()))};
 }
 
