@@ -328,10 +328,7 @@ private:
         if (out_.wrong()) {
             out_.sizes = {};
             out_.inconclusive = false;
-            const Estimate& p = first_.integrals.sums[mass];
-            if (source_.has_density() && p.value > 0)
-                out_.sizes.integral =
-                    (half_interval(p) + unresolved_error(first_.integrals, first_.observations)) / p.value;
+            if (source_.has_density()) out_.sizes.integral = error_of_integral(first_.integrals, first_.observations);
         }
         out_.integrals = std::move(first_.integrals);
         out_.observations = std::move(first_.observations);

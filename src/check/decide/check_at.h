@@ -43,9 +43,9 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
 /// of a leak, that change is used.
 double worst_ratio(const Sizes& sizes);
 
-/// How well p is known near its poles, which the mass leaves out because no points resolve p there: the share of the
-/// draws there, or what the points hold if this is more; or by how much these may differ.
-double unresolved_error(const Integrals& integrals, const Observations& observations);
+/// The relative error of the integral of p, none if that is 0: half its interval where points resolve p, and elsewhere
+/// the share of the draws, or what the points hold if this is more; or by how much these may differ.
+std::optional<double> error_of_integral(const Integrals& integrals, const Observations& observations);
 
 /// Half the 95 % interval of an integral: Student's t with the degrees of freedom of its variance. Infinite if these
 /// are so few that the variance is not known at all.

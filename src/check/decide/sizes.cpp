@@ -575,9 +575,7 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
     const std::vector<SumTest> whole = whole_sums(e, level);
     const std::vector<NodeSums> sums = node_sums(e);
     const std::vector<NodeTest> nodes = node_tests(e, sums, level);
-    const Estimate& whole_p = e.integrals.sums[mass];
-    if (whole_p.value > 0)
-        out.integral = (half_interval(whole_p) + unresolved_error(e.integrals, e.observations)) / whole_p.value;
+    out.integral = error_of_integral(e.integrals, e.observations);
     for (const SumTest& t : whole)
         if (t.of == mass || t.of == bridge) take_less(out.constant, t.needed.size(e.integrals.sums[t.of].value));
     // No density is uniform over an infinite line, and powers of p per length are not those of p over the chart.
@@ -595,9 +593,12 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
     return out;
 }
 
-double unresolved_error(const Integrals& integrals, const Observations& o) {
-    const double drawn = o.share_at_poles(), held = integrals.unresolved.value;
-    return std::min(std::max(drawn, held), std::fabs(drawn - held) + half_interval(integrals.unresolved));
+std::optional<double> error_of_integral(const Integrals& integrals, const Observations& o) {
+    const Estimate& resolved = integrals.sums[mass];
+    if (!(resolved.value > 0)) return {};
+    const double drawn = o.share_unresolved(), held = integrals.unresolved.value;
+    const double rest = std::min(std::max(drawn, held), std::fabs(drawn - held) + half_interval(integrals.unresolved));
+    return (half_interval(resolved) + rest) / resolved.value;
 }
 
 double half_interval(const Estimate& integral) {

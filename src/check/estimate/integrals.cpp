@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "check/constants.h"
 #include "math/simd/frame.h"
@@ -235,7 +236,7 @@ private:
         bool lit = false;
         for (int j = 0; j < g.cells(); ++j, index += 2) {
             Values h[2];
-            double second[2], beyond[2];
+            double second[2], unresolved[2];
             for (std::size_t a = 0; a < 2; ++a) {
                 const double p = p_[index + a];
                 h[a] = plan_.values(leaf, w_[index + a], p);
@@ -254,10 +255,10 @@ private:
                     }
                 }
                 if (tabulated_) allow_tabulation(h[a], w_[index + a], k, to);
-                beyond[a] = h[a][mass] > 0 ? 0 : p;
                 for (double& v : h[a]) v *= p;
+                unresolved[a] = plan_.resolves(leaf, p) ? 0 : std::exchange(h[a][mass], 0);
             }
-            out_.unresolved.add_pair(beyond[0], beyond[1], k);
+            out_.unresolved.add_pair(unresolved[0], unresolved[1], k);
             for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].add_pair(h[0][q], h[1][q], k);
             to.mass.add_pair(h[0][mass], h[1][mass], k);
             to.bridge.add_pair(h[0][bridge], h[1][bridge], k);

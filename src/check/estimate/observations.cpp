@@ -324,16 +324,15 @@ private:
         const double p = p_[k];
         const std::size_t l = leaf_of(k, u);
         const Leaf& leaf = plan_.tree.leaves()[l];
-        Values v = plan_.values(leaf, w, p);
-        const bool at_pole = v[mass] == 0;
-        v[mass] = 1;  // each draw is one of p
+        const Values v = plan_.values(leaf, w, p);
         if (set >= 0) {
             for (std::size_t q = 0; q < integrands; ++q) to_.by_set[q][static_cast<std::size_t>(set)] += v[q];
             rows_[static_cast<std::size_t>(leaf.coarse)] += v[bridge];
             return;
         }
         ++to_.checks.directions;
-        to_.at_poles += at_pole;
+        const bool resolved = plan_.resolves(leaf, p);
+        to_.unresolved += !resolved;
         for (std::size_t q = 0; q < integrands; ++q) to_.sums[q].add(v[q]);
         to_.leaves[l] += v[bridge];
         for (std::size_t axis = 0; axis < chart_axes; ++axis) to_.bands[band_of(points_[k], axis)] += v[bridge];
@@ -352,11 +351,12 @@ private:
         }
         to_.met.push_back({key_of(w), density});
         LeafIntegral& integral = integrals_.leaves[l];
-        if (p > alike * integral.top) complete(integral, points_[k], v, p, at_pole);
+        if (p > alike * integral.top) complete(integral, points_[k], v, p, resolved);
     }
 
-    /// The variance of C for random points is k integral of g^2 = k E[g^2 / p]. The mass leaves out poles.
-    void complete(LeafIntegral& leaf, ChartPoint point, const Values& v, double p, bool at_pole) {
+    /// The variance of C for random points is k integral of g^2 = k E[g^2 / p]. The integral of p is that where it is
+    /// resolved.
+    void complete(LeafIntegral& leaf, ChartPoint point, const Values& v, double p, bool resolved) {
         if (to_.unmet++ < batch_size) to_.unmet_at.push_back({point, p});
         const double draws = to_.independent;
         const auto add = [&](Estimate& e, double h) {
@@ -367,7 +367,7 @@ private:
         leaf.second += v[bridge] * v[bridge] / draws;
         add(leaf.bridge, v[bridge]);
         for (std::size_t q = 0; q < integrands; ++q)
-            add(at_pole && q == mass ? integrals_.unresolved : integrals_.sums[q], v[q]);
+            add(q == mass && !resolved ? integrals_.unresolved : integrals_.sums[q], v[q]);
     }
 };
 

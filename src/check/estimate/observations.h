@@ -137,8 +137,8 @@ struct Observations {
     /// Without a density: weights by leaf and channel, and draws by rings of 5 degrees about n.
     std::vector<std::array<WeightSums, 3>> weight_leaves;
     std::array<double, 36> rings{};
-    std::uint64_t at_poles = 0;  // draws at which p exceeds what the points of its leaf resolve
-    double share_at_poles() const { return static_cast<double>(at_poles) / std::max(independent, 1.0); }
+    std::uint64_t unresolved = 0;  // draws at which p exceeds what the points of its leaf resolve
+    double share_unresolved() const { return static_cast<double>(unresolved) / std::max(independent, 1.0); }
     std::uint64_t unmet = 0;             // draws whose p exceeds that of every point of the leaf
     std::vector<DensityPoint> unmet_at;  // the first of them
 };

@@ -327,11 +327,11 @@ std::vector<double> Tree::shares_of_points() const {
 void Tree::set_resolved(double drawn, double points) {
     double held = 0;
     for (const Leaf& leaf : leaves_) held += leaf.q * rect(leaf).area();
-    const double whole = std::max(drawn, held);  // of a p that is too large, what the leaves hold
+    const double integral = std::max(drawn, held);  // of a p that is too large, what the leaves hold
     const std::vector<double> shares = shares_of_points();
     for (std::size_t l = 0; l < leaves_.size(); ++l) {
         Leaf& leaf = leaves_[l];
-        const double point = heaviest_point * whole * (points * shares[l] + 2) / rect(leaf).area();
+        const double point = heaviest_point * integral * (points * shares[l] + 2) / rect(leaf).area();
         leaf.resolved = std::max(point, far_above * leaf.q);
     }
 }

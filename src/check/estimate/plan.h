@@ -138,15 +138,15 @@ struct Plan {
     bool estimates = false;           // p is a random estimate, so h does not depend on it
     std::uint32_t drawn = 0, of = 0;  // pilot draws that are directions; all pilot draws
 
-    /// h = q / (p + q), in [0, 1] (the bridge of Meng and Wong 1996), and h times the quantities of the other sums. The
-    /// mass is that where points resolve p: about a pole the integral of p^2 is infinite.
+    /// h = q / (p + q), in [0, 1] (the bridge of Meng and Wong 1996), and h times the quantities of the other sums.
     Values values(const Leaf& leaf, Vec3d w, double p) const {
         const double density = estimates ? leaf.q : p;
         const double h = leaf.q / (density + leaf.q);
-        const double at_most_resolved = density > leaf.resolved ? 0 : 1;
-        return {at_most_resolved, h, density > 0 ? h * (log_of(density) - median_log_p) : 0, h * (w.x - middle.x),
+        return {1, h, density > 0 ? h * (log_of(density) - median_log_p) : 0, h * (w.x - middle.x),
             h * (w.y - middle.y), h * (w.z - middle.z)};
     }
+    /// Whether the points of the leaf resolve p, see `heaviest_point`.
+    bool resolves(const Leaf& leaf, double p) const { return estimates || !(p > leaf.resolved); }
     /// Whether the sampler computes in single precision, as it declares or as the step of its directions shows: that of
     /// an angle is angle_per_step ulp, here to a factor of 4.
     bool in_single(const Source& source) const { return source.single() || step >= angle_per_step * ulp / 4; }

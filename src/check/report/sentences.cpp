@@ -39,16 +39,16 @@ Sentence empty_sentence(const DrawChecks& c, double mass) {
 
 /// Whether p is larger somewhere than its points resolve, as near a pole.
 bool is_partly_unresolved(const CheckAt& c) {
-    return c.observations.share_at_poles() > 0 || c.integrals.unresolved.value > 0;
+    return c.observations.unresolved > 0 || c.integrals.unresolved.value > 0;
 }
 
 /// The integral of p where its points resolve it.
 Sentence integral_of_p(const CheckAt& c, double value, double half) {
-    const std::string whole = with_error(value, half);
-    if (!is_partly_unresolved(c)) return {"integral", fmt::format("p integrates to {}.", whole)};
+    const std::string integral = with_error(value, half);
+    if (!is_partly_unresolved(c)) return {"integral", fmt::format("p integrates to {}.", integral)};
     return {"integral",
-        fmt::format("p integrates to {} where its points resolve it; {} % of the draws are elsewhere.", whole,
-            crescent::figures(100 * c.observations.share_at_poles()))};
+        fmt::format("p integrates to {} where its points resolve it; {} % of the draws are elsewhere.", integral,
+            crescent::figures(100 * c.observations.share_unresolved()))};
 }
 
 Sentences mass_sentences(const CheckAt& c, const Answer& a) {

@@ -65,10 +65,10 @@ double floor_of_sum(const Evidence& e, int integrand) {
     const double n = e.observations.independent;
     // Rounding always to one side changes h by half a step on average.
     const double known_to = e.integrals.known_to[q] + rounding_of_sum(e, q) + e.plan.per_step[q] / 2;
-    // The integral of p lacks that near its poles, where this share of the draws is.
-    const double at_poles = integrand == mass ? e.observations.share_at_poles() : 0;
+    // The integral of p lacks what its points do not resolve, where this share of the draws is.
+    const double unresolved = integrand == mass ? e.observations.share_unresolved() : 0;
     if (integrand < slope)
-        return detection_floor * std::max(s.sum / n, e.integrals.sums[q].value) + known_to + at_poles;
+        return detection_floor * std::max(s.sum / n, e.integrals.sums[q].value) + known_to + unresolved;
     return detection_floor * std::sqrt(s.square / n) + (integrand == slope ? ulp : 0) + known_to;
 }
 
