@@ -26,7 +26,7 @@ export type Job =
 
 export type Answer = { bytes?: ArrayBuffer[]; response?: unknown };
 export interface Fault { kind: string; text: string; lines?: [number, number][] } // lines: of the places in the script where it happened
-export type Reply = { id: number; answer?: Answer; error?: Fault; size?: number }; // size: of its instance
+export type Reply = { id: number; answer?: Answer; error?: Fault; size?: number }; // id of no job: a sign of life; size: of its instance
 
 const filmPlanes = 9, referencePlanes = 5;
 

@@ -28,7 +28,7 @@ class WorkerClient {
     worker.onmessage = ({ data }: MessageEvent): void => this.take(data as Reply);
   }
   get room(): boolean { return this.held.size < underWay; }
-  /** Since when it has been working on one job, in ms; 0: it is idle. */
+  /** Since when it has been working without a sign, in ms; 0: it is idle. */
   get busy(): number { return this.held.size > 0 ? performance.now() - this.since : 0; }
   give(waiting: Waiting, transfer: Transferable[] = []): void {
     if (this.held.size === 0) this.since = performance.now();
@@ -124,7 +124,7 @@ export class Pool {
   }
 
   get workers(): number { return this.clients.length; }
-  /** The longest time that one of the workers has been at a job, ms. */
+  /** The longest time that one of the workers has given no sign at its job, ms. */
   get busy(): number { return Math.max(0, ...this.clients.map((client) => client.busy)); }
 
   /** Drops all requests except lasting ones. */

@@ -63,11 +63,15 @@ function shown(value: unknown): string {
 const wrongDraw = (d: unknown): EngineError => new EngineError("user", `sample returned ${shown(d)}; expected { wi: [x, y, z], pdf: number }, or null where nothing is drawn`);
 const wrongPdf = (p: unknown): EngineError => new EngineError("user", `pdf returned ${shown(p)}; expected a number`);
 
+/** The user's functions are about to be called once more: those called before have returned. */
+export type Proceeds = () => void;
+
 /** One point at a time. */
-function callsOfPoints({ sample, pdf, f }: Points): UserCalls {
+function callsOfPoints({ sample, pdf, f }: Points, proceeds: Proceeds): UserCalls {
   return (memory) => {
     const doubles = (at: number, count: number): Float64Array => new Float64Array(memory().buffer, at, count);
     const point_drawn: Call = (uAt, numbers, xAt, coordinates) => {
+      proceeds();
       try {
         const drawn = sample(Array.from(doubles(uAt!, numbers!)));
         if (drawn === null) return 0;
@@ -81,6 +85,7 @@ function callsOfPoints({ sample, pdf, f }: Points): UserCalls {
       }
     };
     const point_value: Call = (integrand, xAt, coordinates) => {
+      proceeds();
       try {
         const x = doubles(xAt!, coordinates!), value = (integrand ? f! : pdf)(coordinates === 1 ? x[0]! : Array.from(x));
         if (typeof value !== "number") throw integrand ? new EngineError("user", `f returned ${shown(value)}; expected a number`) : wrongPdf(value);
@@ -93,7 +98,7 @@ function callsOfPoints({ sample, pdf, f }: Points): UserCalls {
   };
 }
 
-function callsOf(sample: NonNullable<Functions["sample"]>, pdf: NonNullable<Functions["pdf"]>, context: boolean): UserCalls {
+function callsOf(sample: NonNullable<Functions["sample"]>, pdf: NonNullable<Functions["pdf"]>, context: boolean, proceeds: Proceeds): UserCalls {
   return (memory) => {
     const doubles = (at: number, count: number): Float64Array => new Float64Array(memory().buffer, at, count);
     const user_sample: Call = (runsAt, count, stride, uAt, numbers, wiAt, pdfAt) => {
@@ -108,6 +113,7 @@ function callsOf(sample: NonNullable<Functions["sample"]>, pdf: NonNullable<Func
           const third = context ? contextAt(runs, run + 4) : undefined;
           for (const end = i + runs[run + 3]!; i < end; ++i) {
             for (let n = 0; n < numbers!; ++n) u[n] = given[i * numbers! + n]!;
+            proceeds();
             const d = sample(wo, u, third);
             if (d === null || d === undefined) {
               if (d === undefined) throw wrongDraw(d);
@@ -129,6 +135,7 @@ function callsOf(sample: NonNullable<Functions["sample"]>, pdf: NonNullable<Func
         const pairs = doubles(pairsAt!, 6 * count!), out = doubles(outAt!, count!);
         const third = context && columns! > 0 ? contextAt(doubles(contextAt_!, columns!), 0) : undefined;
         for (let i = 0; i < count!; ++i) {
+          proceeds();
           const at = 6 * i, value = pdf([pairs[at]!, pairs[at + 1]!, pairs[at + 2]!], [pairs[at + 3]!, pairs[at + 4]!, pairs[at + 5]!], third);
           if (typeof value !== "number") throw wrongPdf(value);
           out[i] = value;
@@ -143,7 +150,7 @@ function callsOf(sample: NonNullable<Functions["sample"]>, pdf: NonNullable<Func
 }
 
 /** Receives the user's code; the returned function gives its calls, undefined without code. Throws EngineError. */
-export function userSampler(): () => UserSampler | Promise<UserSampler> | undefined {
+export function userSampler(proceeds: Proceeds): () => UserSampler | Promise<UserSampler> | undefined {
   let functions: Functions | undefined, failed: EngineError | undefined;
   (self as unknown as { crescentUser: (make: () => Functions) => void }).crescentUser = (make) => {
     try {
@@ -156,15 +163,15 @@ export function userSampler(): () => UserSampler | Promise<UserSampler> | undefi
     if (failed) throw failed;
     if (!functions) return undefined;
     const { sample, pdf, f, numbers = 2, domain = directions, wgsl } = functions, points = domain !== directions;
-    if (wgsl !== undefined) return openedShader(wgsl);
+    if (wgsl !== undefined) return openedShader(wgsl, proceeds);
     if (!sample) throw new EngineError("user", `there is no function ${points ? "sample(u)" : "sample(wo, u)"}`);
     if (!pdf) throw new EngineError("user", `there is no function ${points ? "pdf(x)" : "pdf(wo, wi)"}`);
     if (typeof numbers !== "number" || !(numbers >= 1 && numbers <= 8 && Number.isInteger(numbers))) throw new EngineError("user", `numbers is ${shown(numbers)}; expected how many random numbers a sample takes, 1 to 8`);
     if (points) {
       const integrand = typeof f === "function";
-      return { calls: callsOfPoints({ sample, pdf, ...(integrand ? { f } : {}) } as unknown as Points), numbers, context: false, bits: 53, points: { domain, integrand } };
+      return { calls: callsOfPoints({ sample, pdf, ...(integrand ? { f } : {}) } as unknown as Points, proceeds), numbers, context: false, bits: 53, points: { domain, integrand } };
     }
     const context = sample.length > 2 || pdf.length > 2;
-    return { calls: callsOf(sample, pdf, context), numbers, context, bits: 53 };
+    return { calls: callsOf(sample, pdf, context, proceeds), numbers, context, bits: 53 };
   };
 }

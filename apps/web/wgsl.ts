@@ -159,7 +159,7 @@ async function evaluator(device: Device, shader: Shader, operation: "sample" | "
 }
 
 /** The calls of a file: rows in single precision. Throws EngineError with the line. */
-export async function openedShader(code: string): Promise<{ calls: UserCalls; numbers: number; context: boolean; bits: number }> {
+export async function openedShader(code: string, proceeds: () => void): Promise<{ calls: UserCalls; numbers: number; context: boolean; bits: number }> {
   const shader = readShader(code), lacks = missingForShaders();
   if (lacks) throw fault(`WGSL cannot run here: ${lacks}`);
   const adapter = await (navigator as unknown as { gpu: Gpu }).gpu.requestAdapter();
@@ -181,6 +181,7 @@ export async function openedShader(code: string): Promise<{ calls: UserCalls; nu
           if (context) rows.set(runs.subarray(run + 4, run + 4 + columnsOfContext), i * columns + 3 + texts.numbers);
         }
       }
+      proceeds();
       const out = await sample(rows), wi = doubles(wiAt!, 3 * total), p = doubles(pdfAt!, total);
       for (let i = 0; i < total; ++i) {
         wi.set(out.subarray(4 * i, 4 * i + 3), 3 * i);
@@ -195,6 +196,7 @@ export async function openedShader(code: string): Promise<{ calls: UserCalls; nu
         rows.set(pairs.subarray(6 * i, 6 * i + 6), i * wide);
         rows.set(surface, i * wide + 6);
       }
+      proceeds();
       const out = await pdf(rows);
       doubles(outAt!, count!).set(out);
       return 0;

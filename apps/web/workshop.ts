@@ -30,8 +30,8 @@ export interface Checked { state: string; evaluations: number; verdicts: Verdict
 export interface Work { code: string; ground: string }
 
 const size = 320, draws = 1024;
-// ms that the code may take for one job: at least these, and that many times what a worker took to start, so that a busy
-// machine ends no code.
+// ms without a sign that the code's functions return: at least these, and that many times what a worker took to start, so
+// that a busy machine ends no code.
 const longest = { film: 30_000, check: 60_000 }, startups = { film: 40, check: 80 };
 const yours = "yours";
 /** What a verdict speaks of, as a picture. */

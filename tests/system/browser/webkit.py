@@ -16,7 +16,7 @@ options.add_argument("--automation")
 driver = webdriver.WebKitGTK(executable_path="/usr/bin/WebKitWebDriver", options=options)
 
 
-def wait(script, seconds=120):
+def wait(script, seconds=600):  # a hang, on a machine that has something else to do
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         try:

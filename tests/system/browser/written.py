@@ -105,7 +105,7 @@ def tests(page, folder):
                 browser.wait(driver, f"{data}.looked", seconds=30)
                 assert any("connect-src" in line for line in browser.console(driver)), "the policy lets a sampler ask"
                 continue
-            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}", seconds=60)
+            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}")
             assert word in said and (not line or said.startswith(f"Line {line}: ")), f"{word} in line {line}: {said}"
             if line:
                 browser.wait(driver, "document.querySelector('.cm-lint-marker-error, .cm-lintRange-error')")
@@ -148,7 +148,7 @@ def tests(page, folder):
         for code, line, word in ((lens.replace('"disk"', '"disc"'), 1, "'disc' is no domain of the page"),
                                  (lens.replace('"disk"', '"line:0,1"'), 0, "expected { x: a number, pdf: number }")):
             write(driver, code)
-            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}", seconds=60)
+            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}")
             assert word in said and (not line or said.startswith(f"Line {line}: ")), f"{word} in line {line}: {said}"
         choose(driver, "domain", "hemisphere")
         browser.wait(driver, f"{data}.written")
@@ -178,7 +178,7 @@ def tests(page, folder):
                                  (SHADER.replace("density(wi)\n", "densty(wi)\n", 1), 2, "densty"),
                                  (SHADER.replace("pdf =", "pfd ="), 2, "no key 'pfd'")):
             write(driver, code)
-            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}", seconds=60)
+            said = browser.wait(driver, f"{data}.code === 'fault' && {FAULT}")
             assert said.startswith(f"Line {line}: ") and word in said, f"{word} in line {line}: {said}"
         print(f"  a shader is checked in {took} ms")
 
