@@ -264,6 +264,19 @@ std::string probability_text(double p, double half) {
     return with_error(p, half);
 }
 
+/// Whether one constant, the weighted mean, agrees with every x: nothing then speaks of a lobe.
+bool is_one_constant(const Shares& s) {
+    double sum = 0, weights = 0;
+    for (std::size_t k = 0; k < s.x.size(); ++k) {
+        const double weight = 1 / (s.errors[k] * s.errors[k] + 1e-300);
+        sum += weight * s.x[k];
+        weights += weight;
+    }
+    for (std::size_t k = 0; k < s.x.size(); ++k)
+        if (std::fabs(s.x[k] - sum / weights) > std::max(3 * s.errors[k], known_share / 2)) return false;
+    return true;
+}
+
 /// Whether p has a lobe as if it alone were drawn: times x, where it is drawn with this probability.
 bool is_without_probability(double probability, double x, double error) {
     return std::fabs(x * probability - 1) < std::max(3 * error * probability, known_share);
@@ -350,8 +363,7 @@ std::optional<Cause> lobe_cause(std::span<const Place> places) {
         if (!chooser) continue;
         const std::optional<Shares> shares = shares_at(source, place, *chooser);
         if (!shares) continue;
-        const auto [least, most] = std::ranges::minmax_element(shares->x);
-        if (*most - *least < known_share) continue;  // a constant
+        if (is_one_constant(*shares)) continue;
         if (std::optional<std::string> text = lobe_sentence(*chooser, *shares, place.where()))
             return Cause{.factor = "chooser", .exponent = 0, .error = 0, .text = std::move(*text)};
     }
