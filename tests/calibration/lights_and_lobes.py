@@ -183,10 +183,13 @@ def wrapped_azimuth(rng: Rng, real: type, fault: str) -> Sampler:
         return np.arctan2(w[:, 1], w[:, 0]).astype(float)
 
     def pdf(wo: Array, w: Array) -> Array:
-        z = np.clip(w[:, 2].astype(float), 1e-12, 1 - 1e-16)
+        z = np.maximum(w[:, 2].astype(float), 1e-12)
+        across2 = w[:, 0].astype(float) ** 2 + w[:, 1].astype(float) ** 2
+        # Next to n, z rounds to 1, and with b < 1 p has a pole there.
+        log_z = np.where(z > 0.7, 0.5 * np.log1p(-np.clip(across2, 1e-300, 0.6)), np.log(z))
         r = rho * rho if fault == "concentration squared" else rho
         about = (1 - r * r) / (2 * PI * (1 + r * r - 2 * r * np.cos(azimuth(w) - azimuth(wo))))
-        return np.where(w[:, 2] > 0, a * b * z ** (a - 1) * (1 - z**a) ** (b - 1) * about, 0).astype(real)
+        return np.where(w[:, 2] > 0, a * b * np.exp((a - 1) * log_z) * (-np.expm1(a * log_z)) ** (b - 1) * about, 0).astype(real)
 
     def sample(wo: Array, u: Array) -> tuple[Array, ...]:
         v = u.astype(float)

@@ -156,7 +156,12 @@ private:
     }
     /// The evaluations of stage 1 that the sizes require, a third more than in proportion to their squares.
     double needed_of_first_stage() const {
-        return 4.0 / 3 * first_.done.cost() * sqr(worst_ratio(out_.sizes) / out_.most_ratio());
+        Sizes sizes = out_.sizes;
+        if (is_integral_open()) sizes.integral = error_in_reach(first_.integrals, first_.observations);
+        return 4.0 / 3 * first_.done.cost() * sqr(worst_ratio(sizes) / out_.most_ratio());
+    }
+    bool is_integral_open() const {
+        return out_.sizes.integral && *out_.sizes.integral > out_.most_ratio() * target_constant;
     }
     bool goes_on() const {
         if (!out_.inconclusive || out_.wrong() || source_.recorded()) return false;
@@ -164,8 +169,14 @@ private:
         return limit > 1.5 * first_.done.cost() && needed_of_first_stage() < out_of_reach * limit;
     }
     void look_further(int k) {
-        const double limit = most_of_first_stage();
         const double needed = std::max(needed_of_first_stage(), 1.5 * first_.done.cost());
+        // The tree was made for fewer points, which resolve less of p.
+        if (k == 0 && is_integral_open() && !is_of_weights()) {
+            CheckBudget larger = budget_;
+            larger.evaluations = most_of_first_stage();
+            grow_again(larger, StreamKey::further);
+        }
+        const double limit = most_of_first_stage();
         const Look to = look_of(k + 1 < further_looks ? std::min(needed, limit) : limit);
         look_at(to, budget_.looks + k, levels_.first * early_look);
     }
@@ -216,14 +227,18 @@ private:
         const double worse = regrow_from * regrow_points / first_.integrals.points;
         const double error = std::sqrt(claimed.variance + first_.integrals.unresolved.variance);
         if (key_.stage != 1 || !(error > worse * std::max(claimed.value, 1e-3))) return false;
+        if (first_.integrals.heavy.empty() && first_.observations.unmet_at.empty()) return false;
+        grow_again(budget_, StreamKey::regrown);
+        return true;
+    }
+
+    void grow_again(const CheckBudget& budget, std::uint8_t stage) {
         std::vector<DensityPoint> hints = first_.integrals.heavy;
         const std::vector<DensityPoint>& drawn = first_.observations.unmet_at;
         hints.insert(hints.end(), drawn.begin(), drawn.end());
-        if (hints.empty()) return false;
-        key_.stage = StreamKey::regrown;
+        key_.stage = stage;
         first_ = {};
-        out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_, std::move(hints)));
-        return true;
+        out_.plan = std::make_shared<const Plan>(make_plan(source_, budget, key_, std::move(hints)));
     }
 
     Sizes sizes(const Evidence& e, double level) {

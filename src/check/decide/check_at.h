@@ -46,6 +46,8 @@ double worst_ratio(const Sizes& sizes);
 /// The relative error of the integral of p, none if that is 0: half its interval where points resolve p, and elsewhere
 /// the share of the draws, or what the points hold if this is more; or by how much these may differ.
 std::optional<double> error_of_integral(const Integrals& integrals, const Observations& observations);
+/// The same with the share of the draws wherever points do not resolve p: what more points may come to.
+std::optional<double> error_in_reach(const Integrals& integrals, const Observations& observations);
 
 /// Half the 95 % interval of an integral: Student's t with the degrees of freedom of its variance. Infinite if these
 /// are so few that the variance is not known at all.

@@ -272,6 +272,42 @@ TEST(CheckAtOneWo, DecidesTheIntegralOfADensityWithAPole) {
     }
 }
 
+/// Four such spheres, whose back draws nothing: a small budget does not resolve their rims, and a larger tree does.
+TEST(CheckAtOneWo, GrowsItsTreeAgainWhereItGoesOnForAnIntegral) {
+    constexpr double radii[] = {0.2, 0.3, 0.15, 0.25};
+    const Vec3d centres[] = {tilt(20), tilt(50, 100), tilt(40, 200), tilt(60, 300)};
+    FunctionSampler s;
+    s.of.wo = Traits::WoDomain::none;
+    s.of.numbers = 3;
+    s.draw = [&](Vec3d, const PrimarySample& u) -> Vec3d {
+        const auto k = static_cast<std::size_t>(4 * u[2]);
+        const double z = 1 - 2 * u.x, r = std::sqrt(1 - z * z), phi = two_pi * u.y;
+        if (z < radii[k]) return {};
+        const Frame<double> frame = frame_about(-centres[k]);
+        return normalize(
+            centres[k] + radii[k] * (r * std::cos(phi) * frame.t + r * std::sin(phi) * frame.b - z * centres[k]));
+    };
+    s.p = [&](Vec3d, Vec3d w) {
+        double p = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double along = dot(centres[k], w), h2 = radii[k] * radii[k] - 1 + along * along;
+            if (!(along > 0 && h2 > 0)) continue;
+            const double h = std::sqrt(h2), distance = along - h;
+            p += distance * distance / (h / radii[k]) / (4 * 2 * two_pi * radii[k] * radii[k]);
+        }
+        return p;
+    };
+    CheckBudget budget = CheckBudget::limited();
+    budget.most_evaluations = 4e6;
+    budget.stop_when_conclusive = true;
+    for (std::uint32_t seed = 1; seed <= 2; ++seed) {
+        const CheckAt c = check_sampler_at(s, 0, {0, 0, 1}, {}, budget, seed);
+        EXPECT_FALSE(c.wrong()) << seed;
+        EXPECT_FALSE(c.inconclusive) << seed;
+        EXPECT_GT(c.looks, budget.looks) << seed;
+    }
+}
+
 TEST(CheckAtOneWo, DrawsOfALightBelowTheHorizonNeedADensityThere) {
     FunctionSampler s;
     s.draw = [](Vec3d o, const PrimarySample& u) { return -1.0 * cosine_draw(o, u); };

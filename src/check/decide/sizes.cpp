@@ -601,6 +601,12 @@ std::optional<double> error_of_integral(const Integrals& integrals, const Observ
     return (half_interval(resolved) + rest) / resolved.value;
 }
 
+std::optional<double> error_in_reach(const Integrals& integrals, const Observations& o) {
+    const Estimate& resolved = integrals.sums[mass];
+    if (!(resolved.value > 0)) return {};
+    return (half_interval(resolved) + o.share_unresolved()) / resolved.value;
+}
+
 double half_interval(const Estimate& integral) {
     const double nu = freedom(integral.variance, integral.doubt);
     if (!(nu >= 1) || !std::isfinite(integral.variance)) return std::numeric_limits<double>::infinity();

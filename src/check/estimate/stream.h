@@ -27,9 +27,10 @@ struct StreamKey {
     Purpose purpose = Purpose::pilot;
     std::uint16_t part = 0;
 
-    /// The key of a stage that confirms another one; `regrown` is the first stage on a second tree.
-    static constexpr std::uint8_t regrown = 9;
-    bool confirms() const { return stage != 1 && stage != regrown; }
+    /// The key of a stage that confirms another one; `regrown` is the first stage on a second tree, `further` that on
+    /// the tree of a check that goes on.
+    static constexpr std::uint8_t regrown = 9, further = 17;
+    bool confirms() const { return stage != 1 && stage != regrown && stage != further; }
 
     Vec4u<std::uint32_t> block(std::uint32_t index) const {
         const std::uint32_t where = std::uint32_t{place} | std::uint32_t{technique} << 16 | std::uint32_t{stage} << 24;
