@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mmap
 import os
 import signal
 import struct
@@ -65,7 +66,7 @@ class Shader:
     delta: bool
     operations: dict[str, Answer]
 
-    def handshake(self, to_python: bool = False) -> str:
+    def handshake(self, to_python: bool = False, memory: bool = False) -> str:
         """The line that declares the sampler; `to_python`: with what crescent_shader.client asks for."""
         request = self.request
         keys = {
@@ -87,6 +88,7 @@ class Shader:
             "uses": (",".join(request.uses), bool(request.uses)),
             "transport": ("importance", request.transport == "importance"),
             "reciprocal": ("no", not request.reciprocal),
+            "memory": ("yes", memory),
         }
         keys |= {key: value for key, (value, there) in given.items() if there}
         if to_python:
@@ -181,7 +183,32 @@ def _answers(shader: Shader) -> dict[bytes, tuple[int, Answer]]:
     return {letters: (columns(request, operation)[0], answer) for letters, (operation, answer) in answers.items()}
 
 
-def _serve(requests: BinaryIO, answers: BinaryIO, shader: Shader, watch: Watchdog) -> None:
+class Memory:
+    """The memory for blocks that crescent shares (PipeConnection in src/check/sources/pipe_io.h): they use the slots in
+    turn, and the answers are in the second half of a slot."""
+
+    WORD = "--memory"  # the first one where crescent gives the memory, as descriptor 3
+    _FILE, _SLOTS, _SLOT_BYTES = 3, 2, 16 << 20
+
+    def __init__(self) -> None:
+        size = self._SLOTS * self._SLOT_BYTES
+        self._floats = np.frombuffer(mmap.mmap(self._FILE, size), "<f4").reshape(self._SLOTS, 2, -1)
+        self._read = self._written = 0
+
+    def rows(self, count: int, columns: int) -> Array:
+        """Those of the next block."""
+        given: Array = self._floats[self._read % self._SLOTS, 0, : count * columns]
+        self._read += 1
+        return given.reshape(count, columns)
+
+    def answer(self, rows: Array | None) -> None:
+        """The answer to the next block; none after an error."""
+        if rows is not None:
+            self._floats[self._written % self._SLOTS, 1, : rows.size].reshape(rows.shape)[:] = rows
+        self._written += 1
+
+
+def _serve(requests: BinaryIO, answers: BinaryIO, shader: Shader, watch: Watchdog, memory: Memory | None) -> None:
     """Reads the next block and writes the last one while one is evaluated; raises where either fails."""
     operations = _answers(shader)
 
@@ -191,7 +218,10 @@ def _serve(requests: BinaryIO, answers: BinaryIO, shader: Shader, watch: Watchdo
             return None
         letters, (count,) = head[:4], struct.unpack("<I", head[4:])
         columns, answer = operations[letters]
-        rows = np.frombuffer(requests.read(4 * count * columns), "<f4").reshape(count, columns)
+        if memory:
+            rows = memory.rows(count, columns)
+        else:
+            rows = np.frombuffer(requests.read(4 * count * columns), "<f4").reshape(count, columns)
         return f"{letters.decode().strip('_').replace('smpl', 'sample')} of {count} rows", answer, rows
 
     def evaluated(what: str, answer: Answer, rows: Array) -> tuple[bytes, Array | None]:
@@ -201,11 +231,17 @@ def _serve(requests: BinaryIO, answers: BinaryIO, shader: Shader, watch: Watchdo
             return _error_block(str(error)), None
 
     def write(head: bytes, rows: Array | None) -> None:
+        if memory:
+            memory.answer(rows)
         answers.write(head)
-        if rows is not None:
+        if rows is not None and not memory:
             answers.write(np.ascontiguousarray(rows, "<f4").data)
         answers.flush()
 
+    if memory:  # there is little to read and write
+        while block := read():
+            write(*evaluated(*block))
+        return
     with ThreadPoolExecutor(1) as reader, ThreadPoolExecutor(1) as writer:
         asked, written = reader.submit(read), writer.submit(lambda: None)
         while block := asked.result():
@@ -224,6 +260,8 @@ def _error_block(text: str) -> bytes:
 def main(words: list[str] | None = None) -> int:
     """Serves the shader that the command line names."""
     words = sys.argv[1:] if words is None else words
+    shares_memory = words[:1] == [Memory.WORD]
+    words = words[shares_memory:]
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     if "-h" in words or "--help" in words or (not words and sys.stdin.isatty()):
         from .request import _parser
@@ -255,11 +293,12 @@ def main(words: list[str] | None = None) -> int:
         say(f"missing {error}")
         return 3
     print(f"{title_of(shader.adapter)}, single precision", file=sys.stderr, flush=True)
-    say(shader.handshake(to_python=greeting.strip() == GREETING_OF_PYTHON))
+    memory = Memory() if shares_memory else None
+    say(shader.handshake(to_python=greeting.strip() == GREETING_OF_PYTHON, memory=shares_memory))
 
     def report(text: str) -> None:
         answers.write(_error_block(text))
         answers.flush()
 
-    _serve(sys.stdin.buffer, answers, shader, Watchdog(report))
+    _serve(sys.stdin.buffer, answers, shader, Watchdog(report), memory)
     return 0

@@ -56,6 +56,7 @@ struct Handshake {
     bool f_cos = false;              // f includes |cos|
     bool weight = false, delta = false;
     std::size_t block_number = 0;   // bytes of a number in blocks; 0: lines
+    bool memory = false;            // rows of blocks are in shared memory
     bool merge = false;             // a draw merges the reservoirs of neighbours
     std::vector<std::string> uses;  // of context_names()
     EvaluationDevice device{};

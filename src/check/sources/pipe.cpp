@@ -57,8 +57,8 @@ InputError error_of_program(std::string_view text, const std::string& label) {
 class PipeSampler : public BatchSampler {
 public:
     PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label,
-        const std::optional<Domain>& domain, int neighbours)
-        : connection_(command, limits, label), neighbours_(neighbours) {
+        const std::optional<Domain>& domain, int neighbours, bool offer_memory)
+        : connection_(command, limits, label, offer_memory), neighbours_(neighbours) {
         try {
             handshake_with_program(label, domain);
         } catch (const ProgramEnded& error) {
@@ -394,6 +394,8 @@ private:
                 }
                 if (const HandshakeError fault = read_handshake(s, hello); fault)
                     connection_.fault("hello 2", 0, fault.got, fault.expected);
+                if (hello.memory && !connection_.use_memory())
+                    connection_.fault("hello 2", 0, "got memory=yes", "no memory=, since none was offered");
                 const std::string stated = hello.traits.number ? "number"
                     : hello.domain                             ? hello.domain->name()
                     : hello.hemisphere                         ? "hemisphere"
@@ -478,7 +480,7 @@ private:
 
 std::shared_ptr<const SamplerAdapter> start_pipe(const std::string& command, const PipeLimits& limits,
     const std::string& label, const std::optional<Domain>& domain, int neighbours) {
-    return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label, domain, neighbours);
+    return std::make_shared<PipeSampler>(command, limits, label.empty() ? command : label, domain, neighbours, false);
 }
 
 // ---- A table of keys with their values, from which the messages are made too. The name is the text before the first
@@ -545,9 +547,9 @@ struct HandshakeKey {
     std::function<bool(std::string_view, Handshake&)> read;
 };
 
-const std::array<HandshakeKey, 19>& keys() {
+const std::array<HandshakeKey, 20>& keys() {
     using S = std::string_view;
-    static const std::array<HandshakeKey, 19> handshake_keys = {{
+    static const std::array<HandshakeKey, 20> handshake_keys = {{
         {"u", "a whole number from 1 to 8",
             [](S v, Handshake& g) { return whole_number(v, 1, PrimarySample::most_numbers, g.traits.numbers); }},
         {"domain", number_or_domain.c_str(),
@@ -606,6 +608,7 @@ const std::array<HandshakeKey, 19>& keys() {
                 g.block_number = v == "f32" ? sizeof(float) : sizeof(double);
                 return v == "f32" || v == "f64";
             }},
+        {"memory", "yes or no", [](S v, Handshake& g) { return (g.memory = v == "yes") || v == "no"; }},
         {"uses", "names from s, alpha, rho_d, rho_s, side, eta and lights, separated by commas",
             [](S v, Handshake& g) { return take_context_names(v, g.uses); }},
     }};
@@ -708,6 +711,7 @@ HandshakeError read_handshake(std::string_view answer, Handshake& out) {
     out.name = printable(name, 60);
     if (out.delta && !out.weight)
         return {"weight=yes with delta=yes, since a draw of a delta part needs its weight", "got no weight=yes"};
+    if (out.memory && !out.blocks()) return {"block= with memory=yes", "got no block="};
     if (out.single_blocks() && out.traits.u_bits > 24)
         return {"u_bits=24 with block=f32, whose numbers have 24 bits", "got u_bits=53"};
     out.traits.delta = out.delta;
@@ -750,12 +754,12 @@ bool can_import(const char* module) {
 
 /// Starts a module of the package `package`, which answers for the file `label`.
 std::shared_ptr<const SamplerAdapter> start_python_module(const char* module, const std::vector<std::string>& words,
-    const char* package, const PipeLimits& limits, const std::string& label, int neighbours = default_neighbours) {
+    const char* package, const PipeLimits& limits, const std::string& label, int neighbours, bool offer_memory) {
     // An interpreter that the shell cannot start (126, 127) is reported in the same way as a missing package.
     const std::string command =
         python_command(module, words) + "; code=$?; [ $code -lt 126 ] || [ $code -gt 127 ] || code=1; exit $code";
     try {
-        return start_pipe(command, limits, label, {}, neighbours);
+        return std::make_shared<PipeSampler>(command, limits, label, std::nullopt, neighbours, offer_memory);
     } catch (const ProgramEnded& error) {
         if (error.end.code != 1 || can_import(module)) throw;  // what the user's file did
         throw OutputError(fmt::format(
@@ -776,7 +780,7 @@ std::string python_command(const std::string& module, const std::vector<std::str
 
 std::shared_ptr<const SamplerAdapter> start_python_sampler(
     const std::string& word, const PipeLimits& limits, int neighbours) {
-    return start_python_module("crescent.serve", {word}, "crescent-bench", limits, word, neighbours);
+    return start_python_module("crescent.serve", {word}, "crescent-bench", limits, word, neighbours, false);
 }
 
 // ---- Shaders: crescent_shader of the same package.
@@ -789,9 +793,11 @@ bool names_shader(const std::string& word) {
 
 std::shared_ptr<const SamplerAdapter> start_shader(
     const std::string& file, const std::vector<std::string>& words, const PipeLimits& limits) {
-    std::vector<std::string> arguments = words;
+    std::vector<std::string> arguments = {"--memory"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
     arguments.insert(arguments.end(), {"--", file});
-    return start_python_module("crescent_shader", arguments, "'crescent-bench[shader]'", limits, file);
+    return start_python_module(
+        "crescent_shader", arguments, "'crescent-bench[shader]'", limits, file, default_neighbours, true);
 }
 
 }  // namespace crescent

@@ -157,11 +157,11 @@ void PipeConnection::take_lines(Exchange& x, const Read& read) {
 
 // Rows are read from and written to the caller's memory without a copy: they are most of the exchanged data.
 void PipeConnection::blocks(const Rows& rows) {
-    constexpr std::size_t most_rows = 1 << 16;  // of a block, docs/samplers.md
     const std::size_t row_size = rows.in.size() / rows.count;
     Exchange x{.count = rows.count, .expected = rows.expected, .describe = rows.describe, .produce = {}, .take = {}};
     check_open();
-    const auto rows_from = [&](std::size_t row) { return std::min(rows.count - row, most_rows); };
+    const std::size_t most = most_rows(rows);
+    const auto rows_from = [&](std::size_t row) { return std::min(rows.count - row, most); };
     const auto head_of = [&](std::size_t row) {
         const auto n = static_cast<std::uint32_t>(rows_from(row));
         std::string head(rows.operation, 4);
@@ -172,14 +172,20 @@ void PipeConnection::blocks(const Rows& rows) {
     std::size_t head_sent = 0, payload_sent = 0, payload_read = 0;
     Clock::time_point last = Clock::now();
     while (x.answered < x.count) {
-        const Process::Ready ready = program_.wait_ready(x.written < x.count, true, 50);
+        const bool has_slot = !uses_memory_ || blocks_sent_ < blocks_answered_ + slots;
+        const Process::Ready ready = program_.wait_ready(x.written < x.count && has_slot, true, 50);
         if (ready.input) {
             const std::size_t bytes = rows_from(x.written) * row_size;
             const auto* payload = reinterpret_cast<const char*>(rows.in.data() + x.written * row_size);
+            if (uses_memory_ && head_sent == 0) {
+                std::memcpy(slot(blocks_sent_), payload, bytes);
+                payload_sent = bytes;
+            }
             if (head_sent < head.size()) head_sent += send(x, std::string_view(head).substr(head_sent), ready.output);
-            if (head_sent == head.size())
+            if (head_sent == head.size() && payload_sent < bytes)
                 payload_sent += send(x, {payload + payload_sent, bytes - payload_sent}, ready.output);
-            if (payload_sent == bytes) {
+            if (head_sent == head.size() && payload_sent == bytes) {
+                ++blocks_sent_;
                 x.written += rows_from(x.written);
                 head_sent = payload_sent = 0;
                 if (x.written < x.count) head = head_of(x.written);
@@ -199,6 +205,14 @@ void PipeConnection::blocks(const Rows& rows) {
         fault(
             x, rows.count - 1, fmt::format("got {} bytes more than requested: {}", pending().size(), shown(pending())));
     requests_ += rows.count;
+}
+
+/// Of a block: docs/samplers.md, and what a slot takes.
+std::size_t PipeConnection::most_rows(const Rows& rows) const {
+    constexpr std::size_t most = 1 << 16;
+    if (!uses_memory_) return most;
+    const std::size_t row = std::max(rows.in.size(), rows.out.size()) / rows.count;
+    return std::min(most, slot_bytes / 2 / row);
 }
 
 /// Reads the available part of the answer to `n` rows; returns false at the end of the program's output.
@@ -239,9 +253,11 @@ bool PipeConnection::take_block(
     const std::size_t row_size = rows.out.size() / rows.count, bytes = n * row_size;
     auto* to = reinterpret_cast<char*>(rows.out.data() + x.answered * row_size);
     std::size_t got = 0;
-    open = read(to + payload_read, bytes - payload_read, got);
+    if (uses_memory_) std::memcpy(to, slot(blocks_answered_) + slot_bytes / 2, got = bytes);
+    else open = read(to + payload_read, bytes - payload_read, got);
     payload_read += got;
     if (payload_read == bytes) {
+        ++blocks_answered_;
         x.answered += n;
         payload_read = 0;
         head.clear();

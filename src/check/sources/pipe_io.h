@@ -7,11 +7,14 @@
 #include <fmt/format.h>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "base/process.h"
+#include "base/shared_memory.h"
 #include "check/sources/external.h"
 #include "samplers/sampler_adapter.h"
 
@@ -88,9 +91,12 @@ struct ProgramEnded : SamplerError {
 
 class PipeConnection {
 public:
-    /// Starts `command` with the shell; `label` is the prefix of its stderr output.
-    PipeConnection(const std::string& command, const PipeLimits& limits, const std::string& label)
-        : limits_(limits), program_({.argv = {"/bin/sh", "-c", command}, .label = label}) {}
+    /// Starts `command` with the shell; `label` is the prefix of its stderr output. `offer`: gives it memory for
+    /// blocks.
+    PipeConnection(const std::string& command, const PipeLimits& limits, const std::string& label, bool offer = false)
+        : limits_(limits),
+          memory_(offer ? std::make_unique<SharedMemory>(slots * slot_bytes) : nullptr),
+          program_({.argv = {"/bin/sh", "-c", command}, .label = label, .shared = memory_ ? memory_->file() : -1}) {}
     PipeConnection(const PipeConnection&) = delete;
     PipeConnection& operator=(const PipeConnection&) = delete;
 
@@ -109,6 +115,9 @@ public:
         std::string header{};  // bytes between the count and the rows
     };
     void blocks(const Rows& rows);
+    /// From here on rows and answers of blocks are in the memory, and the pipes have the rest. Returns false if none
+    /// was offered.
+    bool use_memory() { return uses_memory_ = memory_ != nullptr; }
 
     /// Throws an error for the answer to request i of the current exchange.
     [[noreturn]] void fault(
@@ -130,7 +139,12 @@ private:
         std::size_t written = 0, answered = 0, sent = 0;
         std::string outgoing{};
     };
+    /// Blocks use the slots in turn; the answers are in the second half of a slot.
+    static constexpr std::size_t slots = 2, slot_bytes = 16u << 20;
     PipeLimits limits_;
+    std::unique_ptr<SharedMemory> memory_;
+    bool uses_memory_ = false;
+    std::size_t blocks_sent_ = 0, blocks_answered_ = 0;
     mutable Process program_;  // mutable, to query the exit status for a message
     std::string incoming_;
     std::size_t read_from_ = 0;
@@ -148,6 +162,8 @@ private:
     void check_time_limits(Exchange& x, Clock::time_point last);
     void take_lines(Exchange& x, const Read& read);
     bool take_block(Exchange& x, const Rows& rows, std::size_t n, std::string& head, std::size_t& payload_read);
+    std::byte* slot(std::size_t block) const { return memory_->at() + block % slots * slot_bytes; }
+    std::size_t most_rows(const Rows& rows) const;
     [[noreturn]] void fault(Exchange& x, std::size_t i, const std::string& what) {
         fault(x.describe(i), i, what, x.expected);
     }

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numeric>
 
 #include "check/sources/pipe_io.h"
 #include "check/sources/check_case.h"
@@ -222,6 +223,36 @@ TEST(PipeLines, AreAnsweredInOrder) {
     EXPECT_THROW(echo.lines(1, "another line", write, never), SamplerError);
     EXPECT_FALSE(echo.broken().empty());
     EXPECT_THROW(echo.lines(1, "the same line", write, read), SamplerError);  // nothing is sent any more
+}
+
+#ifdef __linux__
+/// The program copies what is given in a slot of 16 MiB to its second half, and sends the counts back.
+TEST(PipeBlocks, MayBeInMemory) {
+    PipeConnection copy(
+        "head=$(mktemp); k=0; while dd bs=8 count=1 of=$head 2>/dev/null && [ -s $head ]; do "
+        "dd if=/proc/self/fd/3 of=/proc/self/fd/3 bs=1M skip=$((16 * k)) seek=$((16 * k + 8)) count=1 "
+        "2>/dev/null; tail -c 4 $head; k=$((1 - k)); done; rm $head",
+        {}, "copy", true);
+    ASSERT_TRUE(copy.use_memory());
+    std::vector<float> in(3 * 65536 + 5), out(in.size());
+    std::iota(in.begin(), in.end(), 1.0f);
+    for (int k = 0; k < 2; ++k) {
+        copy.blocks({.operation = "copy",
+            .count = in.size(),
+            .in = std::as_bytes(std::span(in)),
+            .out = std::as_writable_bytes(std::span(out)),
+            .expected = "the same rows",
+            .describe = [](std::size_t i) { return "row " + std::to_string(i); }});
+        EXPECT_EQ(out, in) << k;
+        std::ranges::reverse(in);
+    }
+}
+#endif
+
+TEST(PipeBlocks, NeedMemoryThatWasOffered) {
+    EXPECT_THROW(start_pipe("read hello; echo hello 2 x block=f32 memory=yes; sleep 3"), SamplerError);
+    PipeConnection other("cat", {}, "cat");
+    EXPECT_FALSE(other.use_memory());
 }
 
 TEST(PythonSamplers, AreNamedByAFileOrAModule) {

@@ -14,14 +14,11 @@
 #include <mutex>
 #include <vector>
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include "base/errors.h"
 #include "base/host_program.h"
 #include "base/process.h"
 #include "base/progress.h"
+#include "base/shared_memory.h"
 #include "base/text.h"
 #include "check/sources/plugin_host.h"
 #include "samplers/batch_sampler.h"
@@ -47,38 +44,6 @@ struct Call {
     std::string text() const {
         return fmt::format("in {} at w_o = ({:.9g}, {:.9g}, {:.9g})", function, wo.x, wo.y, wo.z);
     }
-};
-
-/// Memory of fixed size that a host shares.
-class SharedMemory {
-public:
-    SharedMemory() {
-#ifdef __linux__
-        file_ = ::memfd_create("crescent", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-#else
-        const std::string name = fmt::format("/crescent-{}-{}", ::getpid(), static_cast<const void*>(this));
-        file_ = ::shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL, 0600);
-        ::shm_unlink(name.c_str());
-#endif
-        if (file_ >= 0 && ::ftruncate(file_, PluginRows::bytes) == 0)
-            memory_ = ::mmap(nullptr, PluginRows::bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
-        if (memory_ == MAP_FAILED) throw OutputError(fmt::format("no shared memory: {}", std::strerror(errno)));
-#ifdef __linux__
-        ::fcntl(file_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL);  // a plugin cannot remove it
-#endif
-    }
-    ~SharedMemory() {
-        if (memory_ != MAP_FAILED) ::munmap(memory_, PluginRows::bytes);
-        if (file_ >= 0) ::close(file_);
-    }
-    SharedMemory(const SharedMemory&) = delete;
-    SharedMemory& operator=(const SharedMemory&) = delete;
-    int file() const { return file_; }
-    void* at() const { return memory_; }
-
-private:
-    int file_ = -1;
-    void* memory_ = MAP_FAILED;
 };
 
 /// A process with the library loaded. Used by one thread at a time, and not after a fault.
@@ -139,7 +104,7 @@ public:
 private:
     std::string library_;
     PipeLimits limits_;
-    SharedMemory memory_;
+    SharedMemory memory_{PluginRows::bytes};
     Process process_;
     PluginInfo info_;
 
