@@ -31,6 +31,14 @@ TEST(DifferencesOfShares, AreThoseOfTheRegion) {
     EXPECT_FALSE(largest_difference(at(constant)));  // it changes no share
 }
 
+TEST(Regions, HaveEndsThatDiffer) {
+    const double above = 1 - 0x1p-16;
+    const ChartRect wide{.t0 = 0.5, .t1 = 1, .phi0 = 0, .phi1 = two_pi / 4};
+    const ChartRect thin{.t0 = above, .t1 = 1, .phi0 = 0, .phi1 = two_pi / 4};
+    EXPECT_EQ(region_text(wide, {}), "at polar angles 60 to 90 deg, azimuths 0 to 90 deg");
+    EXPECT_EQ(region_text(thin, {}), "at polar angles 89.999 to 90 deg, azimuths 0 to 90 deg");
+}
+
 TEST(ConcentrationOfDraws, IsComparedWithThatOfP) {
     const auto compared = [](double drawn, double claimed, Vec3d axis) {
         const Explained r = checked(made([=](Vec3d, const PrimarySample& u) { return power_draw(axis, drawn, u); },
