@@ -1,3 +1,4 @@
+// Sealed against becoming smaller, so that no access to it can fail because of the other program.
 #include "base/shared_memory.h"
 
 #include <cerrno>
@@ -29,7 +30,7 @@ SharedMemory::SharedMemory(std::size_t bytes) : bytes_(bytes) {
     }
     at_ = static_cast<std::byte*>(at);
 #ifdef __linux__
-    ::fcntl(file_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL);  // the program cannot remove it
+    ::fcntl(file_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL);
 #endif
 }
 

@@ -16,7 +16,7 @@ declare const global: Record<string, unknown>;
 /** The page's answer to this code: its state, and its verdicts. */
 export function checked(module: WebAssembly.Module, code: string, ground: string, wo = four): { state: string; verdicts: Verdict[] } {
   global["self"] = global;
-  const take = userSampler();
+  const take = userSampler(() => {});
   (global["crescentUser"] as (make: () => unknown) => void)(new Function(`"use strict";\n${returning(code)}`) as () => unknown);
   const user = take() as UserSampler;
   const api = new Api(module, user.calls), { lobe, lambert, sharpness, light } = grounds[ground]!;
