@@ -3,6 +3,8 @@
 // files.
 #include <algorithm>
 #include <map>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -162,13 +164,20 @@ std::string speed(const Timing& t, const Paint& paint) {
         "\n";
 }
 
-/// The stages that took 5 % of the time or more.
+/// The stages that took 5 % of the time or more, in lines of 80 columns.
 std::string shares(const Timing& t, const Paint& paint) {
+    constexpr std::size_t columns = 80;
+    std::vector<std::string> lines;
+    for (const auto& [name, seconds] : t.stages) {
+        if (!(t.total_s > 0 && seconds >= 0.05 * t.total_s)) continue;
+        const std::string share = fmt::format("{:.0f} % {}", 100 * seconds / t.total_s, name);
+        if (!lines.empty()) lines.back() += ";";
+        if (!lines.empty() && lines.back().size() + share.size() + 2 <= columns) lines.back() += " " + share;
+        else lines.push_back("  " + share);
+    }
     std::string out;
-    for (const auto& [name, seconds] : t.stages)
-        if (t.total_s > 0 && seconds >= 0.05 * t.total_s)
-            out += fmt::format("{}{:.0f} % {}", out.empty() ? "" : "; ", 100 * seconds / t.total_s, name);
-    return out.empty() ? out : paint.cut("  " + out) + "\n";
+    for (const std::string& line : lines) out += paint.cut(line) + "\n";
+    return out;
 }
 
 std::string where(const ReportInputs& in, const std::string& out_dir, const OutputParts& parts, const Paint& paint) {

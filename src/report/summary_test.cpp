@@ -73,6 +73,12 @@ TEST(Summary, HasTheSharesOfTheStages) {
     Sample s;
     s.timing.stages = {{"references", 0.25}, {"films", 1.25}, {"metrics", 0.05}, {"report", 0.5}};
     EXPECT_NE(summary(s).find("  10 % references; 50 % films; 20 % report\n"), std::string::npos) << summary(s);
+    s.timing.stages = {{"references", 0.25}, {"films", 1.25}, {"tails, furnaces and article checks", 0.25},
+        {"plates and films on disk", 0.25}, {"report", 0.5}};
+    EXPECT_NE(summary(s).find("  10 % references; 50 % films; 10 % tails, furnaces and article checks;\n"
+                              "  10 % plates and films on disk; 20 % report\n"),
+        std::string::npos)
+        << summary(s);
 }
 
 TEST(Summary, FilmNameOmitsSIfItsArmIgnoresS) {
