@@ -110,7 +110,7 @@ def served(file: str, sent: bytes, reads: bool) -> BaseException | None:
         host: Any = shader
         try:
             with os.fdopen(requests[0], "rb") as read, os.fdopen(answers[1], "wb", 0) as write:
-                _serve(read, write, host, lambda seconds, what, call: call())  # type: ignore[arg-type]
+                _serve(read, write, host, lambda seconds, what, call: call(), None)  # type: ignore[arg-type]
             ended.append(None)
         except (OSError, ValueError) as error:
             ended.append(error)
