@@ -15,7 +15,6 @@ public:
     SharedMemory& operator=(const SharedMemory&) = delete;
     int file() const { return file_; }
     std::byte* at() const { return at_; }
-    std::size_t bytes() const { return bytes_; }
 
 private:
     std::size_t bytes_;

@@ -83,10 +83,10 @@ std::vector<std::size_t> cells_of(const Tree& tree, const NodeShares& shares) {
 
 /// With as many figures as tell the ends apart.
 std::string range_text(double from, double to) {
-    constexpr int most = 9;
+    constexpr int most_figures = 9;
     int figures = 3;
     const auto text = [&](double degrees) { return fmt::format("{:.{}g}", degrees, figures); };
-    while (figures < most && text(from) == text(to)) ++figures;
+    while (figures < most_figures && text(from) == text(to)) ++figures;
     return text(from) + " to " + text(to) + " deg";
 }
 

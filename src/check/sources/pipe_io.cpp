@@ -160,8 +160,8 @@ void PipeConnection::blocks(const Rows& rows) {
     const std::size_t row_size = rows.in.size() / rows.count;
     Exchange x{.count = rows.count, .expected = rows.expected, .describe = rows.describe, .produce = {}, .take = {}};
     check_open();
-    const std::size_t most = most_rows(rows);
-    const auto rows_from = [&](std::size_t row) { return std::min(rows.count - row, most); };
+    const std::size_t rows_in_block = most_rows(rows);
+    const auto rows_from = [&](std::size_t row) { return std::min(rows.count - row, rows_in_block); };
     const auto head_of = [&](std::size_t row) {
         const auto n = static_cast<std::uint32_t>(rows_from(row));
         std::string head(rows.operation, 4);
@@ -209,10 +209,10 @@ void PipeConnection::blocks(const Rows& rows) {
 
 /// Of a block: docs/samplers.md, and what a slot takes.
 std::size_t PipeConnection::most_rows(const Rows& rows) const {
-    constexpr std::size_t most = 1 << 16;
-    if (!uses_memory_) return most;
+    constexpr std::size_t in_block = 1 << 16;
+    if (!uses_memory_) return in_block;
     const std::size_t row = std::max(rows.in.size(), rows.out.size()) / rows.count;
-    return std::min(most, slot_bytes / 2 / row);
+    return std::min(in_block, slot_bytes / 2 / row);
 }
 
 /// Reads the available part of the answer to `n` rows; returns false at the end of the program's output.
