@@ -189,7 +189,8 @@ def wrapped_azimuth(rng: Rng, real: type, fault: str) -> Sampler:
         log_z = np.where(z > 0.7, 0.5 * np.log1p(-np.clip(across2, 1e-300, 0.6)), np.log(z))
         r = rho * rho if fault == "concentration squared" else rho
         about = (1 - r * r) / (2 * PI * (1 + r * r - 2 * r * np.cos(azimuth(w) - azimuth(wo))))
-        return np.where(w[:, 2] > 0, a * b * np.exp((a - 1) * log_z) * (-np.expm1(a * log_z)) ** (b - 1) * about, 0).astype(real)
+        cosine = a * b * np.exp((a - 1) * log_z) * (-np.expm1(a * log_z)) ** (b - 1)
+        return np.where(w[:, 2] > 0, cosine * about, 0).astype(real)
 
     def sample(wo: Array, u: Array) -> tuple[Array, ...]:
         v = u.astype(float)

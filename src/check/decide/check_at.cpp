@@ -157,11 +157,8 @@ private:
     /// The evaluations of stage 1 that the sizes require, a third more than in proportion to their squares.
     double needed_of_first_stage() const {
         Sizes sizes = out_.sizes;
-        if (is_integral_open()) sizes.integral = error_in_reach(first_.integrals, first_.observations);
+        if (out_.is_integral_open()) sizes.integral = error_in_reach(first_.integrals, first_.observations);
         return 4.0 / 3 * first_.done.cost() * sqr(worst_ratio(sizes) / out_.most_ratio());
-    }
-    bool is_integral_open() const {
-        return out_.sizes.integral && *out_.sizes.integral > out_.most_ratio() * target_constant;
     }
     bool goes_on() const {
         if (!out_.inconclusive || out_.wrong() || source_.recorded()) return false;
@@ -171,7 +168,7 @@ private:
     void look_further(int k) {
         const double needed = std::max(needed_of_first_stage(), 1.5 * first_.done.cost());
         // The tree was made for fewer points, which resolve less of p.
-        if (k == 0 && is_integral_open() && !is_of_weights()) {
+        if (k == 0 && out_.is_integral_open() && !is_of_weights()) {
             CheckBudget larger = budget_;
             larger.evaluations = most_of_first_stage();
             grow_again(larger, StreamKey::further);
@@ -375,6 +372,8 @@ bool CheckAt::is_withheld(std::string_view verdict) const {
 }
 
 double CheckAt::most_ratio() const { return scatter.pdf() ? inconclusive_of_estimates : inconclusive_at; }
+
+bool CheckAt::is_integral_open() const { return sizes.integral && *sizes.integral > most_ratio() * target_constant; }
 
 CheckAt check_sampler_at(const SamplerAdapter& adapter, int technique, Vec3d wo, const CaseData& data,
     const CheckBudget& budget, std::uint32_t seed) {

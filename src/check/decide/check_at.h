@@ -91,6 +91,8 @@ struct CheckAt {
     Observations observations;
     /// The ratio of a size to its target above which a verdict is inconclusive.
     double most_ratio() const;
+    /// Whether points do not determine the integral of p.
+    bool is_integral_open() const;
     bool wrong() const { return !findings.empty() || !small.empty(); }
     /// Whether the verdict is built on answers of which too many are not numbers, so that it is not given.
     bool is_withheld(std::string_view verdict) const;

@@ -247,24 +247,33 @@ TEST(CheckAtOneWo, HasNoFiniteIntervalForAnInfiniteIntegral) {
     EXPECT_LT(*integral(-1).sizes.integral, inconclusive_at * target_constant);
 }
 
+/// A sphere seen from the origin, by area; its centre is a unit vector.
+struct Sphere {
+    Vec3d centre;
+    double radius;
+    /// To the point at this cosine from the axis to the origin; a share of the turn about it.
+    Vec3d direction(double z, double turn) const {
+        const double r = std::sqrt(1 - z * z), phi = two_pi * turn;
+        const Frame<double> frame = frame_about(-centre);
+        return normalize(centre + radius * (r * std::cos(phi) * frame.t + r * std::sin(phi) * frame.b - z * centre));
+    }
+    /// Of points of the whole sphere, of which those behind draw nothing.
+    double pdf(Vec3d w) const {
+        const double along = dot(centre, w), h2 = radius * radius - 1 + along * along;
+        if (!(along > 0 && h2 > 0)) return 0;
+        const double h = std::sqrt(h2), distance = along - h;
+        return distance * distance / (h / radius) / (2 * two_pi * radius * radius);
+    }
+};
+
 /// The front of a sphere by area: at its rim p has a pole of d^(-1/2), whose square has no finite integral.
 TEST(CheckAtOneWo, DecidesTheIntegralOfADensityWithAPole) {
-    constexpr double radius = 0.25;
-    const Vec3d centre{0.36, 0.48, 0.8};
+    const Sphere sphere{.centre = {0.36, 0.48, 0.8}, .radius = 0.25};
+    const double front = 1 - sphere.radius;  // twice its share of the area
     FunctionSampler s;
     s.of.wo = Traits::WoDomain::none;
-    s.draw = [=](Vec3d, const PrimarySample& u) {
-        const double z = radius + (1 - radius) * u.x, r = std::sqrt(1 - z * z);
-        const Frame<double> frame = frame_about(-centre);
-        const double phi = two_pi * u.y;
-        return normalize(centre + radius * (r * std::cos(phi) * frame.t + r * std::sin(phi) * frame.b - z * centre));
-    };
-    s.p = [=](Vec3d, Vec3d w) {
-        const double along = dot(centre, w), h2 = radius * radius - 1 + along * along;
-        if (!(along > 0 && h2 > 0)) return 0.0;
-        const double h = std::sqrt(h2), distance = along - h;
-        return distance * distance / (h / radius) / (two_pi * (1 - radius) * radius * radius);
-    };
+    s.draw = [=](Vec3d, const PrimarySample& u) { return sphere.direction(sphere.radius + front * u.x, u.y); };
+    s.p = [=](Vec3d, Vec3d w) { return sphere.pdf(w) * 2 / front; };
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         const CheckAt c = check_sampler_at(s, 0, {0, 0, 1}, {}, CheckBudget::limited(), seed);
         EXPECT_FALSE(c.wrong()) << seed;
@@ -274,27 +283,18 @@ TEST(CheckAtOneWo, DecidesTheIntegralOfADensityWithAPole) {
 
 /// Four such spheres, whose back draws nothing: a small budget does not resolve their rims, and a larger tree does.
 TEST(CheckAtOneWo, GrowsItsTreeAgainWhereItGoesOnForAnIntegral) {
-    constexpr double radii[] = {0.2, 0.3, 0.15, 0.25};
-    const Vec3d centres[] = {tilt(20), tilt(50, 100), tilt(40, 200), tilt(60, 300)};
+    const Sphere spheres[] = {{tilt(20), 0.2}, {tilt(50, 100), 0.3}, {tilt(40, 200), 0.15}, {tilt(60, 300), 0.25}};
     FunctionSampler s;
     s.of.wo = Traits::WoDomain::none;
     s.of.numbers = 3;
     s.draw = [&](Vec3d, const PrimarySample& u) -> Vec3d {
-        const auto k = static_cast<std::size_t>(4 * u[2]);
-        const double z = 1 - 2 * u.x, r = std::sqrt(1 - z * z), phi = two_pi * u.y;
-        if (z < radii[k]) return {};
-        const Frame<double> frame = frame_about(-centres[k]);
-        return normalize(
-            centres[k] + radii[k] * (r * std::cos(phi) * frame.t + r * std::sin(phi) * frame.b - z * centres[k]));
+        const Sphere& sphere = spheres[static_cast<std::size_t>(4 * u[2])];
+        const double z = 1 - 2 * u.x;
+        return z < sphere.radius ? Vec3d{} : sphere.direction(z, u.y);
     };
     s.p = [&](Vec3d, Vec3d w) {
         double p = 0;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const double along = dot(centres[k], w), h2 = radii[k] * radii[k] - 1 + along * along;
-            if (!(along > 0 && h2 > 0)) continue;
-            const double h = std::sqrt(h2), distance = along - h;
-            p += distance * distance / (h / radii[k]) / (4 * 2 * two_pi * radii[k] * radii[k]);
-        }
+        for (const Sphere& sphere : spheres) p += sphere.pdf(w) / 4;
         return p;
     };
     CheckBudget budget = CheckBudget::limited();

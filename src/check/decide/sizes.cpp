@@ -566,6 +566,12 @@ std::optional<double> bias_of(const Evidence& e, double level) {
     return errors * std::sqrt(v) / expected.value + detection_floor;
 }
 
+/// Of an integral that points resolve up to `rest`; none if it is 0.
+std::optional<double> relative_error(const Estimate& resolved, double rest) {
+    if (!(resolved.value > 0)) return {};
+    return (half_interval(resolved) + rest) / resolved.value;
+}
+
 }  // namespace
 
 Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t draws, const StreamKey& key) {
@@ -594,17 +600,13 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
 }
 
 std::optional<double> error_of_integral(const Integrals& integrals, const Observations& o) {
-    const Estimate& resolved = integrals.sums[mass];
-    if (!(resolved.value > 0)) return {};
     const double drawn = o.share_unresolved(), held = integrals.unresolved.value;
-    const double rest = std::min(std::max(drawn, held), std::fabs(drawn - held) + half_interval(integrals.unresolved));
-    return (half_interval(resolved) + rest) / resolved.value;
+    return relative_error(integrals.sums[mass],
+        std::min(std::max(drawn, held), std::fabs(drawn - held) + half_interval(integrals.unresolved)));
 }
 
 std::optional<double> error_in_reach(const Integrals& integrals, const Observations& o) {
-    const Estimate& resolved = integrals.sums[mass];
-    if (!(resolved.value > 0)) return {};
-    return (half_interval(resolved) + o.share_unresolved()) / resolved.value;
+    return relative_error(integrals.sums[mass], o.share_unresolved());
 }
 
 double half_interval(const Estimate& integral) {

@@ -341,7 +341,7 @@ Sentences sentences_of_open(const CheckAt& c, std::string_view verdict) {
     };
     const Sizes& s = c.sizes;
     const Estimate& whole = c.integrals.sums[mass];
-    if (verdict == "normalised" && s.integral && *s.integral > c.most_ratio() * target_constant)
+    if (verdict == "normalised" && c.is_integral_open())
         return {{"undetermined integral",
             fmt::format("{:.0f} points do not determine the integral of p to {:g} %: they give about {:.2g}, and a "
                         "pole of p may have any integral.",
