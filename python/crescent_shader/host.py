@@ -191,8 +191,12 @@ class Memory:
     _FILE, _SLOTS, _SLOT_BYTES = 3, 2, 16 << 20
 
     def __init__(self) -> None:
-        size = self._SLOTS * self._SLOT_BYTES
-        self._floats = np.frombuffer(mmap.mmap(self._FILE, size), "<f4").reshape(self._SLOTS, 2, -1)
+        try:
+            shared = mmap.mmap(self._FILE, self._SLOTS * self._SLOT_BYTES)
+        except (OSError, ValueError):
+            text = f"{self.WORD}: descriptor {self._FILE} is no memory: crescent check starts this module"
+            raise BadInput(text) from None
+        self._floats = np.frombuffer(shared, "<f4").reshape(self._SLOTS, 2, -1)
         self._read = self._written = 0
 
     def rows(self, count: int, columns: int) -> Array:
@@ -285,6 +289,7 @@ def main(words: list[str] | None = None) -> int:
         if not greeting.startswith(b"hello 2"):
             print("crescent check starts this module: crescent check FILE.wgsl", file=sys.stderr)
             return 2
+        memory = Memory() if shares_memory else None
         shader = opened(request, Watchdog(lambda text: say(f"error {request.path}: {text}")))
     except BadInput as error:
         say(f"error {error}")
@@ -293,7 +298,6 @@ def main(words: list[str] | None = None) -> int:
         say(f"missing {error}")
         return 3
     print(f"{title_of(shader.adapter)}, single precision", file=sys.stderr, flush=True)
-    memory = Memory() if shares_memory else None
     say(shader.handshake(to_python=greeting.strip() == GREETING_OF_PYTHON, memory=shares_memory))
 
     def report(text: str) -> None:

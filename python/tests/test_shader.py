@@ -4,6 +4,8 @@ import json
 import os
 import pickle
 import struct
+import subprocess
+import sys
 import threading
 from pathlib import Path
 from types import SimpleNamespace
@@ -127,6 +129,14 @@ def served(file: str, sent: bytes, reads: bool) -> BaseException | None:
     thread.join(30)
     assert ended, "the host waits for ever"
     return ended[0]
+
+
+def test_memory_is_given_by_crescent_alone(file: str) -> None:
+    words = [sys.executable, "-P", "-m", "crescent_shader", "--memory", "--set=alpha=0.3", file]
+    done = subprocess.run(words, input="hello 2\n", capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2
+    assert done.stdout.startswith("error --memory: descriptor 3 is no memory")
+    assert "Traceback" not in done.stderr
 
 
 def test_the_host_ends_with_its_client(file: str) -> None:
