@@ -18,7 +18,7 @@ namespace {
 
 using namespace crescent;
 
-constexpr std::size_t rows = 1 << 16, batches = 64;
+constexpr std::size_t rows = 1 << 16, batches = 512;
 
 /// A batch at one w_o: its random numbers, and directions above the surface.
 struct Batch {
@@ -55,6 +55,7 @@ template <class Work> double rate(const SamplerAdapter& sampler, const Work& wor
 void print_rates(const char* name, const SamplerAdapter& sampler, const Batch& batch) {
     const auto draw = [&](std::span<Draw> draws, std::span<double>) { sampler.sample(0, batch.wo, batch.u, draws); };
     const auto density = [&](std::span<Draw>, std::span<double> values) { sampler.pdf(0, batch.pairs, values); };
+    rate(sampler, draw);  // starts the processes
     std::printf("%s draws %.2f\n", name, rate(sampler, draw));
     std::printf("%s densities %.2f\n", name, rate(sampler, density));
 }

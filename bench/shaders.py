@@ -3,8 +3,8 @@
 
     bench/shaders.py [--build build] [--rounds 5] [--device NAME] [--write docs/speed.md]
 
-Both answer through crescent in memory that is shared: the shader, in WGSL, from one process, which computes on all cores,
-the plugin from a process for each core (bench/adapters.cpp). Then both are checked. They alternate; figures are medians,
+Both, the shader in WGSL, answer through crescent in memory that is shared, from a process for each core
+(bench/adapters.cpp). Then both are checked. They alternate; figures are medians,
 the ratio is the median of those of one round. Needs a build with the preset `bench`, NumPy, wgpu, a driver and cc. With
 --write the table is put between the lines of the file that say "measured by shaders.py" and "end of shaders.py".
 """

@@ -474,6 +474,15 @@ void log_cost(std::span<const CheckCase> check_cases, const TestSettings& settin
         settings.questions, checked, more));
 }
 
+/// Logs which device evaluates each sampler, where one is declared.
+void log_devices(std::span<const CheckCase> check_cases, ProgressMonitor& monitor) {
+    DevicesByArm devices;
+    for (const CheckCase& t : check_cases)
+        if (t.adapter) add_device(t.arm, *t.adapter, devices);
+    for (const auto& [arm, device] : devices)
+        monitor.log(fmt::format("{} is evaluated on {}", printable(arm), device.text()));
+}
+
 std::vector<std::string> names_of(std::span<const CheckCase> check_cases) {
     std::vector<std::string> out;
     for (const CheckCase& t : check_cases)
@@ -555,6 +564,7 @@ int check(const CheckFlags& given) {
     try {
         const std::vector<CheckCase> check_cases = cases_for(flags, monitor);
         check_waivers(waivers, names_of(check_cases));
+        log_devices(check_cases, monitor);
         const bool number = check_cases.front().adapter && check_cases.front().adapter->traits().number;
         if (number) {
             if (flags.describe) throw InputError({"--describe", 0, 0}, "is for samplers of directions and points");
@@ -656,6 +666,7 @@ int check_against(
         write_files(flags, j);
         return exit_of(j.state, flags);
     }
+    log_devices(b, monitor);
     CheckResult j = compare_samplers(a, b, test_settings_of(flags), same, monitor);
     if (!waivers.empty()) waive(j, waivers);
     monitor.clear();

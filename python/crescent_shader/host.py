@@ -297,7 +297,6 @@ def main(words: list[str] | None = None) -> int:
     except MissingPart as error:
         say(f"missing {error}")
         return 3
-    print(f"{title_of(shader.adapter)}, single precision", file=sys.stderr, flush=True)
     say(shader.handshake(to_python=greeting.strip() == GREETING_OF_PYTHON, memory=shares_memory))
 
     def report(text: str) -> None:

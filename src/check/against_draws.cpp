@@ -150,8 +150,8 @@ public:
         for (int set = 0; set < replicate_sets; ++set) {
             key.part = static_cast<std::uint16_t>(set);
             const ScrambledSobol points(key, source_.numbers(), source_.resolution());
-            for (std::uint32_t from = first; from < last; from += batch_size) {
-                u_.resize(std::min(batch_size, last - from));
+            for (std::uint32_t from = first; from < last; from += static_cast<std::uint32_t>(u_.size())) {
+                u_.resize(std::min(source_.batch_rows(), last - from));
                 draws_.assign(u_.size(), {});
                 points.points(from, u_);
                 source_.draw(u_, draws_);

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <functional>
 #include <limits>
-#include <mutex>
 #include <vector>
 
 #include "base/errors.h"
+#include "check/sources/copies.h"
 #include "check/sources/external.h"
 #include "experiment/experiment.h"
 
@@ -29,57 +28,6 @@ std::shared_ptr<const SamplerAdapter> named_arm(const std::string& arm, std::sha
         });
 }
 
-/// Copies of a program, each a process that answers one batch at a time. Another one starts when a batch finds all of
-/// them at work, one for each thread at most.
-class Copies : public SamplerAdapter {
-public:
-    using Start = std::function<std::shared_ptr<const SamplerAdapter>()>;
-    explicit Copies(Start start) : start_(std::move(start)), first_(start_()), free_{first_} {}
-    SamplerDeclaration declaration() const override {
-        SamplerDeclaration out = first_->declaration();
-        out.serial = false;
-        return out;
-    }
-    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
-        Taken(*this)->evaluate(query, out);
-    }
-
-private:
-    /// A copy that no other thread uses meanwhile.
-    class Taken {
-    public:
-        explicit Taken(const Copies& from) : from_(from), program_(from.take()) {}
-        ~Taken() {
-            const std::lock_guard<std::mutex> guard(from_.lock_);
-            from_.free_.push_back(std::move(program_));
-        }
-        Taken(const Taken&) = delete;
-        Taken& operator=(const Taken&) = delete;
-        const SamplerAdapter* operator->() const { return program_.get(); }
-
-    private:
-        const Copies& from_;
-        std::shared_ptr<const SamplerAdapter> program_;
-    };
-
-    std::shared_ptr<const SamplerAdapter> take() const {
-        {
-            const std::lock_guard<std::mutex> guard(lock_);
-            if (!free_.empty()) {
-                std::shared_ptr<const SamplerAdapter> program = std::move(free_.back());
-                free_.pop_back();
-                return program;
-            }
-        }
-        return start_();
-    }
-
-    Start start_;
-    std::shared_ptr<const SamplerAdapter> first_;
-    mutable std::mutex lock_;
-    mutable std::vector<std::shared_ptr<const SamplerAdapter>> free_;
-};
-
 /// An estimate divides f cos by the density of the drawn direction: a sampler without one cannot be used as an arm.
 void refuse(const Traits& traits) {
     if (traits.domain)
@@ -92,9 +40,11 @@ void refuse(const Traits& traits) {
 std::shared_ptr<const SamplerAdapter> open(const ArmPlan& arm, const Experiment& experiment, const PipeLimits& limits) {
     try {
         if (arm.plugin) return open_plugin(*arm.plugin, limits);
-        const auto copies = std::make_shared<Copies>([arm, limits] {
-            return arm.exec ? start_pipe(*arm.exec, limits) : start_python_sampler(*arm.python, limits);
-        });
+        const auto copies = std::make_shared<Copies>(
+            [arm, limits] {
+                return arm.exec ? start_pipe(*arm.exec, limits) : start_python_sampler(*arm.python, limits);
+            },
+            std::numeric_limits<std::size_t>::max());
         refuse(copies->traits());
         return copies;
     } catch (const InputError& error) {

@@ -107,6 +107,7 @@ struct SamplerDeclaration {
     bool limited = false;             // answers are expensive, so that TestSettings limits their number
     std::vector<std::string> uses{};  // quantities of a surface point that it takes, of context_names()
     std::size_t batch_rows = 8192;    // of a run at most; the default stays in the cache of a core
+    bool costly_query = false;        // whatever its number of rows: a check asks in larger batches
     EvaluationDevice device{};
 
     bool uses_lights() const;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
+#include <mutex>
 #include <tuple>
 #include <type_traits>
 
@@ -139,8 +140,11 @@ public:
     }
 
     std::vector<CheckOutcome> run() {
-        if (std::ranges::any_of(check_cases_, [](const CheckCase& t) { return t.adapter->serial(); })) {
-            run_serially();
+        const bool serial = std::ranges::any_of(check_cases_, [](const CheckCase& t) { return t.adapter->serial(); });
+        const bool is_limited_in_time =
+            std::ranges::any_of(check_cases_, [](const CheckCase& t) { return t.adapter->spending().allowed > 0; });
+        if (serial || is_limited_in_time) {
+            run_within_time(serial);
         } else {
             parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t j) { check(jobs_[j]); });
             check_whole();
@@ -269,20 +273,24 @@ private:
         techniques.front().small.push_back(*fault);
     }
 
-    /// What the w_o of one program took so far.
+    /// What the w_o of one program took so far; of those that several threads check at once, each counts what all took.
     struct Spent {
         double answers = 0, seconds = 0, most = 0;  // most: answers of one w_o
+        void add(const QueryUsage& before, const QueryUsage& after) {
+            const double more = static_cast<double>(after.answers - before.answers);
+            answers += more;
+            most = std::max(most, more);
+            seconds += after.seconds - before.seconds;
+        }
+        bool has_time(const QueryUsage& now) const {
+            if (now.allowed <= 0 || answers == 0) return true;
+            return now.seconds + most * seconds / answers < now.allowed;
+        }
     };
-    bool has_time_for(const Job& job, const Spent& spent) const {
-        const QueryUsage now = case_of(job).adapter->spending();
-        if (now.allowed <= 0 || spent.answers == 0) return true;
-        return now.seconds + spent.most * spent.seconds / spent.answers < now.allowed;
-    }
 
-    /// Runs on one thread: first a few draws at every w_o and the tests of the whole sampler, then each w_o while time
-    /// is left. The cost of the most expensive w_o so far predicts the next one. The first w_o of each program is
-    /// always tried.
-    void run_serially() {
+    /// First a few draws at every w_o and the tests of the whole sampler, then each w_o while time is left. The cost of
+    /// the most expensive w_o so far predicts the next one. The first w_o of each program is always tried.
+    void run_within_time(bool serial) {
         order_jobs();
         std::vector<std::optional<SmallFault>> first_faults(jobs_.size());
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
@@ -299,28 +307,30 @@ private:
                     cut_of([&] { first_faults[j] = fault_of_first_draws(check_case, key); });
         }
         check_whole();
-        std::map<const SamplerAdapter*, Spent> spent_by;
-        for (std::size_t j = 0; j < jobs_.size(); ++j) {
-            jobs_left_ = jobs_.size() - j - 1;
-            std::optional<Cut>& cut = jobs_[j].outcome->cut[jobs_[j].index];
-            if (cut) {
-                monitor_.advance(1);
-                continue;
-            }
-            Spent& spent = spent_by[case_of(jobs_[j]).adapter.get()];
-            const QueryUsage before = case_of(jobs_[j]).adapter->spending();
-            if (has_time_for(jobs_[j], spent)) check(jobs_[j]);
+        std::atomic<std::size_t> next = 0;  // in this order, also on several threads
+        std::mutex lock;
+        std::map<const SamplerAdapter*, Spent> spent_by;  // guarded by the lock
+        for_each_index(serial, jobs_.size(), [&](std::size_t) {
+            const std::size_t j = next++;
+            const Job& job = jobs_[j];
+            const SamplerAdapter* adapter = case_of(job).adapter.get();
+            if (serial) jobs_left_ = jobs_.size() - j - 1;
+            std::optional<Cut>& cut = job.outcome->cut[job.index];
+            if (cut) return monitor_.advance(1);
+            const QueryUsage before = adapter->spending();
+            const bool has_time = [&] {
+                const std::lock_guard<std::mutex> guard(lock);
+                return spent_by[adapter].has_time(before);
+            }();
+            if (has_time) check(job);
             else {
                 cut = Cut{Cut::Why::too_slow, "no time is left", true};
                 monitor_.advance(1);
             }
-            keep_first_fault(jobs_[j], first_faults[j]);
-            const QueryUsage after = case_of(jobs_[j]).adapter->spending();
-            const double answers = static_cast<double>(after.answers - before.answers);
-            spent.answers += answers;
-            spent.most = std::max(spent.most, answers);
-            spent.seconds += after.seconds - before.seconds;
-        }
+            keep_first_fault(job, first_faults[j]);
+            const std::lock_guard<std::mutex> guard(lock);
+            spent_by[adapter].add(before, adapter->spending());
+        });
     }
 };
 

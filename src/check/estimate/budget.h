@@ -82,8 +82,9 @@ private:
 /// Approximate number of points at which lost light is measured, in the leaves with a point where p was 0; at least two
 /// for each leaf.
 inline constexpr double points_of_lost = 2048;
-/// Draws and points in one batch: held in memory at a time, and sent to a pipe without waiting.
-inline constexpr std::uint32_t batch_size = 4096;
+/// Draws and points in one batch: held in memory at a time, and sent to a pipe without waiting; of a sampler whose
+/// query costs much by itself.
+inline constexpr std::uint32_t batch_size = 4096, large_batch_size = 1u << 15;
 /// Nodes above this depth are tested with replicates; deeper ones have too few draws in each. Memory: 2^11 nodes.
 inline constexpr int replicated_depth = 10;
 /// All nodes of the tree down to this depth always exist.

@@ -102,7 +102,8 @@ public:
             w_.clear();
             chart_.clear();
             std::size_t last = first;
-            for (; last < grids.size() && (last == first || w_.size() < batch_size); ++last) place_points(grids[last]);
+            for (; last < grids.size() && (last == first || w_.size() < source_.batch_rows()); ++last)
+                place_points(grids[last]);
             p_.resize(w_.size());
             f_.assign(w_.size(), {});
             source_.density(w_, p_);

@@ -99,8 +99,8 @@ public:
         rows_.resize(to_.node_by_set.size());
         for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r] = to_.node_by_set[r][column];
         std::vector<PrimarySample> u;
-        for (std::uint32_t from = first; from < last; from += batch_size) {
-            u.resize(std::min(batch_size, last - from));
+        for (std::uint32_t from = first; from < last; from += static_cast<std::uint32_t>(u.size())) {
+            u.resize(std::min(source_.batch_rows(), last - from));
             points.points(from, u);
             draws_.assign(u.size(), {});
             source_.draw(u, draws_);
@@ -390,9 +390,10 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
     const std::uint32_t last_draw = source.available(draws, look.independent);
     to.independent = std::max(last_draw, before);
     to.met.reserve(last_draw);
-    for (std::uint32_t from = before; from < last_draw; from += batch_size) {
-        u.resize(std::min(batch_size, last_draw - from));
-        observer.batch(draws, from, u, with_weights && from < of_f);
+    for (std::uint32_t from = before; from < last_draw; from += static_cast<std::uint32_t>(u.size())) {
+        const bool with_f = with_weights && from < of_f;
+        u.resize(std::min(with_f ? batch_size : source.batch_rows(), last_draw - from));
+        observer.batch(draws, from, u, with_f);
     }
     if (!to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
     if (source.traits.own_random || !source.declaration.can_draw) return;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "check/estimate/budget.h"
 #include "check/estimate/stream.h"
 #include "check/sources/recorded_sampler.h"
 #include "check/verdict.h"
@@ -49,6 +50,7 @@ public:
 
     /// The file that contains the draws, if there is one.
     const RecordedSampler* recorded() const { return recorded_; }
+    std::uint32_t batch_rows() const { return declaration.costly_query ? large_batch_size : batch_size; }
     int numbers() const { return std::max(traits.numbers, 1); }
     bool single() const { return traits.bits == 24; }
     Resolution resolution() const { return resolution_of(traits); }

@@ -16,9 +16,11 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/machine.h"
 #include "base/process.h"
 #include "base/text.h"
 #include "check/sources/check_case.h"
+#include "check/sources/copies.h"
 #include "check/sources/neighbours.h"
 #include "check/sources/pipe_io.h"
 #include "check/sources/random_numbers.h"
@@ -84,6 +86,7 @@ public:
             .serial = true,
             .limited = true,
             .uses = hello_.uses,
+            .costly_query = hello_.memory,
             .device = hello_.device};
     }
     QueryUsage spending() const override { return connection_.spending(); }
@@ -105,7 +108,6 @@ private:
     mutable std::mutex lock_;
     // Rows of the last query, guarded by lock_; factors_: of an answer, 0 without a request.
     mutable std::vector<double> request_, answers_, factors_;
-    mutable std::vector<float> single_request_, single_answers_;  // of a block in single precision
 
     /// Calls work(w_o, rows, context) for the runs of a query: those of a scene, or all rows at the example.
     template <class Work> void for_each_run(const SamplerQuery& query, const Work& work) const {
@@ -257,16 +259,12 @@ private:
         if (hello_.uses_lights()) add_count(lights);
         if (hello_.merge && std::string_view(verb) == "sample") add_count(static_cast<std::size_t>(neighbours_));
         const PipeConnection::Write write = writer(verb, given, in);
-        const bool single = hello_.single_blocks();
-        if (single) {
-            single_request_.assign(in.begin(), in.end());
-            single_answers_.resize(out.size());
-        }
         connection_.blocks({.operation = operation,
             .count = count,
-            .in = single ? std::as_bytes(std::span(single_request_)) : std::as_bytes(in),
-            .out = single ? std::as_writable_bytes(std::span(single_answers_)) : std::as_writable_bytes(out),
-            .expected = fmt::format("a block of {} {} a row", got, single ? "floats" : "doubles"),
+            .in = in,
+            .out = out,
+            .single = hello_.single_blocks(),
+            .expected = fmt::format("a block of {} {} a row", got, hello_.single_blocks() ? "floats" : "doubles"),
             .describe =
                 [&](std::size_t i) {
                     std::string line;
@@ -274,7 +272,6 @@ private:
                     return line;
                 },
             .header = std::move(header)});
-        if (single) std::ranges::copy(single_answers_, out.begin());
     }
 
     bool read_sample(std::string_view s, std::span<double> to, std::vector<bool>& delta, std::size_t i) const {
@@ -796,8 +793,13 @@ std::shared_ptr<const SamplerAdapter> start_shader(
     std::vector<std::string> arguments = {"--memory"};
     arguments.insert(arguments.end(), words.begin(), words.end());
     arguments.insert(arguments.end(), {"--", file});
-    return start_python_module(
-        "crescent_shader", arguments, "'crescent-bench[shader]'", limits, file, default_neighbours, true);
+    const auto start = [=] {
+        return start_python_module(
+            "crescent_shader", arguments, "'crescent-bench[shader]'", limits, file, default_neighbours, true);
+    };
+    // While a device computes for one, another converts its numbers; a device computes on all of its cores.
+    constexpr int enough = 4;
+    return std::make_shared<Copies>(start, static_cast<std::size_t>(std::min(enough, usable_threads())));
 }
 
 }  // namespace crescent

@@ -155,9 +155,29 @@ void PipeConnection::take_lines(Exchange& x, const Read& read) {
     }
 }
 
-// Rows are read from and written to the caller's memory without a copy: they are most of the exchanged data.
+namespace {
+
+void write_numbers(std::span<const double> numbers, bool single, std::byte* to) {
+    if (single) std::ranges::copy(numbers, reinterpret_cast<float*>(to));
+    else std::memcpy(to, numbers.data(), numbers.size_bytes());
+}
+void read_numbers(const std::byte* from, bool single, std::span<double> numbers) {
+    if (single) std::copy_n(reinterpret_cast<const float*>(from), numbers.size(), numbers.begin());
+    else std::memcpy(numbers.data(), from, numbers.size_bytes());
+}
+
+}  // namespace
+
+/// The bytes of rows of a block for the pipe; those in single precision are overwritten by the next block.
+std::string_view PipeConnection::payload_of(const Rows& rows, std::span<const double> in) {
+    if (!rows.single) return {reinterpret_cast<const char*>(in.data()), in.size_bytes()};
+    floats_sent_.assign(in.begin(), in.end());
+    return {reinterpret_cast<const char*>(floats_sent_.data()), in.size() * sizeof(float)};
+}
+
+// Doubles are read from and written to the caller's memory without a copy: they are most of the exchanged data.
 void PipeConnection::blocks(const Rows& rows) {
-    const std::size_t row_size = rows.in.size() / rows.count;
+    const std::size_t columns = rows.in.size() / rows.count;
     Exchange x{.count = rows.count, .expected = rows.expected, .describe = rows.describe, .produce = {}, .take = {}};
     check_open();
     const std::size_t rows_in_block = most_rows(rows);
@@ -169,25 +189,24 @@ void PipeConnection::blocks(const Rows& rows) {
         return head + rows.header;
     };
     std::string head = head_of(0), answer_head;
-    std::size_t head_sent = 0, payload_sent = 0, payload_read = 0;
+    std::string_view payload;  // what is left of it
+    std::size_t head_sent = 0, payload_read = 0;
     Clock::time_point last = Clock::now();
     while (x.answered < x.count) {
         const bool has_slot = !uses_memory_ || blocks_sent_ < blocks_answered_ + slots;
         const Process::Ready ready = program_.wait_ready(x.written < x.count && has_slot, true, 50);
         if (ready.input) {
-            const std::size_t bytes = rows_from(x.written) * row_size;
-            const auto* payload = reinterpret_cast<const char*>(rows.in.data() + x.written * row_size);
-            if (uses_memory_ && head_sent == 0) {
-                std::memcpy(slot(blocks_sent_), payload, bytes);
-                payload_sent = bytes;
+            if (head_sent == 0) {
+                const auto in = rows.in.subspan(x.written * columns, rows_from(x.written) * columns);
+                if (uses_memory_) write_numbers(in, rows.single, slot(blocks_sent_));
+                else payload = payload_of(rows, in);
             }
             if (head_sent < head.size()) head_sent += send(x, std::string_view(head).substr(head_sent), ready.output);
-            if (head_sent == head.size() && payload_sent < bytes)
-                payload_sent += send(x, {payload + payload_sent, bytes - payload_sent}, ready.output);
-            if (head_sent == head.size() && payload_sent == bytes) {
+            if (head_sent == head.size() && !payload.empty()) payload.remove_prefix(send(x, payload, ready.output));
+            if (head_sent == head.size() && payload.empty()) {
                 ++blocks_sent_;
                 x.written += rows_from(x.written);
-                head_sent = payload_sent = 0;
+                head_sent = 0;
                 if (x.written < x.count) head = head_of(x.written);
             }
         }
@@ -211,8 +230,16 @@ void PipeConnection::blocks(const Rows& rows) {
 std::size_t PipeConnection::most_rows(const Rows& rows) const {
     constexpr std::size_t in_block = 1 << 16;
     if (!uses_memory_) return in_block;
-    const std::size_t row = std::max(rows.in.size(), rows.out.size()) / rows.count;
+    const std::size_t row = std::max(rows.in.size(), rows.out.size()) / rows.count * bytes_of_number(rows);
     return std::min(in_block, slot_bytes / 2 / row);
+}
+
+/// Where the bytes of an answer arrive.
+std::span<std::byte> PipeConnection::arrival_of(const Rows& rows, std::span<double> out) {
+    if (uses_memory_) return {slot(blocks_answered_) + slot_bytes / 2, out.size() * bytes_of_number(rows)};
+    if (!rows.single) return std::as_writable_bytes(out);
+    floats_received_.resize(out.size());
+    return std::as_writable_bytes(std::span(floats_received_));
 }
 
 /// Reads the available part of the answer to `n` rows; returns false at the end of the program's output.
@@ -250,18 +277,20 @@ bool PipeConnection::take_block(
         fault(x, x.answered, "got an error: " + shown(std::string_view(head).substr(8, length)));
     }
     if (number(0) != n) fault(x, x.answered, fmt::format("got a block of {} rows for one of {}", number(0), n));
-    const std::size_t row_size = rows.out.size() / rows.count, bytes = n * row_size;
-    auto* to = reinterpret_cast<char*>(rows.out.data() + x.answered * row_size);
-    std::size_t got = 0;
-    if (uses_memory_) std::memcpy(to, slot(blocks_answered_) + slot_bytes / 2, got = bytes);
-    else open = read(to + payload_read, bytes - payload_read, got);
-    payload_read += got;
-    if (payload_read == bytes) {
-        ++blocks_answered_;
-        x.answered += n;
-        payload_read = 0;
-        head.clear();
+    const std::size_t columns = rows.out.size() / rows.count;
+    const std::span<double> out = rows.out.subspan(x.answered * columns, n * columns);
+    const std::span<std::byte> arrival = arrival_of(rows, out);
+    if (!uses_memory_) {
+        std::size_t got = 0;
+        open = read(reinterpret_cast<char*>(arrival.data()) + payload_read, arrival.size() - payload_read, got);
+        payload_read += got;
+        if (payload_read < arrival.size()) return open;
     }
+    if (arrival.data() != std::as_bytes(out).data()) read_numbers(arrival.data(), rows.single, out);
+    ++blocks_answered_;
+    x.answered += n;
+    payload_read = 0;
+    head.clear();
     return open;
 }
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/process.h"
 #include "base/shared_memory.h"
@@ -107,8 +108,9 @@ public:
     struct Rows {
         const char* operation;  // four letters
         std::size_t count;
-        std::span<const std::byte> in;
-        std::span<std::byte> out;
+        std::span<const double> in;
+        std::span<double> out;
+        bool single = false;   // sent and received as floats
         std::string expected;  // an answer, for a message
         std::function<std::string(std::size_t)> describe;
         std::string header{};  // bytes between the count and the rows
@@ -147,6 +149,7 @@ private:
     mutable Process program_;  // mutable, to query the exit status for a message
     std::string incoming_;
     std::size_t read_from_ = 0;
+    std::vector<float> floats_sent_, floats_received_;  // of a block in single precision
     std::uint64_t requests_ = 0;
     std::string broken_;  // the error; no requests are sent after it
     bool handshake_done_ = false, slow_ = false;
@@ -162,7 +165,10 @@ private:
     void take_lines(Exchange& x, const Read& read);
     bool take_block(Exchange& x, const Rows& rows, std::size_t n, std::string& head, std::size_t& payload_read);
     std::byte* slot(std::size_t block) const { return memory_->at() + block % slots * slot_bytes; }
+    static std::size_t bytes_of_number(const Rows& rows) { return rows.single ? sizeof(float) : sizeof(double); }
     std::size_t most_rows(const Rows& rows) const;
+    std::string_view payload_of(const Rows& rows, std::span<const double> in);
+    std::span<std::byte> arrival_of(const Rows& rows, std::span<double> out);
     [[noreturn]] void fault(Exchange& x, std::size_t i, const std::string& what) {
         fault(x.describe(i), i, what, x.expected);
     }

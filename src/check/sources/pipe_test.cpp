@@ -234,13 +234,14 @@ TEST(PipeBlocks, MayBeInMemory) {
         "2>/dev/null; tail -c 4 $head; k=$((1 - k)); done; rm $head",
         {}, "copy", true);
     ASSERT_TRUE(copy.use_memory());
-    std::vector<float> in(3 * 65536 + 5), out(in.size());
-    std::iota(in.begin(), in.end(), 1.0f);
+    std::vector<double> in(3 * 65536 + 5), out(in.size());
+    std::iota(in.begin(), in.end(), 1.0);
     for (int k = 0; k < 2; ++k) {
         copy.blocks({.operation = "copy",
             .count = in.size(),
-            .in = std::as_bytes(std::span(in)),
-            .out = std::as_writable_bytes(std::span(out)),
+            .in = in,
+            .out = out,
+            .single = true,
             .expected = "the same rows",
             .describe = [](std::size_t i) { return "row " + std::to_string(i); }});
         EXPECT_EQ(out, in) << k;

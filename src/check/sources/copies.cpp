@@ -1,0 +1,83 @@
+// A copy is taken from the list of free ones and given back after its answer; its start is outside the lock.
+#include "check/sources/copies.h"
+
+#include <fmt/format.h>
+
+#include "check/sources/check_case.h"
+
+namespace crescent {
+
+Copies::Copies(Start start, std::size_t limit)
+    : start_(std::move(start)), limit_(limit), all_{start_()}, free_{all_.front()} {}
+
+SamplerDeclaration Copies::declaration() const {
+    const std::lock_guard<std::mutex> guard(lock_);
+    SamplerDeclaration out = all_.front()->declaration();
+    out.serial = false;
+    return out;
+}
+
+QueryUsage Copies::spending() const {
+    const std::lock_guard<std::mutex> guard(lock_);
+    QueryUsage out = all_.front()->spending();
+    out.answers = 0;
+    for (const Copy& copy : all_) out.answers += copy->spending().answers;
+    return out;
+}
+
+void Copies::evaluate(const SamplerQuery& query, const SamplerAnswers& out) const {
+    const Copy copy = take();
+    try {
+        copy->evaluate(query, out);
+    } catch (const SamplerTimeout&) {
+        give_up(std::current_exception());
+        throw;
+    } catch (const SamplerError& fault) {
+        give_up(std::make_exception_ptr(SamplerExited(fmt::format("the program was given up: {}", fault.what()))));
+        throw;
+    } catch (...) {
+        give_back(copy);
+        throw;
+    }
+    give_back(copy);
+}
+
+Copies::Copy Copies::take() const {
+    std::unique_lock<std::mutex> guard(lock_);
+    changed_.wait(guard, [&] { return fault_ || !free_.empty() || all_.size() + starting_ < limit_; });
+    if (fault_) std::rethrow_exception(fault_);
+    if (!free_.empty()) {
+        Copy copy = std::move(free_.back());
+        free_.pop_back();
+        return copy;
+    }
+    ++starting_;
+    guard.unlock();
+    Copy copy;
+    try {
+        copy = start_();
+    } catch (...) {
+        guard.lock();
+        --starting_;
+        changed_.notify_one();
+        throw;
+    }
+    guard.lock();
+    --starting_;
+    all_.push_back(copy);
+    return copy;
+}
+
+void Copies::give_back(Copy copy) const {
+    const std::lock_guard<std::mutex> guard(lock_);
+    free_.push_back(std::move(copy));
+    changed_.notify_one();
+}
+
+void Copies::give_up(std::exception_ptr fault) const {
+    const std::lock_guard<std::mutex> guard(lock_);
+    if (!fault_) fault_ = std::move(fault);
+    changed_.notify_all();
+}
+
+}  // namespace crescent

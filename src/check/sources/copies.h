@@ -1,0 +1,42 @@
+// Several processes of one program as one sampler, so that several threads are answered at once.
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "samplers/sampler_adapter.h"
+
+namespace crescent {
+
+/// Copies of a program whose answers do not depend on what it was asked before. Each answers one query at a time;
+/// another one starts when a query finds all of them at work. After one failed, all are given up.
+class Copies : public SamplerAdapter {
+public:
+    using Start = std::function<std::shared_ptr<const SamplerAdapter>()>;
+    /// Starts the first one. `limit`: of the number of copies; beyond it a query waits.
+    Copies(Start start, std::size_t limit);
+    SamplerDeclaration declaration() const override;
+    void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override;
+    /// The answers of all; the seconds are those of the first one.
+    QueryUsage spending() const override;
+
+private:
+    using Copy = std::shared_ptr<const SamplerAdapter>;
+    Copy take() const;
+    void give_back(Copy copy) const;
+    void give_up(std::exception_ptr fault) const;
+
+    Start start_;
+    std::size_t limit_;
+    mutable std::mutex lock_;
+    mutable std::condition_variable changed_;
+    mutable std::vector<Copy> all_, free_;  // guarded by lock_, as the others
+    mutable std::size_t starting_ = 0;
+    mutable std::exception_ptr fault_;  // what queries throw from then on
+};
+
+}  // namespace crescent
