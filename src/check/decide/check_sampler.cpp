@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
-#include <mutex>
 #include <tuple>
 #include <type_traits>
 
@@ -308,7 +307,7 @@ private:
         }
         check_whole();
         std::atomic<std::size_t> next = 0;  // in this order, also on several threads
-        std::mutex lock;
+        Mutex lock;
         std::map<const SamplerAdapter*, Spent> spent_by;  // guarded by the lock
         for_each_index(serial, jobs_.size(), [&](std::size_t) {
             const std::size_t j = next++;
@@ -319,7 +318,7 @@ private:
             if (cut) return monitor_.advance(1);
             const QueryUsage before = adapter->spending();
             const bool has_time = [&] {
-                const std::lock_guard<std::mutex> guard(lock);
+                const Guard guard(lock);
                 return spent_by[adapter].has_time(before);
             }();
             if (has_time) check(job);
@@ -328,7 +327,7 @@ private:
                 monitor_.advance(1);
             }
             keep_first_fault(job, first_faults[j]);
-            const std::lock_guard<std::mutex> guard(lock);
+            const Guard guard(lock);
             spent_by[adapter].add(before, adapter->spending());
         });
     }
