@@ -290,10 +290,17 @@ std::optional<Tail> fit_tail(std::span<const float> largest) { return fit(larges
 std::optional<Tail> fit_tail(std::span<const double> largest) { return fit(largest); }
 
 std::optional<Tail> fit_pooled_tail(std::span<const float> largest) {
-    const std::optional<Tail> wide = fit_tail(largest),
-                              deep = fit_tail(largest.first(largest.empty() ? 0 : 1 + (largest.size() - 1) / 8));
-    if (!wide || !deep) return wide;
-    return std::fabs(wide->k - deep->k) > 2 * math::hypot(wide->se, deep->se) ? deep : wide;
+    std::optional<Tail> out = fit_tail(largest);
+    const std::size_t all = largest.empty() ? 0 : largest.size() - 1;
+    for (std::size_t exceedances = all / 8; out && exceedances >= 5; exceedances /= 8) {
+        const bool is_first = exceedances == all / 8;
+        if (!is_first && !out->heavy()) break;
+        const std::optional<Tail> deeper = fit_tail(largest.first(1 + exceedances));
+        if (!deeper) return {};  // the largest are equal
+        const bool differ = std::fabs(out->k - deeper->k) > 2 * math::hypot(out->se, deeper->se);
+        if (differ && (is_first || deeper->k < out->k)) out = deeper;
+    }
+    return out;
 }
 
 // ---- Welch 1947 with the degrees of Welch and Satterthwaite, Holm 1979, Benjamini & Hochberg 1995 and, for dependent

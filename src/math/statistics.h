@@ -114,7 +114,9 @@ std::optional<Tail> fit_tail(std::span<const double> largest);
 
 /// The same for samples of many pixels at once, of which a few in a thousand meet a light: the usual threshold may lie
 /// among the rest, and the step up to the lit ones would look like a tail. A second fit uses an eighth of the
-/// exceedances; if the two differ by more than two standard errors, the second one counts.
+/// exceedances; if the two differ by more than two standard errors, the second one counts. While the tail is heavy, an
+/// eighth of these are tried, and so on, and a lighter one counts: samples of plain materials lie in a few narrow
+/// groups, and such a tail is not heavy at every threshold. Empty if the largest samples are equal.
 std::optional<Tail> fit_pooled_tail(std::span<const float> largest);
 
 // ---- Intervals and tests over renders: Student's t, Welch's test, Holm, Benjamini-Hochberg and Benjamini-Yekutieli.

@@ -62,6 +62,25 @@ TEST(TailIndex, PooledFitIgnoresTheStepToLitSamples) {
     EXPECT_TRUE(fit_pooled_tail(heavy)->heavy());
 }
 
+/// Samples of a scene of plain materials: a few of many meet a light by the gloss of one object or another.
+TEST(TailIndex, PooledFitSeesNoTailInGroups) {
+    std::vector<float> groups, equal, heavy;
+    for (std::uint64_t j = 0; j < 4'000'000; ++j) {
+        const Vec2<float> u = draw(3, 0, j);
+        groups.push_back(u.x < 1.5e-5f ? 8.75f + 0.02f * u.y : u.x < 1.8e-4f ? 5.4f + 0.02f * u.y : 0.1757f * u.y);
+        equal.push_back(u.x < 3e-4f ? 8.8f : u.x < 2e-3f ? 0.5f + 1e-4f * u.y : 0.2f * u.y);
+        heavy.push_back(u.x < 1e-4f ? 8.75f * std::pow(u.y, -0.7f) : 0.1757f * u.y);
+    }
+    for (auto* x : {&groups, &equal, &heavy}) {
+        std::sort(x->begin(), x->end(), std::greater<>());
+        x->resize(tail_length(4'000'000) + 1);
+    }
+    EXPECT_FALSE(fit_pooled_tail(groups)->heavy());
+    EXPECT_FALSE(fit_pooled_tail(equal).has_value());
+    EXPECT_TRUE(fit_pooled_tail(heavy)->heavy());
+    EXPECT_NEAR(fit_pooled_tail(heavy)->k, 0.7, 0.3);  // of the tail, not of the step to it
+}
+
 TEST(TailIndex, TakesTheTailLengthOfParetoSmoothing) {
     EXPECT_EQ(tail_length(10), 0u);
     EXPECT_EQ(tail_length(100), 20u);
