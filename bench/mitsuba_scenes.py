@@ -9,8 +9,8 @@ differ, or too few samples. Mitsuba reads the same meshes, placements, materials
 hidden emitters. Two differences are removed: its rays go through the centres of pixels too, and its sky is enlarged by
 nearest texel, because it interpolates.
 
-R rounds of speed (0: none): in each, both make one film of N samples of every technique that the arm `both` combines,
-and one of a single sample, on all processors. The difference of the two counts, in processor time (user), so neither
+R rounds of speed (0: none): in each, both make one film of N samples of every technique that the arm `renderer`
+combines, one of the material and one of each kind of light, and one of a single sample, on all processors. The difference of the two counts, in processor time (user), so neither
 loading, nor compiling, nor what is done once for a film: crescent traces the primary rays once, Mitsuba for each pixel
 sample (it is slower if one is split into N emitter and BSDF samples). Table: seconds, the median over rounds; ratios,
 the median and the range of those of a round; and the ratio of variances. Mitsuba reads the instances of a mesh as one
@@ -36,7 +36,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 LARGEST_SKY = 4096  # columns of the enlarged image
 FAR = 1e5  # half the side of the square that a plane becomes, m
-LIGHT_SAMPLERS = ("sky", "light-area", "light-triangle", "light-solid-angle")
+ARM = "renderer"  # MIS of the material and each kind of light
 
 
 def set_variant() -> None:
@@ -161,13 +161,13 @@ def loaded(experiment: dict, folder: Path) -> dict:
 
 
 class Mitsuba:
-    """A scene, rendered with the techniques of the arm `both`, n samples of each."""
+    """A scene, rendered with the techniques of the arm `renderer`, n samples of each."""
 
     def __init__(self, experiment: dict, folder: Path) -> None:
-        of = experiment["arms"]["both"]["of"]
-        lights = sum(sampler in LIGHT_SAMPLERS for sampler in of)
+        emits = any("emission" in mesh for mesh in experiment.get("meshes", {}).values())
+        lights = ("sky" in experiment) + bool(experiment.get("disks")) + emits
         self.integrator = mi.load_dict({"type": "direct", "hide_emitters": True, "emitter_samples": lights,
-                                        "bsdf_samples": len(of) - lights})  # fmt: skip
+                                        "bsdf_samples": 1})  # fmt: skip
         self.scene = mi.load_dict(loaded(experiment, folder))
 
     def render(self, n: int, seed: int) -> tuple[np.ndarray, float]:
@@ -178,17 +178,17 @@ class Mitsuba:
 
 
 def crescent_film(program: str, experiment: Path, n: int, seed: int, out: Path) -> float:
-    """Makes the film of the arm `both` at `out`; returns the processor time of the run, with everything that precedes
+    """Makes the film of the arm at `out`; returns the processor time of the run, with everything that precedes
     the film."""
     before = os.times().children_user
     run = out.with_suffix("")
-    keys = [f"arms.both.n={n}", f"seed={seed}", "reference.n=1"]
+    keys = [f"arms.{ARM}.n={n}", f"seed={seed}", "reference.n=1"]
     if "sky" in tomllib.loads(experiment.read_text()):
         keys.append("sky.visible=false")  # as Mitsuba's hidden emitters
     changes = [f"--set={key}" for key in keys]
     words = [program, "run", str(experiment), "--only", "films", "--quiet", "--out", str(run), *changes]
     subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
-    (run / "films" / "both.exr").replace(out)
+    (run / "films" / f"{ARM}.exr").replace(out)
     return os.times().children_user - before
 
 
@@ -265,7 +265,7 @@ def main() -> int:
     worst = 0
     for name in options.scene:
         file = options.folder / f"{name}.toml"
-        file.write_text(re.sub(r"\[arms\.(?!both\b)[\w-]+\]\n", "", file.read_text()))  # the other arms
+        file.write_text(re.sub(rf"\[arms\.(?!{ARM}\b)[\w-]+\]\n", "", file.read_text()))  # the other arms
         mitsuba, cells = Mitsuba(tomllib.loads(file.read_text()), options.folder), [name]
         if options.seeds:
             code, cell = compared(mitsuba, name, options)

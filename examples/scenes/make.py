@@ -117,12 +117,10 @@ def joined(*parts: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarra
 ARMS = """
 [arms.cosine]
 [arms.ggx-vndf]
+[arms.renderer]
 """
 SKY_ARMS = """
 [arms.sky]
-[arms.both]
-kind = "mis"
-of = ["sky", "ggx-vndf", "cosine"]
 """
 
 
@@ -201,9 +199,6 @@ radius = 0.8
 radiance = [12, 12, 11]
 
 [arms.light-area]
-[arms.both]
-kind = "mis"
-of = ["sky", "light-area", "ggx-vndf", "cosine"]
 """
     regions: Regions = {"left": (0.2, 0.1, 0.5, 0.9), "right": (0.5, 0.1, 0.8, 0.9)}
     return experiment("A gear of brushed metal", size, [0, 0.8, 4.2], [0, 0, 0], 36, regions, body + ARMS)
@@ -271,9 +266,6 @@ rho_d = [0.5, 0.5, 0.5]
 emission = [9, 8, 6.5]
 
 [arms.light-triangle]
-[arms.both]
-kind = "mis"
-of = ["light-triangle", "ggx-vndf", "cosine"]
 """
     regions: Regions = {"things": (0.2, 0.3, 0.8, 0.7), "floor": (0, 0, 1, 0.2)}
     return experiment("A room lit by emitting triangles", size, [0, 1.5, 5.5], [0, 0.3, 0], 45, regions, body + ARMS)
