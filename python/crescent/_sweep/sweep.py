@@ -131,7 +131,7 @@ def usable_points(points: list[Point], failed: dict[str, str]) -> tuple[list[Poi
     if not points:
         errors = list(dict.fromkeys(failed.values()))
         more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-        raise UsageError(errors[0].replace("--set ", "--over ", 1) + more)
+        raise UsageError(f"--over: no point is valid: {errors[0]}{more}")
     return points, failed
 
 
