@@ -285,7 +285,7 @@ std::vector<CheckCase> cases_of_shader(const CheckFlags& flags, const ProgressMo
     PipeLimits limits = limits_of(flags, monitor);
     limits.total_seconds *= static_cast<double>(values.size());  // each one waits for those before it
     for (const std::string& value : values) {
-        const auto adapter = start_shader(flags.arm, shader_words(flags, value), limits);
+        const auto adapter = start_shader(flags.arm, shader_words(flags, value), limits, values.size());
         check_sides(flags, adapter->traits());
         check_light(flags, adapter->traits(), adapter->has_f());
         for (CheckCase& t : make_user_cases(adapter, flags.full, grid_of(flags))) out.push_back(std::move(t));

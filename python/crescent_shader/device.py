@@ -74,7 +74,7 @@ class Device:
         found = adapters()
         chosen = [a for a in found if name.lower() in title_of(a).lower()]
         if not chosen:
-            raise BadInput(f"--device {name}: no such adapter: {'; '.join(title_of(a) for a in found)}")
+            raise BadInput(f"--device {name}: no such adapter; expected one of: {'; '.join(title_of(a) for a in found)}")
         self.adapter = chosen[0]
         wanted = ("shader-f16", "shader-f64", "shader-int64", "subgroup")
         features = [feature for feature in wanted if feature in self.adapter.features]

@@ -97,6 +97,12 @@ class Shader:
         return f"hello 2 {name} " + " ".join(f"{key}={value}" for key, value in keys.items())
 
 
+def _check_numbers(request: Request, samples: Array) -> None:
+    """Refuses samples that take more random numbers than they are given: their last column counts them."""
+    if request.random and (taken := samples[:, -1].max(initial=0)) > request.numbers:
+        raise BadInput(f"a sample takes {taken:.0f} random numbers, and {request.numbers} are given: --numbers K")
+
+
 def _rows_to_look_with(count: int) -> Array:
     """A few rows that a function can evaluate: two oblique directions, then numbers spread over (0, 1)."""
     at = np.arange(64)[:, None] + 0.5
@@ -133,7 +139,7 @@ def opened(request: Request, watch: Watchdog) -> Shader:
     weighs = assigns(request.sample, "weight")
     candidates = (0,) if not weighs else (channels,) if channels else (1, 3)
     operations["sample"], weights = _first_that_compiles(lambda count: made("sample", max(count, 1), count), candidates)
-    look("sample", operations["sample"])
+    _check_numbers(request, look("sample", operations["sample"]))
     if request.pdf:
         operations["pdf"] = made("pdf", 1, 0)
         look("pdf", operations["pdf"])
@@ -167,8 +173,7 @@ def _answers(shader: Shader) -> dict[bytes, tuple[int, Answer]]:
 
     def sample(rows: Array) -> Array:
         out = operations["sample"](rows)
-        if request.random and (taken := out[:, -1].max(initial=0)) > request.numbers:
-            raise BadInput(f"a sample takes {taken:.0f} random numbers, and {request.numbers} are given: --numbers K")
+        _check_numbers(request, out)
         return out[:, : (request.coordinates or 3) + 1 + shader.weights]
 
     def pdf(rows: Array) -> Array:

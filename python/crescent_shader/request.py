@@ -194,7 +194,7 @@ def _read(path: Path, what: str) -> str:
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise BadInput(f"{path}: has {size} bytes: expected at most {LARGEST_FILE}")
-        return path.read_text("utf-8")
+        return path.read_text("utf-8-sig")
     except UnicodeDecodeError:
         raise BadInput(f"{path}: expected UTF-8 text") from None
     except OSError as error:

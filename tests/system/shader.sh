@@ -141,8 +141,10 @@ W
 expect 0 check own.wgsl --up y --set width=1.0
 expect 1 check own.wgsl --up y
 expect 1 check own.wgsl --set width=1.0
-expect 3 check own.wgsl --up y --numbers 1
-grep -q "random numbers" printed || die "the third number is not reported: $(cat printed)"
+expect 2 check own.wgsl --up y --numbers 1
+grep -q "takes 2 random numbers" said || die "the second number is not reported: $(cat said)"
+printf '\357\273\277// crescent: sample = wi = draw(u)\nfn draw(u: vec2<f32>) -> vec3<f32> {\n    return vec3<f32>(sqrt(u.x) * cos(6.2831853 * u.y), sqrt(u.x) * sin(6.2831853 * u.y), sqrt(1.0 - u.x));\n}\n' >marked.wgsl
+expect 0 check marked.wgsl --pdf 'wi.z / PI' --let 'const PI = 3.14159265;'
 expect 0 check "$file" --frame world --sample 'wi = about(n, cosine_sample(u))' --pdf 'dot(wi, n) / PI'
 
 # Bad input: a place, exit 2, in one line.

@@ -22,6 +22,7 @@ QueryUsage Copies::spending() const {
     QueryUsage out = all_.front()->spending();
     out.answers = 0;
     for (const Copy& copy : all_) out.answers += copy->spending().answers;
+    out.answers -= asked_at_start_;
     return out;
 }
 
@@ -44,28 +45,33 @@ void Copies::evaluate(const SamplerQuery& query, const SamplerAnswers& out) cons
 
 Copies::Copy Copies::take() const {
     std::unique_lock<std::mutex> guard(lock_);
-    changed_.wait(guard, [&] { return fault_ || !free_.empty() || all_.size() + starting_ < limit_; });
-    if (fault_) std::rethrow_exception(fault_);
-    if (!free_.empty()) {
-        Copy copy = std::move(free_.back());
-        free_.pop_back();
-        return copy;
-    }
-    ++starting_;
-    guard.unlock();
-    Copy copy;
-    try {
-        copy = start_();
-    } catch (...) {
+    for (;;) {
+        changed_.wait(guard, [&] { return fault_ || !free_.empty() || all_.size() + starting_ < limit_; });
+        if (fault_) std::rethrow_exception(fault_);
+        if (!free_.empty()) {
+            Copy copy = std::move(free_.back());
+            free_.pop_back();
+            return copy;
+        }
+        ++starting_;
+        guard.unlock();
+        const Copy copy = started();
         guard.lock();
         --starting_;
-        changed_.notify_one();
-        throw;
+        if (copy) {
+            all_.push_back(copy);
+            asked_at_start_ += copy->spending().answers;
+            return copy;
+        }
+        limit_ = all_.size();
     }
-    guard.lock();
-    --starting_;
-    all_.push_back(copy);
-    return copy;
+}
+
+/// A further one; null if it cannot start.
+Copies::Copy Copies::started() const {
+    try {
+        return start_();
+    } catch (const std::exception&) { return nullptr; }
 }
 
 void Copies::give_back(Copy copy) const {

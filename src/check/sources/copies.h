@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -13,7 +14,8 @@
 namespace crescent {
 
 /// Copies of a program whose answers do not depend on what it was asked before. Each answers one query at a time;
-/// another one starts when a query finds all of them at work. After one failed, all are given up.
+/// another one starts when a query finds all of them at work. Where that fails, those that there are go on: memory or a
+/// device may not suffice for more. After one failed at a query, all are given up.
 class Copies : public SamplerAdapter {
 public:
     using Start = std::function<std::shared_ptr<const SamplerAdapter>()>;
@@ -21,22 +23,24 @@ public:
     Copies(Start start, std::size_t limit);
     SamplerDeclaration declaration() const override;
     void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override;
-    /// The answers of all; the seconds are those of the first one.
+    /// The answers of all, those of further ones without what they were asked when they started; the seconds are those
+    /// of the first one.
     QueryUsage spending() const override;
 
 private:
     using Copy = std::shared_ptr<const SamplerAdapter>;
     Copy take() const;
+    Copy started() const;
     void give_back(Copy copy) const;
     void give_up(std::exception_ptr fault) const;
 
     Start start_;
-    std::size_t limit_;
-    mutable std::mutex lock_;
+    mutable std::mutex lock_;  // guards what follows
     mutable std::condition_variable changed_;
-    mutable std::vector<Copy> all_, free_;  // guarded by lock_, as the others
-    mutable std::size_t starting_ = 0;
-    mutable std::exception_ptr fault_;  // what queries throw from then on
+    mutable std::size_t limit_, starting_ = 0;
+    mutable std::vector<Copy> all_, free_;
+    mutable std::uint64_t asked_at_start_ = 0;  // of the further ones
+    mutable std::exception_ptr fault_;          // what queries throw from then on
 };
 
 }  // namespace crescent

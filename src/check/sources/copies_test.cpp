@@ -95,19 +95,22 @@ TEST(Copies, AreGivenBackAfterAnotherError) {
     EXPECT_THROW(ask(copies), std::bad_alloc);  // and does not wait for ever
 }
 
-TEST(Copies, OfWhichOneDoesNotStartLeaveItsPlaceToAnother) {
+TEST(Copies, GoOnWithThoseThatStart) {
     Meeting meeting(2);
     std::atomic<int> started = 0;
     const Copies copies(
         [&]() -> std::shared_ptr<const SamplerAdapter> {
-            if (++started == 2) throw SamplerError("it does not start");
+            if (++started > 2) throw SamplerError("it does not start");
             return std::make_shared<Calling>([&] { meeting.meet(); });
         },
-        2);
-    std::jthread first([&] { ask(copies); });
-    while (meeting.begun() < 1) std::this_thread::yield();
-    EXPECT_THROW(ask(copies), SamplerError);
-    ask(copies);
+        4);
+    {
+        std::vector<std::jthread> threads;
+        for (int t = 0; t < 8; ++t) threads.emplace_back([&] { ask(copies); });
+    }
+    EXPECT_EQ(meeting.begun(), 8);
+    EXPECT_LE(started, 4);  // two that failed, at the same time
+    EXPECT_EQ(copies.spending().answers, 0u);
 }
 
 }  // namespace copies_test

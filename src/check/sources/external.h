@@ -91,9 +91,9 @@ bool names_shader(const std::string& word);
 
 /// Starts the Python interpreter with crescent_shader, which answers for this file over a pipe; `words` are its options
 /// (docs/shaders.md). Throws InputError for a mistake in the file or a snippet, with its place; OutputError if a
-/// compiler, a driver or the package is missing.
+/// compiler, a driver or the package is missing. `shaders`: how many are open at the same time and share the processes.
 std::shared_ptr<const SamplerAdapter> start_shader(
-    const std::string& file, const std::vector<std::string>& words, const PipeLimits& limits);
+    const std::string& file, const std::vector<std::string>& words, const PipeLimits& limits, std::size_t shaders = 1);
 
 /// The shell command that runs a Python module with these words.
 std::string python_command(const std::string& module, const std::vector<std::string>& words);

@@ -789,7 +789,7 @@ bool names_shader(const std::string& word) {
 }
 
 std::shared_ptr<const SamplerAdapter> start_shader(
-    const std::string& file, const std::vector<std::string>& words, const PipeLimits& limits) {
+    const std::string& file, const std::vector<std::string>& words, const PipeLimits& limits, std::size_t shaders) {
     std::vector<std::string> arguments = {"--memory"};
     arguments.insert(arguments.end(), words.begin(), words.end());
     arguments.insert(arguments.end(), {"--", file});
@@ -799,7 +799,8 @@ std::shared_ptr<const SamplerAdapter> start_shader(
     };
     // While a device computes for one, another converts its numbers; a device computes on all of its cores.
     constexpr int enough = 4;
-    return std::make_shared<Copies>(start, static_cast<std::size_t>(std::min(enough, usable_threads())));
+    const auto copies = static_cast<std::size_t>(std::min(enough, usable_threads()));
+    return std::make_shared<Copies>(start, std::max<std::size_t>(copies / shaders, 1));
 }
 
 }  // namespace crescent

@@ -191,7 +191,8 @@ void PipeConnection::blocks(const Rows& rows) {
     std::string head = head_of(0), answer_head;
     std::string_view payload;  // what is left of it
     std::size_t head_sent = 0, payload_read = 0;
-    Clock::time_point last = Clock::now();
+    const Clock::time_point began = Clock::now();
+    Clock::time_point last = began;
     while (x.answered < x.count) {
         const bool has_slot = !uses_memory_ || blocks_sent_ < blocks_answered_ + slots;
         const Process::Ready ready = program_.wait_ready(x.written < x.count && has_slot, true, 50);
@@ -224,14 +225,19 @@ void PipeConnection::blocks(const Rows& rows) {
         fault(
             x, rows.count - 1, fmt::format("got {} bytes more than requested: {}", pending().size(), shown(pending())));
     requests_ += rows.count;
+    if (uses_memory_ && rows.count >= fewest_rows)  // the cost of fewer is that of the query
+        seconds_a_row_[rows.operation] = seconds_since(began) / static_cast<double>(rows.count);
 }
 
-/// Of a block: docs/samplers.md, and what a slot takes.
+/// Of a block: docs/samplers.md, and in memory what a slot takes, and what a slow shader answers within a second.
 std::size_t PipeConnection::most_rows(const Rows& rows) const {
     constexpr std::size_t in_block = 1 << 16;
     if (!uses_memory_) return in_block;
     const std::size_t row = std::max(rows.in.size(), rows.out.size()) / rows.count * bytes_of_number(rows);
-    return std::min(in_block, slot_bytes / 2 / row);
+    const auto known = seconds_a_row_.find(rows.operation);
+    if (known == seconds_a_row_.end()) return std::min(first_rows, slot_bytes / 2 / row);
+    const double in_a_second = std::min(1 / known->second, static_cast<double>(in_block));
+    return std::min(std::max(fewest_rows, static_cast<std::size_t>(in_a_second)), slot_bytes / 2 / row);
 }
 
 /// Where the bytes of an answer arrive.

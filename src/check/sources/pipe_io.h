@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <fmt/format.h>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -142,6 +144,8 @@ private:
     };
     /// Blocks use the slots in turn; the answers are in the second half of a slot.
     static constexpr std::size_t slots = 2, slot_bytes = 16u << 20;
+    /// Of a block in memory at least, and of the first one.
+    static constexpr std::size_t fewest_rows = 1024, first_rows = 4096;
     PipeLimits limits_;
     std::unique_ptr<SharedMemory> memory_;
     bool uses_memory_ = false;
@@ -149,8 +153,9 @@ private:
     mutable Process program_;  // mutable, to query the exit status for a message
     std::string incoming_;
     std::size_t read_from_ = 0;
-    std::vector<float> floats_sent_, floats_received_;  // of a block in single precision
-    std::uint64_t requests_ = 0;
+    std::vector<float> floats_sent_, floats_received_;          // of a block in single precision
+    std::map<std::string, double, std::less<>> seconds_a_row_;  // of the last rows in memory, by operation
+    std::atomic<std::uint64_t> requests_ = 0;
     std::string broken_;  // the error; no requests are sent after it
     bool handshake_done_ = false, slow_ = false;
     Clock::time_point began_ = Clock::now();
