@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <list>
 #include <map>
 #include <span>
 
@@ -42,7 +43,10 @@ public:
         if (std::strchr(mode, 'w') != nullptr) return nullptr;
         if (file == model_.string())
             return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
-        return can_open(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+        if (!can_open(file)) return nullptr;
+        if (lower_extension(file) != ".mtl") return DefaultIOSystem::Open(file, mode);
+        const std::string& text = materials_.emplace_back(checked_mtl(bytes_of(file), left_out));
+        return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
     }
 
     /// Returns the bytes of an image that a material names; "" if it cannot be read.
@@ -58,6 +62,7 @@ private:
     }
     std::filesystem::path model_, folder_;
     std::string text_;
+    std::list<std::string> materials_;  // the texts of MTL files
 };
 
 Vec3f vector_of(const aiVector3D& v) { return {v.x + 0.0f, v.y + 0.0f, v.z + 0.0f}; }  // -0 becomes 0
@@ -109,14 +114,15 @@ void list_what_is_left_out(const aiScene& scene, std::vector<std::string>& out) 
         "meshes' colours of vertices");
 }
 
-Part part_of(const aiMesh& from) {
+/// `has_normals`: those of STL are of its flat triangles.
+Part part_of(const aiMesh& from, bool has_normals) {
     Part out;
     out.material = from.mMaterialIndex;
     out.names = {from.mName.C_Str()};
     std::ranges::replace(out.names[0], blank_of_name, ' ');
     for (unsigned k = 0; k < from.mNumVertices; ++k) {
         out.positions.push_back(widen(vector_of(from.mVertices[k])));
-        if (from.HasNormals()) out.normals.push_back(vector_of(from.mNormals[k]));
+        if (has_normals && from.HasNormals()) out.normals.push_back(vector_of(from.mNormals[k]));
         if (from.HasTextureCoords(0)) out.uv.push_back({from.mTextureCoords[0][k].x, from.mTextureCoords[0][k].y});
     }
     for (unsigned f = 0; f < from.mNumFaces; ++f) {
@@ -141,7 +147,7 @@ Model read_by_assimp(const std::filesystem::path& file, const ReadingScope& scop
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType | joining);
     if (!scene) throw ModelError(importer.GetErrorString());
     Model out;
-    out.left_out = files->left_out;
+    out.left_out = files->left_out;  // of the materials' files too, which were read by now
     for (unsigned m = 0; m < scene->mNumMaterials; ++m) out.materials.push_back(material_of(*scene->mMaterials[m]));
     list_what_is_left_out(*scene, out.left_out);
     std::map<std::string, std::size_t> known;
@@ -152,7 +158,7 @@ Model read_by_assimp(const std::filesystem::path& file, const ReadingScope& scop
         if (is_new) out.pictures.push_back({material.texture, files->picture(material.texture)});
     }
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-        out.parts.push_back(part_of(*scene->mMeshes[m]));
+        out.parts.push_back(part_of(*scene->mMeshes[m], lower_extension(file) != ".stl"));
         if (out.parts.back().material >= out.materials.size())
             throw ModelError("a mesh has a material beyond the last");
     }

@@ -5,7 +5,10 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,8 +18,24 @@ namespace crescent::importer {
 
 namespace {
 
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+/// Whether a number begins behind this text, which may have its sign.
+bool begins_number(std::string_view before) {
+    if (before.ends_with('-') || before.ends_with('+')) before.remove_suffix(1);
+    return !before.empty() && is_blank(before.back());
+}
+
+bool is_number(std::string_view word) {
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error != std::errc::invalid_argument && end == word.data() + word.size();
+}
+
 /// Joins continued lines; the lines that were joined follow as empty ones, so that numbers of lines stay. A line that
-/// begins with '#' is a comment and is not continued: it becomes empty.
+/// begins with '#' is a comment and is not continued: it becomes empty. assimp skips a number without a digit before
+/// its dot, and takes the next one: a vertex with .5 becomes one with 0.5.
 std::string normalised(std::string_view text) {
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
     std::string out;
@@ -25,7 +44,8 @@ std::string normalised(std::string_view text) {
     for (std::size_t k = 0; k <= text.size(); ++k) {
         const bool is_end = k == text.size() || text[k] == '\r' || text[k] == '\n';
         if (!is_end) {
-            const bool is_indent = out.size() == begin && (text[k] == ' ' || text[k] == '\t');
+            const bool is_indent = out.size() == begin && is_blank(text[k]);
+            if (text[k] == '.' && out.size() > begin + 1 && out[begin] == 'v' && begins_number(out)) out += '0';
             if (!is_indent) out += text[k];
             continue;
         }
@@ -51,6 +71,16 @@ struct Largest {
 
 constexpr std::array<std::string_view, 3> kinds = {"v", "vt", "vn"};
 constexpr std::array<std::size_t, 3> numbers_of = {3, 1, 3};
+/// How many of so many numbers assimp reads: of v also a weight or a colour.
+constexpr std::size_t read_of(std::size_t kind, std::size_t count) {
+    if (kind != 0) return std::min<std::size_t>(count, 3);
+    return count > 6 ? 6 : count == 5 ? 3 : count;
+}
+
+/// Of MTL: keys with numbers, and other ones. assimp refuses a file with others, and with words in place of numbers.
+constexpr std::array<std::string_view, 14> keys_with_numbers = {
+    "Ka", "Kd", "Ks", "Ke", "Tf", "Ns", "Ni", "d", "Tr", "illum", "Pr", "Pm", "Ps", "Pc"};
+constexpr std::array<std::string_view, 6> other_keys = {"newmtl", "bump", "norm", "refl", "disp", "Pcr"};
 
 }  // namespace
 
@@ -111,15 +141,15 @@ ObjText checked_obj(std::string_view file) {
         }
         if (kind < kinds.size()) {
             ++counts[kind];
-            for (std::size_t k = 0; k < numbers_of[kind]; ++k) {
-                const std::string_view word = next();
-                const std::size_t sign = word.starts_with('-') || word.starts_with('+') ? 1 : 0;
-                const bool is_number =
-                    sign < word.size() && std::string_view("0123456789.nNiI").find(word[sign]) != word.npos;
-                if (!is_number)
-                    throw ModelError(
-                        fmt::format("line {}: expected {} numbers after '{}'", line, numbers_of[kind], key));
-            }
+            std::vector<std::string_view> words;
+            for (std::string_view word = next(); !word.empty(); word = next()) words.push_back(word);
+            if (words.size() < numbers_of[kind] || !std::ranges::all_of(words, is_number))
+                throw ModelError(fmt::format("line {}: expected {} numbers after '{}'", line, numbers_of[kind], key));
+            // assimp skips a line with another count.
+            const std::size_t kept = read_of(kind, words.size());
+            if (kept < words.size())
+                std::fill(out.text.begin() + (words[kept].data() - out.text.data()),
+                    out.text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
             continue;
         }
         std::size_t corners = 0;
@@ -135,6 +165,32 @@ ObjText checked_obj(std::string_view file) {
                 largest[kind].index, kinds[kind], counts[kind]));
     if (curves > 0) out.left_out.push_back(fmt::format("{} curves and surfaces", curves));
     if (points_and_lines > 0) out.left_out.push_back(fmt::format("{} points and lines", points_and_lines));
+    return out;
+}
+
+std::string checked_mtl(std::string_view file, std::vector<std::string>& left_out) {
+    std::string out = normalised(file);
+    std::map<std::string, std::size_t, std::less<>> removed;
+    for (std::size_t begin = 0; begin < out.size();) {
+        const std::size_t end = std::min(out.find('\n', begin), out.size());
+        const std::string_view line = std::string_view(out).substr(begin, end - begin);
+        const std::size_t key_end = std::min(line.find_first_of(" \t"), line.size());
+        const std::string_view key = line.substr(0, key_end);
+        const std::size_t first = std::min(line.find_first_not_of(" \t", key_end), line.size());
+        const std::string_view word = line.substr(first, line.find_first_of(" \t", first) - first);
+        const bool has_numbers = std::ranges::find(keys_with_numbers, key) != keys_with_numbers.end();
+        const bool is_known = has_numbers
+            ? is_number(word)
+            : key.empty() || key.starts_with("map_") || std::ranges::find(other_keys, key) != other_keys.end();
+        if (!is_known) {
+            ++removed[has_numbers ? fmt::format("{} {}", key, word) : std::string(key)];
+            std::fill(
+                out.begin() + static_cast<std::ptrdiff_t>(begin), out.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+        }
+        begin = end + 1;
+    }
+    for (const auto& [what, count] : removed)
+        left_out.push_back(fmt::format("'{}' of {} material{}", what, count, count == 1 ? "" : "s"));
     return out;
 }
 

@@ -21,4 +21,8 @@ inline constexpr char blank_of_name = '\x1f';
 /// face that no vertex has, and for a face of more than most_corners corners.
 ObjText checked_obj(std::string_view file);
 
+/// Returns the text of an MTL file without statements at which assimp would refuse the model; adds what was removed to
+/// the list, "'aniso' of 2 materials".
+std::string checked_mtl(std::string_view file, std::vector<std::string>& left_out);
+
 }  // namespace crescent::importer

@@ -181,9 +181,28 @@ refuses 'within 1000000 m' tent-obj.mesh 'translate = [1e6, 0, 0]'
 refuses 'found both' tent-obj.mesh $'scale = 2\nmatrix = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]'
 refuses 'paired' tent-obj.mesh $'[reference]\nkind = "quadrature"'
 
+# Numbers as other programs write them, and statements of MTL that assimp refuses.
+cat >dot.obj <<'O'
+mtllib dot.mtl
+v 0 0 0
+v .5 0 -.25
+v 0 +1 0 1 1 1 1
+v 9 9 9
+usemtl a
+f 1 2 3
+O
+printf 'newmtl a\nKd .5 0.25 0\naniso 0.3\nKs spectral a.rfl 1\nd -halo 0.5\nanisor 1\n' >dot.mtl
+expect 0 "$CRESCENT" import dot.obj --out dots
+grep -qF "box [0, 0, -0.25] to [0.5, 1, 0]" printed said || die "its box: $(cat printed said)"
+grep -qF "rho_d = [0.5, 0.25, 0]" dots/experiment.toml || die "its colour: $(cat dots/experiment.toml)"
+for what in aniso anisor 'Ks spectral' 'd -halo'; do
+    grep -qF "left out: '$what' of 1 material" printed said || die "$what is lost: $(cat printed said)"
+done
+
 printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n' >nan.obj
+printf 'v 0x10 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >hex.obj
 echo 'no model' >text.ply
-for model in nan.obj text.ply tent.toml; do
+for model in nan.obj hex.obj text.ply tent.toml; do
     expect 2 "$CRESCENT" import $model --out bad.mesh
     grep -q "^$model: " said || die "$model: $(cat said)"
 done
