@@ -12,6 +12,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <algorithm>
@@ -29,6 +30,7 @@
 #include "images/exr_file.h"
 #include "images/exr_layers.h"
 #include "images/open_file.h"
+#include "images/primaries.h"
 #include "images/stored_image.h"
 #include "scene/texture.h"
 
@@ -232,13 +234,37 @@ template <class Number> void read_rows(Imf::InputPart& part, const Imath::Box2i&
     for (std::size_t k = 0; grey && k < rgb.size(); k += 3) rgb[k + 1] = rgb[k + 2] = rgb[k];
 }
 
+/// Converts texels with other primaries, in single precision.
+void to_rec709(RgbImage& image, const Imf::Chromaticities& stated, const std::string& path) {
+    const auto xy = [](const Imath::V2f& v) { return std::array{double(v.x), double(v.y)}; };
+    const Chromaticities from{xy(stated.red), xy(stated.green), xy(stated.blue), xy(stated.white)}, rec709;
+    if (same_primaries(from, rec709)) return;
+    if (!is_valid(from))
+        throw InputError({path, 0, 0}, fmt::format("expected chromaticities of colours, found {}", to_string(from)));
+    const Matrix3 matrix = conversion(from, rec709);
+    std::vector<float> rgb(image.size());
+    for (std::size_t k = 0; k < rgb.size(); k += 3) {
+        const Rgb converted = transformed(matrix, {double(image[k]), double(image[k + 1]), double(image[k + 2])});
+        for (std::size_t c = 0; c < 3; ++c) rgb[k + c] = static_cast<float>(converted[c]);
+    }
+    image.halves = {};
+    image.rgb = std::move(rgb);
+}
+
 std::shared_ptr<const RgbImage> read_parts(const std::string& path, const std::string& layer, WhyNot why_not) {
     const auto [index, names, half] = channels_of(path, layer);  // checks the sizes in the headers, too
     Imf::MultiPartInputFile file(path.c_str(), 0);
     const Imf::Header& header = file.header(index);
     if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
         throw InputError({path, 0, 0}, "expected a flat image, found a deep one");
-    const Imath::Box2i window = header.dataWindow();
+    const Imath::Box2i window = header.dataWindow(), display = header.displayWindow();
+    if (window != display && display.intersects(window.min) && display.intersects(window.max))
+        throw InputError({path, 0, 0},
+            fmt::format(
+                "expected the whole picture, found a part of it: the pixels ({}, {}) to ({}, {}) of ({}, {}) to "
+                "({}, {})",
+                window.min.x, window.min.y, window.max.x, window.max.y, display.min.x, display.min.y, display.max.x,
+                display.max.y));
     const auto [width, height] = size_of(window, path, why_not);
     Imf::InputPart part(file, index);
     auto out = std::make_shared<RgbImage>();
@@ -246,6 +272,7 @@ std::shared_ptr<const RgbImage> read_parts(const std::string& path, const std::s
     out->height = height;
     if (half) read_rows(part, window, names, Imf::HALF, out->halves);
     else read_rows(part, window, names, Imf::FLOAT, out->rgb);
+    if (Imf::hasChromaticities(header)) to_rec709(*out, Imf::chromaticities(header), path);
     out->hash = hash_of_texels(*out);
     return out;
 }

@@ -6,6 +6,8 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -123,6 +125,52 @@ TEST_F(Exr, ASkyInHalfPrecisionStaysInIt) {
     EXPECT_EQ(image_file(*read), image_file(written));
     EXPECT_EQ(smallest_number(*read), 0);
     EXPECT_EQ(texel_at(*read, 0.3, 0.6), texel_at(written, 0.3, 0.6));
+}
+
+/// Writes 8 x 4 pixels of one colour with this header.
+void write_colour(const std::string& path, Imf::Header header, const std::array<float, 3>& rgb) {
+    std::vector<float> pixels;
+    for (std::size_t k = 0; k < 8 * 4; ++k) pixels.insert(pixels.end(), rgb.begin(), rgb.end());
+    const Imath::Box2i window = header.dataWindow();
+    Imf::FrameBuffer buffer;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::string name(1, "RGB"[c]);
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        float* const origin = pixels.data() + c - 3 * (window.min.x + 8 * window.min.y);
+        buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(origin), 12, 12 * 8));
+    }
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(4);
+}
+
+TEST_F(Exr, ASkyInOtherPrimariesIsConverted) {
+    Imf::Header header(8, 4);
+    const Imf::Chromaticities aces(
+        {0.7347f, 0.2653f}, {0.0f, 1.0f}, {0.0001f, -0.077f}, {0.32168f, 0.33767f});  // SMPTE ST 2065-1
+    Imf::addChromaticities(header, aces);
+    write_colour(path, header, {0.5f, 0.5f, 0.5f});
+    const std::shared_ptr<const RgbImage> grey = read_sky(path);
+    for (std::size_t k = 0; k < grey->size(); ++k) EXPECT_NEAR((*grey)[k], 0.5, 1e-4);  // white stays white
+    write_colour(path, header, {0.5f, 0.4f, 0.35f});
+    const std::shared_ptr<const RgbImage> warm = read_sky(path);
+    const std::array expected = {0.6716, 0.3772, 0.3400};  // by the matrices of SMPTE RP 177 and of Bradford
+    for (std::size_t k = 0; k < warm->size(); ++k) EXPECT_NEAR((*warm)[k], expected[k % 3], 2e-4) << k;
+    Imf::addChromaticities(header, Imf::Chromaticities());  // Rec.709
+    write_colour(path, header, {0.5f, 0.4f, 0.35f});
+    EXPECT_EQ((*read_sky(path))[0], 0.5f);
+}
+
+TEST_F(Exr, APartOfAPictureIsNoSky) {
+    const Imath::Box2i whole({0, 0}, {15, 7}), part({4, 2}, {11, 5});
+    write_colour(path, Imf::Header(whole, part), {1, 1, 1});
+    try {
+        read_sky(path);
+        ADD_FAILURE() << "a part was taken as the whole";
+    } catch (const InputError& error) {
+        EXPECT_NE(error.diagnostics().front().message.find("the pixels (4, 2) to (11, 5) of (0, 0) to (15, 7)"),
+            std::string::npos);
+    }
 }
 
 TEST_F(Exr, AReferenceReadBackIsTheReference) {
