@@ -60,7 +60,10 @@ public:
             point_text(widen(scene_.points.box().high)));
         out += moved_line(imported_.description);
         out += fmt::format("# camera: {}; light: {}\n",
-            scene_.camera ? "that of the file" : "one that sees the whole model", scene_.sky ? "the sky" : "a disk");
+            scene_.camera       ? "that of the file"
+                : sees_nothing_ ? "one that sees the whole model; that of the file sees nothing of it"
+                                : "one that sees the whole model",
+            scene_.sky ? "the sky" : "a disk");
         out += fmt::format("# taken: {} materials, colours as rho_d and rho_s, roughness as alpha\n", used_.size());
         const auto taken = [&](std::size_t count, const char* what) {
             if (count > 0) out += fmt::format("# taken: {} {}\n", count, what);
@@ -257,9 +260,13 @@ private:
         const Vec3d middle = 0.5 * (widen(scene_.points.box().low) + widen(scene_.points.box().high));
         const Vec3d diagonal = widen(scene_.points.box().high) - widen(scene_.points.box().low);
         const double depth = std::max(dot(middle - eye, view), 0.1 * std::sqrt(dot(diagonal, diagonal)));
-        scene_.camera = Camera{.eye = eye, .target = eye + depth * view, .up = up, .vfov_deg = from["vfov_deg"]};
-        const double aspect = from["aspect"].get<double>();
-        if (aspect > 0.1 && aspect < 10) scene_.aspect = aspect;
+        const Camera camera{.eye = eye, .target = eye + depth * view, .up = up, .vfov_deg = from["vfov_deg"]};
+        const double stated = from["aspect"].get<double>();
+        const double aspect = stated > 0.1 && stated < 10 ? stated : scene_.aspect;
+        sees_nothing_ = !scene_.points.may_be_seen(camera, aspect);
+        if (sees_nothing_) return;
+        scene_.camera = camera;
+        scene_.aspect = aspect;
     }
 
     void add_sky() {
@@ -285,6 +292,7 @@ private:
     std::set<std::size_t> used_;
     std::set<std::size_t> materials_taken_;
     Counts left_out_, cut_;
+    bool sees_nothing_ = false;  // the file's camera
     std::size_t triangles_ = 0, copies_ = 0, colours_ = 0, roughness_ = 0, emitters_ = 0;
 };
 

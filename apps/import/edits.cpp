@@ -12,11 +12,17 @@ namespace crescent::importer {
 
 void select(Model& model, const std::string& name) {
     std::set<std::string> known;
-    const auto is_other = [&](const Part& part) {
+    const auto has_name = [&](const std::vector<std::string>& names) {
+        known.insert(names.begin(), names.end());
+        return std::ranges::find(names, name) != names.end();
+    };
+    const auto is_other = [&](Part& part) {
         const std::string& material = model.materials[part.material].name;
-        known.insert(part.names.begin(), part.names.end());
         known.insert(material);
-        return material != name && std::ranges::find(part.names, name) == part.names.end();
+        if (has_name(part.names) || material == name) return false;
+        if (part.copies.empty()) return true;
+        std::erase_if(part.copies, [&](const Copy& copy) { return !has_name(copy.names); });
+        return part.copies.empty();
     };
     std::erase_if(model.parts, is_other);
     if (!model.parts.empty()) return;
@@ -40,8 +46,8 @@ void turn_and_scale(Model& model, bool z_is_up, double scale) {
     }
     for (Vec3d& column : to.columns) column = scale * column;
     for (Part& part : model.parts) {
-        for (Transform& placement : part.placements) placement = to.then(placement);
-        if (!part.placements.empty()) continue;
+        for (Copy& copy : part.copies) copy.to = to.then(copy.to);
+        if (!part.copies.empty()) continue;
         for (Vec3d& position : part.positions) position = to.placed(position);
         for (Vec3f& normal : part.normals) normal = narrow((1 / scale) * to.turned(widen(normal)));
     }
@@ -82,7 +88,7 @@ void smooth_part(Part& part, double least_cosine) {
     Part out;  // three corners of each triangle in turn, because each has a normal of its own
     out.material = part.material;
     out.names = part.names;
-    out.placements = part.placements;
+    out.copies = part.copies;
     out.positions.resize(count);
     out.normals.resize(count);
     if (!part.uv.empty()) out.uv.resize(count);

@@ -615,14 +615,12 @@ private:
         for (const Open& one : placed) {
             const bool is_copied = scope_.whole_scene && uses[one.node] > 1;
             const auto [parts, is_new] = shared.try_emplace(one.node, model.parts.size(), model.parts.size());
-            if (!is_copied || is_new) add_mesh(one.node, is_copied ? Transform{} : one.parent, one.from, one.names);
+            if (!is_copied) add_mesh(one.node, one.parent, one.from, one.names);
+            else if (is_new) add_mesh(one.node, {}, one.from, {});
             if (is_new) parts->second.second = model.parts.size();
             if (is_copied)
-                for (std::size_t k = parts->second.first; k < parts->second.second; ++k) {
-                    Part& part = model.parts[k];
-                    part.placements.push_back(one.parent);
-                    part.names.insert(part.names.end(), one.names.begin(), one.names.end());
-                }
+                for (std::size_t k = parts->second.first; k < parts->second.second; ++k)
+                    model.parts[k].copies.push_back({one.parent, one.names});
         }
     }
 

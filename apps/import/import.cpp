@@ -63,14 +63,14 @@ public:
         const Transform to_scene = transform_of(placement);
         for (const Part* part : parts) {
             if (shared) add(*part, nullptr);
-            else if (part->placements.empty()) {
+            else if (part->copies.empty()) {
                 placement_ = placement;
                 add(*part, nullptr);
                 placement_ = {};
             }
             if (!shared)
-                for (const Transform& copy : part->placements) {
-                    const Transform to = to_scene.then(copy);
+                for (const Copy& copy : part->copies) {
+                    const Transform to = to_scene.then(copy.to);
                     add(*part, &to);
                 }
         }
@@ -190,9 +190,9 @@ OrderedJson written(std::size_t& end, std::string_view bytes) {
 }
 
 /// Whether an experiment takes all of these as the matrices of instances: their entries, and their determinant.
-bool are_instances(const std::vector<Transform>& placements, const Transform& to_scene) {
-    return std::ranges::all_of(placements, [&](const Transform& placement) {
-        const Transform to = to_scene.then(placement);
+bool are_instances(const std::vector<Copy>& copies, const Transform& to_scene) {
+    return std::ranges::all_of(copies, [&](const Copy& copy) {
+        const Transform to = to_scene.then(copy.to);
         double largest = 0;
         for (const Vec3d& v : {to.columns[0], to.columns[1], to.columns[2], to.origin})
             largest = std::max({largest, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
@@ -216,7 +216,7 @@ OrderedJson write_meshes(
     std::vector<std::vector<const Part*>> of_material(model.materials.size());
     std::vector<const Part*> copied;
     for (const Part* part : parts_of(model, material)) {
-        const bool shared = !part->placements.empty() && are_instances(part->placements, to_scene);
+        const bool shared = !part->copies.empty() && are_instances(part->copies, to_scene);
         if (shared) copied.push_back(part);
         else of_material[part->material].push_back(part);
     }
@@ -226,10 +226,11 @@ OrderedJson write_meshes(
         OrderedJson one = written(end, mesh_file(gathered.result));
         one["material"] = parts[0]->material;
         if (shared) {
-            one["name"] = parts[0]->names.empty() ? "" : parts[0]->names.front();
+            const std::vector<std::string>&own = parts[0]->names,
+                  &names = own.empty() ? parts[0]->copies[0].names : own;
+            one["name"] = names.empty() ? "" : names.front();
             one["instances"] = OrderedJson::array();
-            for (const Transform& copy : parts[0]->placements)
-                one["instances"].push_back(matrix_of(to_scene.then(copy)));
+            for (const Copy& copy : parts[0]->copies) one["instances"].push_back(matrix_of(to_scene.then(copy.to)));
         }
         out.push_back(std::move(one));
     };

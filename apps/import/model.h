@@ -68,10 +68,16 @@ struct ModelCamera {
 };
 
 /// Triangles of one material.
+/// Where a copy of a part is, and the names of the nodes above it.
+struct Copy {
+    Transform to;
+    std::vector<std::string> names;
+};
+
 struct Part {
     std::size_t material = 0;
-    std::vector<std::string> names;     // of its mesh, the nodes above it and its node
-    std::vector<Transform> placements;  // where its copies are; empty: it is there once, as it is
+    std::vector<std::string> names;  // of its mesh, and of the nodes above it if it is there once
+    std::vector<Copy> copies;        // empty: it is there once, as it is
     std::vector<Vec3d> positions;
     std::vector<Vec3f> normals;   // one for each position, of any length; empty: none
     std::vector<Vec2<float>> uv;  // one for each position; empty: none

@@ -21,8 +21,8 @@ ModelPlacement placement_of(const Model& model) {
             }
     };
     for (const Part& part : model.parts) {
-        if (part.placements.empty()) add(part, {});
-        for (const Transform& to : part.placements) add(part, to);
+        if (part.copies.empty()) add(part, {});
+        for (const Copy& copy : part.copies) add(part, copy.to);
     }
     double largest = 0, size = 0;
     for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {

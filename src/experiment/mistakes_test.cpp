@@ -234,7 +234,6 @@ const Mistake names[] = {
     {"box = [3, 3, 9, 9]", "shape = \"bal\"", 43, 9, "no shape 'bal'"},
     {"box = [3, 3, 9, 9]", "mesh = \"ball\"", 43, 8, "'ball' is a shape: expected shape = \"ball\""},
     {"box = [3, 3, 9, 9]", "shape = \"ball\"\nmesh = \"ball\"", 43, 9, "a region has one object"},
-    {"box = [3, 3, 9, 9]\n", "", 42, 10, "missing key 'box' in [regions.H]: expected [x0, y0, x1, y1], or an object"},
     {"[arms.phong]\n", "[arms.phong]\nsampler = \"fong\"\n", 37, 11, "no sampler 'fong'"},
     {"[arms.cosine]\n", "[arms.cosin]\nsampler = \"cosine\"\n", 46, 7, "did you mean 'cosin'?", 3},
     {"phong\", n = 4", "phong\", n = 5", 50, 50, "the arm 'phong' has no sample count n = 5: expected one of 4, 16"},

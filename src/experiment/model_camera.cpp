@@ -48,6 +48,19 @@ Vec3d direction_to_eye(const ModelPoints::Axes& axes) {
 
 }  // namespace
 
+bool ModelPoints::may_be_seen(const Camera& camera, double aspect) const {
+    const Vec3d forward = normalize(camera.target - camera.eye), right = normalize(cross(forward, camera.up)),
+                up = cross(right, forward);
+    const double high = math::tan(camera.vfov_deg * pi / 360), wide = high * aspect;
+    // Inner normals of the sides of what is seen.
+    const std::array<Vec3d, 5> sides = {
+        forward, wide * forward + right, wide * forward - right, high * forward + up, high * forward - up};
+    return std::ranges::all_of(sides, [&](const Vec3d& side) {
+        return std::ranges::any_of(
+            points_, [&](const Vec3f& point) { return dot(widen(point) - camera.eye, side) > 0; });
+    });
+}
+
 std::string point_in_table(Vec3d v, double detail) {
     const double size = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
     const int digits = size > detail && detail > 0 ? 6 + static_cast<int>(std::ceil(math::log10(size / detail))) : 6;

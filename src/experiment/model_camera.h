@@ -8,6 +8,7 @@
 
 #include "base/vec.h"
 #include "scene/mesh/mesh.h"
+#include "scene/scene_data.h"
 
 namespace crescent {
 
@@ -34,6 +35,9 @@ public:
         Vec3d middle() const;
     };
     Axes axes() const;
+    /// Whether a triangle may be seen in an image of this aspect. False only if none is: all points are behind the
+    /// camera, or beyond one side of the image.
+    bool may_be_seen(const Camera& camera, double aspect) const;
 
 private:
     Bounds box_;

@@ -68,7 +68,7 @@ std::string experiment_for(const std::vector<NamedMesh>& meshes, const std::opti
     out += sky ? sky_table(*sky) : light_over(Ball(points.box()));
     out += "\n[reference]\nn = 32\n\n";
     out += arm("cosine") + arm("material") + arm("renderer");
-    return out + fmt::format("[regions.all]\nbox = [0, 0, {}, {}]\n", width - 1, height - 1);
+    return out + "[regions.all]\n";
 }
 
 namespace {
@@ -109,8 +109,8 @@ std::string experiment_for(const ModelScene& scene) {
     for (const ModelMesh& mesh : scene.meshes) out += mesh_table(mesh);
     out += scene.sky ? sky_table(*scene.sky, scene.sky_layer) : light_over(ball);
     out += "\n[reference]\nn = 64\n\n";
-    out += arm("cosine") + arm("material") + arm(scene.sky ? "sky" : "light-solid-angle") + arm("renderer");
-    out += fmt::format("[regions.all]\nbox = [0, 0, {}, {}]\n\n", width - 1, height - 1);
+    out += arm("cosine") + arm("material") + (scene.sky ? arm("sky") : "") + arm("renderer");
+    out += "[regions.all]\n\n";
     return out + "[plates.ladder]\nkind = \"ladder\"\nruns = [{ arm = \"material\" }, { arm = \"renderer\" }]\n";
 }
 

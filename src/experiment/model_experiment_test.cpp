@@ -147,6 +147,28 @@ TEST(ModelExperiment, OfAWholeSceneHasItsMaterialsCopiesAndCamera) {
     EXPECT_NE(std::ranges::find(parts, "light-triangle"), parts.end());
 }
 
+TEST(ModelExperiment, HasARegionOfTheImageAtAnySize) {
+    ModelScene scene;
+    scene.title = "m";
+    scene.points.add(tetrahedron()->mesh);
+    scene.meshes.push_back({.name = "m", .file = "m.mesh"});
+    const Experiment e = parse(experiment_for(scene), "e", {"image={width=64,height=48}"});
+    EXPECT_EQ(e.find_region("all")->box, (Box{0, 0, 63, 47}));
+}
+
+/// A room is seen from within although no corner of it is in the image; what is behind, or beyond a side, is not.
+TEST(ModelPoints, MayBeSeenUnlessBeyondASide) {
+    const ModelPoints room(Bounds{{-5, -5, -5}, {5, 5, 5}}), far(Bounds{{199, -1, -1}, {201, 1, 1}});
+    const Camera camera{.eye = {0, 0, 3}, .target = {0, 0, 0}, .up = {0, 1, 0}, .vfov_deg = 40};
+    EXPECT_TRUE(room.may_be_seen(camera, 1.5));
+    EXPECT_FALSE(far.may_be_seen(camera, 1.5));
+    EXPECT_TRUE(far.may_be_seen({.eye = {150, 0, 0}, .target = {200, 0, 0}, .up = {0, 1, 0}, .vfov_deg = 40}, 1.5));
+    EXPECT_FALSE(far.may_be_seen({.eye = {250, 0, 0}, .target = {300, 0, 0}, .up = {0, 1, 0}, .vfov_deg = 40}, 1.5));
+    const Camera wide{.eye = {100, 0, 100}, .target = {100, 0, 0}, .up = {0, 1, 0}, .vfov_deg = 60};
+    EXPECT_FALSE(far.may_be_seen(wide, 1));  // 45 degrees to the right
+    EXPECT_TRUE(far.may_be_seen(wide, 2));
+}
+
 TEST(ModelExperiment, NamesTablesAfterFiles) {
     EXPECT_EQ(table_name_of("folder/a model.mesh"), "a_model");
     EXPECT_EQ(table_name_of("-x.mesh"), "mesh-x");

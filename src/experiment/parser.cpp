@@ -391,10 +391,6 @@ void resolve_regions(ParseContext& context) {
             context.is_valid(path + ".mesh") && context.is_valid(path + ".shape");
         region.has_box = context.e.places.contains(path + ".box");
         if (!region.has_box) region.box = {0, 0, image.width - 1, image.height - 1};
-        if (is_valid && !region.has_box && region.object().empty())
-            context.report(path + ".box",
-                fmt::format(
-                    "missing key 'box' in [{}]: expected [x0, y0, x1, y1], or an object by 'mesh' or 'shape'", path));
         if (is_valid && !region.mesh.empty() && !region.shape.empty())
             context.report(path + ".shape",
                 fmt::format("{}.shape: expected 'mesh' or 'shape', found both: a region has one object", path));

@@ -335,7 +335,7 @@ Section regions() {
         .need = optional,
         .means = "Where errors are measured: in the pixels of a box, of an object, or of an object within a box.",
         .family = in<&Experiment::regions>,
-        .keys = {{"box", Type::box, pixel_range, "pixels", optional, "the whole image, if an object is named",
+        .keys = {{"box", Type::box, pixel_range, "pixels", optional, "the whole image",
                      "[x0, y0, x1, y1], both ends inside, origin bottom-left.", region_box},
             {"mesh", Type::shape, none, "", optional, "all objects", "Only pixels in which the camera sees this mesh.",
                 region_object<&Region::mesh>},

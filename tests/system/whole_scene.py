@@ -84,7 +84,7 @@ scene = {
         {"name": "bulb", "primitives": [{"attributes": box, "indices": box_indices, "material": 2}]},
     ],
     "nodes": [
-        {"mesh": 0}, {"name": "cubes", "children": [2, 3, 4]}, {"mesh": 1}, {"mesh": 1, "translation": [0.6, 0, 0]},
+        {"mesh": 0}, {"name": "cubes", "children": [2, 3, 4]}, {"mesh": 1}, {"mesh": 1, "translation": [0.6, 0, 0], "name": "right"},
         {"mesh": 1, "translation": [-0.6, 0, 0], "scale": [-1, 2, 1]}, {"mesh": 2, "translation": [0, 1.2, 0], "scale": [0.5, 0.5, 0.5]},
         {"camera": 0, "translation": [0, 0.8, 4]}, {"extensions": {"KHR_lights_punctual": {"light": 0}}},
     ],
@@ -96,7 +96,7 @@ has(said, "3 meshes", "50 triangles", "2 images", "camera: that of the file", "3
 text = pathlib.Path("scene/experiment.toml").read_text()
 has(text, "[meshes.cube]", "[[meshes.cube.instances]]", "rho_s = [1, 0.8, 0.3]", "alpha = 0.25", "emission = [5, 5, 5]",
     "rho_d_texture = \"textures/", "alpha_texture = \"textures/", "eye = [0, 0.8, 4]", "height = 160")
-command("run", "scene/experiment.toml", "--quiet", "--out", "out", "--set", "image.width=64", "--set", "image.height=32", "--set", "regions.all.box=[0,0,63,31]")
+command("run", "scene/experiment.toml", "--quiet", "--out", "out", "--set", "image.width=64", "--set", "image.height=32")
 runs = json.loads(pathlib.Path("out/metrics.json").read_text())["runs"]
 assert all(run["bad"] == 0 and run["y_mean"] > 0 for run in runs if "bad" in run), runs
 
@@ -150,6 +150,7 @@ has(said, "50 triangles", "box [-1, 0, -1] to [1, 1.4, 1]")
 # Parts of it; names that are near.
 has(command("import", "scene.glb", "--out", "cubes", "--select", "cubes"), "1 meshes", "36 triangles")
 has(command("import", "scene.glb", "--out", "gold", "--select", "gold"), "36 triangles")
+has(command("import", "scene.glb", "--out", "right", "--select", "right"), "12 triangles", "box [0.4, 0,", "1 copies")
 has(command("import", "scene.glb", "--out", "none", "--select", "gild", code=2), "'gild'", "'gold'")
 assert not pathlib.Path("none").exists()
 
@@ -189,7 +190,7 @@ for x, y, z in ((1000, 1, 1), (1, 2000, 0.5), (1000, 0.001, 1000)):
     pathlib.Path("thin.obj").write_text(thin + "".join("f " + " ".join(str(k + 1) for k in f) + "\n" for f in faces))
     command("import", "thin.obj", "--out", "thin")
     command("run", "thin/experiment.toml", "--quiet", "--out", "out", "--only", "metrics", "--set", "n=1", "--set", "arms.cosine.n=[1]",
-            "--set", "arms.material.n=[1]", "--set", "arms.light-solid-angle.n=[1]", "--set", "arms.renderer.n=[1]", "--set", "reference.n=2",
+            "--set", "arms.material.n=[1]", "--set", "arms.renderer.n=[1]", "--set", "reference.n=2",
             "--set", "plates.ladder.runs=[{ arm = \"material\" }]")
     seen = json.loads(pathlib.Path("out/metrics.json").read_text())["geometry_pixels"]
     assert seen > 320 * 240 / 100, (x, y, z, seen)
