@@ -355,6 +355,19 @@ private:
         index = *source;
         return &element("images", *source, member_place(element_place("textures", texture_index), "source"));
     }
+    /// Whether the image of a texture repeats in both directions.
+    bool repeats(const Json& from, const std::string& place) const {
+        const std::size_t index = needed(from, "index", place);
+        const std::string texture_place = element_place("textures", index);
+        const Json& texture = element("textures", index, member_place(place, "index"));
+        const std::optional<std::size_t> sampler_index = whole_number(texture, "sampler", texture_place);
+        if (!sampler_index) return true;
+        const Json& sampler = element("samplers", *sampler_index, member_place(texture_place, "sampler"));
+        constexpr std::size_t repeat = 10497;  // of OpenGL
+        return std::ranges::all_of(std::array{"wrapS", "wrapT"}, [&](const char* key) {
+            return whole_number(sampler, key, element_place("samplers", *sampler_index)).value_or(repeat) == repeat;
+        });
+    }
     std::string texture(const Json& from, const std::string& place) const {
         std::size_t index = 0;
         const Json* image = image_of(from, place, index);
@@ -367,6 +380,7 @@ private:
         const Json* image = image_of(from, place, index);
         if (!image) ++dropped_["images in a format of an extension"];
         if (!image || !scope_.images) return std::nullopt;
+        dropped_["images that are clamped or mirrored at their ends, and repeat here"] += !repeats(from, place);
         const auto [picture, is_new] = picture_of_image_.try_emplace(index, model.pictures.size());
         if (!is_new) return picture->second;
         const std::string image_place = element_place("images", index), uri = text(*image, "uri");
@@ -609,6 +623,8 @@ private:
             for (const std::size_t child : inner)
                 open.push_back({child, transform, member_place(place, "children"), names});
         }
+        for (std::size_t k = 0; k < visited.size(); ++k)
+            dropped_["meshes outside of the scene"] += !visited[k] && element("nodes", k, "nodes").contains("mesh");
         std::map<std::size_t, std::size_t> uses;
         for (const Open& one : placed) ++uses[one.node];
         std::map<std::size_t, std::pair<std::size_t, std::size_t>> shared;  // the parts of a mesh

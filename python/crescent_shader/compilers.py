@@ -14,6 +14,7 @@ import shutil
 import struct
 import subprocess
 import tempfile
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,12 +44,17 @@ def _cache_folder() -> Path:
     return Path(base) / "crescent" / "shaders"
 
 
+def _checksum(data: bytes) -> bytes:
+    return zlib.crc32(data).to_bytes(4, "little")
+
+
 def _kept(key: str) -> bytes | None:
+    """What was kept under a key; None if there is nothing, or a damaged file."""
     try:
         path = _cache_folder() / key
-        data = path.read_bytes()
+        checksum, data = (content := path.read_bytes())[:4], content[4:]
         os.utime(path)
-        return data
+        return data if checksum == _checksum(data) else None
     except OSError:
         return None
 
@@ -59,7 +65,7 @@ def _keep(key: str, data: bytes) -> None:
         folder = _cache_folder()
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=folder, delete=False, prefix=".new-") as file:
-            file.write(data)
+            file.write(_checksum(data) + data)
         os.replace(file.name, folder / key)
         files = sorted(folder.iterdir(), key=lambda path: path.stat().st_mtime)
         for old in files[:-KEPT_FILES]:

@@ -34,6 +34,11 @@ for language in $languages; do
     expect 1 check "$file" --sample 'wi = ggx_sample(wo, u, alpha)' --pdf 'ggx_pdf(wo, wi, alpha) * 1.03' --set alpha=0.3
     grep -q "normalised" printed || die "a factor of 1.03 has no verdict: $(cat printed)"
 done
+# What the compilers made is kept; a damaged file is made again.
+if [[ $languages = *glsl* ]]; then
+    for file in "$work"/cache/crescent/shaders/*; do printf damaged >"$file"; done
+    expect 0 check "$lobes.glsl" --sample 'wi = cosine_sample(u)' --pdf 'cosine_pdf(wi)'
+fi
 if [[ $languages = *slang* ]]; then  # what the others lack: methods, interfaces, generics, initialiser lists
     cat >material.slang <<'S'
 interface IBsdf { float3 sample(float2 u); float pdf(float3 wi); }

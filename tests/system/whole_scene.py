@@ -70,7 +70,8 @@ colours = g.view(png(2, 2, lambda x, y: (188, 188, 188) if x == y else (0, 0, 0)
 surface = g.view(png(1, 1, lambda x, y: (0, 128, 0)))
 scene = {
     "images": [{"bufferView": colours, "mimeType": "image/png", "name": "checks"}, {"bufferView": surface, "mimeType": "image/png"}],
-    "textures": [{"source": 0}, {"source": 1}],
+    "textures": [{"source": 0, "sampler": 0}, {"source": 1}],
+    "samplers": [{"wrapS": 33071}],
     "materials": [
         {"name": "tiles", "normalTexture": {"index": 0}, "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 1}}},
         {"name": "gold", "alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 0.8, 0.3, 1], "roughnessFactor": 0.5}},
@@ -92,7 +93,7 @@ scene = {
 g.write("scene.glb", scene)
 said = command("import", "scene.glb", "--out", "scene")
 has(said, "3 meshes", "50 triangles", "2 images", "camera: that of the file", "3 copies", "1 meshes that emit", "left out: 1 normal maps",
-    "1 materials' transparency", "1 lights", "COLOR_0")
+    "1 materials' transparency", "1 lights", "COLOR_0", "1 images that are clamped or mirrored at their ends")
 text = pathlib.Path("scene/experiment.toml").read_text()
 has(text, "[meshes.cube]", "[[meshes.cube.instances]]", "rho_s = [1, 0.8, 0.3]", "alpha = 0.25", "emission = [5, 5, 5]",
     "rho_d_texture = \"textures/", "alpha_texture = \"textures/", "eye = [0, 0.8, 4]", "height = 160")
