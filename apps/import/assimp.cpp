@@ -30,6 +30,7 @@ public:
         if (lower_extension(model_) != ".obj") return;
         ObjText checked = checked_obj(text_);
         text_ = std::move(checked.text);
+        origin = checked.origin;
         left_out = std::move(checked.left_out);
         for (const std::string& library : checked.libraries)
             if (!can_open(folder_ / library))
@@ -37,6 +38,7 @@ public:
     }
 
     std::vector<std::string> left_out;
+    Vec3d origin{};  // of the vertices
 
     bool Exists(const char* file) const override { return file == model_.string() || can_open(file); }
     Assimp::IOStream* Open(const char* file, const char* mode) override {
@@ -114,14 +116,14 @@ void list_what_is_left_out(const aiScene& scene, std::vector<std::string>& out) 
         "meshes' colours of vertices");
 }
 
-/// `has_normals`: those of STL are of its flat triangles.
-Part part_of(const aiMesh& from, bool has_normals) {
+/// `has_normals`: those of STL are of its flat triangles. `origin`: of the positions.
+Part part_of(const aiMesh& from, bool has_normals, Vec3d origin) {
     Part out;
     out.material = from.mMaterialIndex;
     out.names = {from.mName.C_Str()};
     std::ranges::replace(out.names[0], blank_of_name, ' ');
     for (unsigned k = 0; k < from.mNumVertices; ++k) {
-        out.positions.push_back(widen(vector_of(from.mVertices[k])));
+        out.positions.push_back(widen(vector_of(from.mVertices[k])) + origin);
         if (has_normals && from.HasNormals()) out.normals.push_back(vector_of(from.mNormals[k]));
         if (from.HasTextureCoords(0)) out.uv.push_back({from.mTextureCoords[0][k].x, from.mTextureCoords[0][k].y});
     }
@@ -158,7 +160,7 @@ Model read_by_assimp(const std::filesystem::path& file, const ReadingScope& scop
         if (is_new) out.pictures.push_back({material.texture, files->picture(material.texture)});
     }
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-        out.parts.push_back(part_of(*scene->mMeshes[m], lower_extension(file) != ".stl"));
+        out.parts.push_back(part_of(*scene->mMeshes[m], lower_extension(file) != ".stl", files->origin));
         if (out.parts.back().material >= out.materials.size())
             throw ModelError("a mesh has a material beyond the last");
     }

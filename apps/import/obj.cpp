@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -26,11 +28,66 @@ bool begins_number(std::string_view before) {
     return !before.empty() && is_blank(before.back());
 }
 
-bool is_number(std::string_view word) {
+std::optional<double> number_in(std::string_view word) {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error != std::errc::invalid_argument && end == word.data() + word.size();
+    const bool is_number = error != std::errc::invalid_argument && end == word.data() + word.size();
+    return is_number ? std::optional(value) : std::nullopt;
+}
+bool is_number(std::string_view word) { return number_in(word).has_value(); }
+
+/// The box of the vertices, and whether one has a weight.
+struct Extent {
+    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    bool has_weights = false;
+
+    void add(const std::vector<std::string_view>& words) {
+        has_weights = has_weights || words.size() == 4;
+        std::size_t k = 0;
+        for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+            const double value = number_in(words[k++]).value_or(0);
+            low.*axis = std::min(low.*axis, value);
+            high.*axis = std::max(high.*axis, value);
+        }
+    }
+    /// The middle in whole units, if it is more than a hundred extents away: single precision would leave fewer than
+    /// 2^17 steps.
+    Vec3d origin() const {
+        double extent = 0, largest = 0;
+        for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+            extent = std::max(extent, high.*axis - low.*axis);
+            largest = std::max({largest, std::fabs(low.*axis), std::fabs(high.*axis)});
+        }
+        if (has_weights || !std::isfinite(largest) || !(extent > 0) || largest <= 100 * extent) return {};
+        const Vec3d middle = 0.5 * (low + high);
+        const auto whole = [&](double x) { return extent * std::round(x / extent); };
+        return {whole(middle.x), whole(middle.y), whole(middle.z)};
+    }
+};
+
+/// The text with the numbers of its vertices relative to an origin.
+std::string moved_to(Vec3d origin, std::string_view text) {
+    std::string out;
+    out.reserve(text.size());
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        std::string_view line = text.substr(begin, end - begin);
+        begin = end + 1;
+        if (line.starts_with("v ") || line.starts_with("v\t")) {
+            out += 'v';
+            line.remove_prefix(1);
+            for (const double x : {origin.x, origin.y, origin.z}) {
+                line.remove_prefix(line.find_first_not_of(" \t"));
+                const std::string_view word = line.substr(0, line.find_first_of(" \t"));
+                line.remove_prefix(word.size());
+                out += fmt::format(" {:.17g}", number_in(word).value_or(0) - x);
+            }
+        }
+        out += line;
+        out += '\n';
+    }
+    return out;
 }
 
 /// Joins continued lines; the lines that were joined follow as empty ones, so that numbers of lines stay. A line that
@@ -89,6 +146,7 @@ ObjText checked_obj(std::string_view file) {
     std::array<std::int64_t, 3> counts{};
     std::array<Largest, 3> largest{};
     std::size_t curves = 0, points_and_lines = 0;
+    Extent extent;
     const auto check_corner = [&](std::string_view corner, std::size_t line) {
         for (std::size_t kind = 0; kind < 3 && !corner.empty(); ++kind) {
             const std::string_view word = corner.substr(0, corner.find('/'));
@@ -145,6 +203,7 @@ ObjText checked_obj(std::string_view file) {
             for (std::string_view word = next(); !word.empty(); word = next()) words.push_back(word);
             if (words.size() < numbers_of[kind] || !std::ranges::all_of(words, is_number))
                 throw ModelError(fmt::format("line {}: expected {} numbers after '{}'", line, numbers_of[kind], key));
+            if (kind == 0) extent.add(words);
             // assimp skips a line with another count.
             const std::size_t kept = read_of(kind, words.size());
             if (kept < words.size())
@@ -165,6 +224,8 @@ ObjText checked_obj(std::string_view file) {
                 largest[kind].index, kinds[kind], counts[kind]));
     if (curves > 0) out.left_out.push_back(fmt::format("{} curves and surfaces", curves));
     if (points_and_lines > 0) out.left_out.push_back(fmt::format("{} points and lines", points_and_lines));
+    out.origin = extent.origin();
+    if (dot(out.origin, out.origin) > 0) out.text = moved_to(out.origin, out.text);
     return out;
 }
 

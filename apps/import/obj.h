@@ -5,10 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "model.h"
+
 namespace crescent::importer {
 
 struct ObjText {
     std::string text;
+    Vec3d origin{};                      // of the vertices in the text
     std::vector<std::string> libraries;  // of materials, as `mtllib` names them
     std::vector<std::string> left_out;   // "3 curves and surfaces"
 };
@@ -17,7 +20,8 @@ struct ObjText {
 inline constexpr char blank_of_name = '\x1f';
 
 /// Returns the text without byte order mark, comments and line continuations, with '\n' as the end of each line and
-/// nothing before its first word. Throws ModelError with the line for a vertex without its numbers, for an index of a
+/// nothing before its first word. Vertices that are far away for their extent are relative to an origin: assimp keeps
+/// them in single precision. Throws ModelError with the line for a vertex without its numbers, for an index of a
 /// face that no vertex has, and for a face of more than most_corners corners.
 ObjText checked_obj(std::string_view file);
 

@@ -199,6 +199,18 @@ for what in aniso anisor 'Ks spectral' 'd -halo'; do
     grep -qF "left out: '$what' of 1 material" printed said || die "$what is lost: $(cat printed said)"
 done
 
+# A square metre far away keeps its millimetres.
+cat >survey.obj <<'O'
+v 5200000.130 440000.210 100.07
+v 5200001.130 440000.210 100.07
+v 5200001.130 440001.210 100.07
+v 5200000.230 440000.410 100.37
+f 1 2 3
+f 1 2 4
+O
+expect 0 "$CRESCENT" import survey.obj --out survey.mesh
+grep -qF "box [-0.5, -0.5, -0.15] to [0.5, 0.5, 0.15]" printed said || die "its box: $(cat printed said)"
+
 printf 'v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n' >nan.obj
 printf 'v 0x10 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >hex.obj
 echo 'no model' >text.ply
