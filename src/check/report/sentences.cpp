@@ -261,6 +261,17 @@ Sentences sentences_of(const CheckAt& c, const Finding& f) {
     }
 }
 
+namespace {
+
+/// A direction, with its length if rounding moved it: at length 1 the fault may not be there.
+std::string with_length(Vec3d w) {
+    const double more = std::sqrt(dot(w, w)) - 1;
+    if (!(std::fabs(more) > 1e-9)) return direction_text(w);
+    return fmt::format("{} of length 1 {} {:.2g}", direction_text(w), more < 0 ? '-' : '+', std::fabs(more));
+}
+
+}  // namespace
+
 Sentence sentence_of(const SmallFault& f, const Traits& traits) {
     std::string out = fmt::format("{}: {:g} of {:g}", f.what, f.times, f.of);
     if (f.family == Family::jacobian) out += fmt::format(", by up to {:.3g} %", 100 * std::fabs(f.size));
@@ -270,7 +281,7 @@ Sentence sentence_of(const SmallFault& f, const Traits& traits) {
     const std::string place = place_text(numbers_of(f, traits), traits, f.first);
     if (!f.place.empty()) return {f.what, fmt::format("{} rows, first at {}: {}.", out, f.place, place)};
     return {f.what,
-        fmt::format("{}, first at {}{}.", out, f.wo ? fmt::format("w_o = {}, ", direction_text(*f.wo)) : "", place)};
+        fmt::format("{}, first at {}{}.", out, f.wo ? fmt::format("w_o = {}, ", with_length(*f.wo)) : "", place)};
 }
 
 namespace {

@@ -103,5 +103,14 @@ TEST(Sentences, OfANodeStateWhatItsTestMeasured) {
     EXPECT_GT(std::fabs(drawn - claimed), half) << text;
 }
 
+/// pow(1 - cos, 5) is not a number there, and is one at the normal itself.
+TEST(Sentences, HaveTheLengthThatRoundingLeaves) {
+    SmallFault f{.family = Family::corners, .times = 1, .of = 8, .what = "The pdf is not a number >= 0"};
+    f.wo = Vec3d{0, 0, 1};
+    EXPECT_NE(sentence_of(f, {}).text.find("first at w_o = (0, 0, 1), "), std::string::npos);
+    f.wo = Vec3d{0, 0, 1 + 0x1p-22};
+    EXPECT_NE(sentence_of(f, {}).text.find("first at w_o = (0, 0, 1) of length 1 + 2.4e-07, "), std::string::npos);
+}
+
 }  // namespace sentences_test
 }  // namespace crescent::check
