@@ -111,7 +111,9 @@ std::string experiment_for(const ModelScene& scene) {
     out += "\n[reference]\nn = 64\n\n";
     out += arm("cosine") + arm("material") + (scene.sky ? arm("sky") : "") + arm("renderer");
     out += "[regions.all]\n\n";
-    return out + "[plates.ladder]\nkind = \"ladder\"\nruns = [{ arm = \"material\" }, { arm = \"renderer\" }]\n";
+    for (const char* name : {"material", "renderer"})
+        out += fmt::format("[plates.{0}]\nkind = \"ladder\"\nruns = [{{ arm = \"{0}\" }}]\n\n", name);
+    return out;
 }
 
 }  // namespace crescent

@@ -46,8 +46,8 @@ struct ModelScene {
     std::string sky_layer = {};      // of it; "": its first part
 };
 
-/// Returns an experiment of a whole scene: the arms that its lights and materials call for at three sample counts, a
-/// plate of them, a region of the whole image, a reference.
+/// Returns an experiment of a whole scene: the arms that its lights and materials call for at three sample counts,
+/// plates of two of them, a region of the whole image, a reference.
 std::string experiment_for(const ModelScene& scene);
 
 }  // namespace crescent

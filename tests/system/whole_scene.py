@@ -191,8 +191,7 @@ for x, y, z in ((1000, 1, 1), (1, 2000, 0.5), (1000, 0.001, 1000)):
     pathlib.Path("thin.obj").write_text(thin + "".join("f " + " ".join(str(k + 1) for k in f) + "\n" for f in faces))
     command("import", "thin.obj", "--out", "thin")
     command("run", "thin/experiment.toml", "--quiet", "--out", "out", "--only", "metrics", "--set", "n=1", "--set", "arms.cosine.n=[1]",
-            "--set", "arms.material.n=[1]", "--set", "arms.renderer.n=[1]", "--set", "reference.n=2",
-            "--set", "plates.ladder.runs=[{ arm = \"material\" }]")
+            "--set", "arms.material.n=[1]", "--set", "arms.renderer.n=[1]", "--set", "reference.n=2")
     seen = json.loads(pathlib.Path("out/metrics.json").read_text())["geometry_pixels"]
     assert seen > 320 * 240 / 100, (x, y, z, seen)
 
