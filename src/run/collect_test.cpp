@@ -110,7 +110,7 @@ TEST(Collect, TailsAreOfTheSamplesOfARegion) {
     const Scene scene(e);
     const Job cosine{"cosine", "cosine", {4}, 24, 11, {}};
     const ShapeMap shapes = shape_map(scene);
-    const AreaPixels pixels({{0, 0, 3, 3}}, shapes);
+    const AreaPixels pixels({{0, 0, 7, 5}}, shapes);
     const auto tail = region_tail(scene, cosine, pixels, "", monitor);
     ASSERT_TRUE(tail);
     const auto same = region_tail(scene, cosine, pixels, "", monitor);

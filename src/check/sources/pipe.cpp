@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/machine.h"
 #include "base/process.h"
 #include "base/text.h"
 #include "check/sources/check_case.h"
@@ -797,10 +796,10 @@ std::shared_ptr<const SamplerAdapter> start_shader(
         return start_python_module(
             "crescent_shader", arguments, "'crescent-bench[shader]'", limits, file, default_neighbours, true);
     };
-    // While a device computes for one, another converts its numbers; a device computes on all of its cores.
-    constexpr int enough = 4;
-    const auto copies = static_cast<std::size_t>(std::min(enough, usable_threads()));
-    return std::make_shared<Copies>(start, std::max<std::size_t>(copies / shaders, 1));
+    // While a device computes for one, another converts its numbers; a device computes on all of its cores. There are
+    // no more than threads that ask.
+    constexpr std::size_t enough = 4;
+    return std::make_shared<Copies>(start, std::max<std::size_t>(enough / shaders, 1));
 }
 
 }  // namespace crescent
