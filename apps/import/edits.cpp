@@ -115,8 +115,10 @@ void smooth_part(Part& part, double least_cosine) {
 }  // namespace
 
 void smooth(Model& model, double degrees) {
+    const auto is_finite = [](Vec3d v) { return std::isfinite(v.x + v.y + v.z); };
     for (Part& part : model.parts)
-        if (part.normals.empty()) smooth_part(part, math::cos(degrees * pi / 180));
+        if (part.normals.empty() && std::ranges::all_of(part.positions, is_finite))  // else it is refused later
+            smooth_part(part, math::cos(degrees * pi / 180));
 }
 
 }  // namespace crescent::importer

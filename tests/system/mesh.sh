@@ -218,6 +218,7 @@ for model in nan.obj hex.obj text.ply tent.toml; do
     expect 2 "$CRESCENT" import $model --out bad.mesh
     grep -q "^$model: " said || die "$model: $(cat said)"
 done
+expect 2 timeout 20 "$CRESCENT" import nan.obj --out bad --smooth 30
 [ ! -e bad.mesh ] || die "a refused model is written"
 expect 2 "$CRESCENT" import tent.obj --out tent.txt
 expect 3 "$CRESCENT" import tent.obj --out none/tent.mesh
