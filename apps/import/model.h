@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "crescent/crescent.h"
@@ -99,6 +100,9 @@ std::string bytes_of(const std::filesystem::path& file);
 
 /// Returns the extension of a name in lower case, ".obj".
 std::string lower_extension(const std::filesystem::path& file);
+/// Returns the number that a word of a text file is, as a whole; nothing if it is none. Beyond the range of a double: 0
+/// or infinity.
+std::optional<double> number_in(std::string_view word);
 
 /// Whether the file is in this folder or below it, links resolved.
 bool is_inside(const std::filesystem::path& folder, const std::filesystem::path& file);

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -28,13 +27,6 @@ bool begins_number(std::string_view before) {
     return !before.empty() && is_blank(before.back());
 }
 
-std::optional<double> number_in(std::string_view word) {
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool is_number = error != std::errc::invalid_argument && end == word.data() + word.size();
-    return is_number ? std::optional(value) : std::nullopt;
-}
 bool is_number(std::string_view word) { return number_in(word).has_value(); }
 
 /// The box of the vertices, and whether one has a weight.
@@ -51,7 +43,7 @@ struct Extent {
             high.*axis = std::max(high.*axis, value);
         }
     }
-    /// The middle in whole units, if it is more than a hundred extents away: single precision would leave fewer than
+    /// The middle, if it is more than a hundred extents away: single precision would leave fewer than
     /// 2^17 steps.
     Vec3d origin() const {
         double extent = 0, largest = 0;
@@ -60,9 +52,7 @@ struct Extent {
             largest = std::max({largest, std::fabs(low.*axis), std::fabs(high.*axis)});
         }
         if (has_weights || !std::isfinite(largest) || !(extent > 0) || largest <= 100 * extent) return {};
-        const Vec3d middle = 0.5 * (low + high);
-        const auto whole = [&](double x) { return extent * std::round(x / extent); };
-        return {whole(middle.x), whole(middle.y), whole(middle.z)};
+        return 0.5 * (low + high);
     }
 };
 

@@ -4,7 +4,6 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 
@@ -158,14 +157,10 @@ private:
     std::optional<double> next_word() {
         const std::size_t begin = rest_.find_first_not_of(" \t\r\n");
         if (begin == rest_.npos) return std::nullopt;
-        rest_.remove_prefix(begin + (rest_[begin] == '+'));
+        rest_.remove_prefix(begin);
         const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r\n"));
         rest_.remove_prefix(word.size());
-        double out = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), out);
-        if (error == std::errc::invalid_argument || end != word.data() + word.size()) return std::nullopt;
-        // Beyond the range of a double: 0 or infinity, which from_chars does not give.
-        return error == std::errc::result_out_of_range ? std::strtod(std::string(word).c_str(), nullptr) : out;
+        return number_in(word);
     }
 
     std::string_view rest_;

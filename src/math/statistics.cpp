@@ -291,9 +291,9 @@ std::optional<Tail> fit_tail(std::span<const double> largest) { return fit(large
 
 std::optional<Tail> fit_pooled_tail(std::span<const float> largest) {
     std::optional<Tail> out = fit_tail(largest);
-    const std::size_t all = largest.empty() ? 0 : largest.size() - 1;
-    for (std::size_t exceedances = all / 8; out && exceedances >= 5; exceedances /= 8) {
-        const bool is_first = exceedances == all / 8;
+    const std::size_t first_deeper = largest.empty() ? 0 : (largest.size() - 1) / 8;
+    for (std::size_t exceedances = first_deeper; out && exceedances >= 5; exceedances /= 8) {
+        const bool is_first = exceedances == first_deeper;
         if (!is_first && !out->heavy()) break;
         const std::optional<Tail> deeper = fit_tail(largest.first(1 + exceedances));
         if (!deeper) return {};  // the largest are equal

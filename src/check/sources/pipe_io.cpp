@@ -234,9 +234,9 @@ std::size_t PipeConnection::most_rows(const Rows& rows) const {
     constexpr std::size_t in_block = 1 << 16;
     if (!uses_memory_) return in_block;
     const std::size_t row = std::max(rows.in.size(), rows.out.size()) / rows.count * bytes_of_number(rows);
-    const auto known = seconds_a_row_.find(rows.operation);
-    if (known == seconds_a_row_.end()) return std::min(first_rows, slot_bytes / 2 / row);
-    const double in_a_second = std::min(1 / known->second, static_cast<double>(in_block));
+    const auto cost = seconds_a_row_.find(rows.operation);
+    if (cost == seconds_a_row_.end()) return std::min(first_rows, slot_bytes / 2 / row);
+    const double in_a_second = std::min(1 / cost->second, static_cast<double>(in_block));
     return std::min(std::max(fewest_rows, static_cast<std::size_t>(in_a_second)), slot_bytes / 2 / row);
 }
 
