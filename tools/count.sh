@@ -84,7 +84,7 @@ check() {
 }
 
 # fuzz PRESET TARGET SECONDS [CORPUS]: no finding in that time counts as one test. The corpus of NAME_fuzz is
-# tests/fuzz/NAME; CORPUS is a second one.
+# tests/fuzz/NAME; CORPUS is a second one. Always the same seed: what fails is due to the change that is tested.
 fuzz() {
     local target log found corpus
     target="$(binary_dir "$1")/tests/fuzz/$2"
@@ -94,7 +94,8 @@ fuzz() {
     found="$(binary_dir "$1")/tests/fuzz/found-$2"
     mkdir -p "$found"
     say "fuzzing $2 for $3 s"
-    if "$target" -max_total_time="$3" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$found/" \
+    if LSAN_OPTIONS="suppressions=$root/tests/support/leaks.txt:print_suppressions=0" "$target" -seed=1 \
+        -max_total_time="$3" -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$found/" \
         -dict="$root/tests/fuzz/experiment.dict" "$found" "$corpus" "${@:4}" >"$log" 2>&1; then
         add 1 0
     else
