@@ -8,6 +8,8 @@
 // sky has no such direction: nothing is drawn.
 #pragma once
 
+#include <array>
+
 #include "math/simd/scalar.h"
 #include "samplers/sampler.h"
 
@@ -38,16 +40,23 @@ template <class F> struct SkyByTexel {
         const F zero = number<F>(0);
         if (!around) return {{{zero, zero, number<F>(1)}, {zero}}, UintOf<F>(no_texel)};
         using Scalar = typename LaneArray<F>::Scalar;
+        constexpr std::size_t lanes = Lanes<F>::count;
         const LaneArray<F> ux(u.x), uy(u.y);
+        std::array<double, lanes> u1, u2;
+        for (std::size_t l = 0; l < lanes; ++l) {
+            u1[l] = double(ux.at[l]);
+            u2[l] = double(uy.at[l]);
+        }
+        std::array<SkyDraw, lanes> drawn;
+        sample_sky(*around, u1, u2, drawn);
         LaneArray<F> x, y, z, p;
         LaneIntegers<F> texel;
-        for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
-            const SkyDraw drawn = sample_sky(*around, double(ux.at[l]), double(uy.at[l]));
-            x.at[l] = static_cast<Scalar>(drawn.w.x);
-            y.at[l] = static_cast<Scalar>(drawn.w.y);
-            z.at[l] = static_cast<Scalar>(drawn.w.z);
-            p.at[l] = static_cast<Scalar>(drawn.pdf);
-            texel.at[l] = drawn.texel;
+        for (std::size_t l = 0; l < lanes; ++l) {
+            x.at[l] = static_cast<Scalar>(drawn[l].w.x);
+            y.at[l] = static_cast<Scalar>(drawn[l].w.y);
+            z.at[l] = static_cast<Scalar>(drawn[l].w.z);
+            p.at[l] = static_cast<Scalar>(drawn[l].pdf);
+            texel.at[l] = drawn[l].texel;
         }
         return {{frame.to_local({x.pack(), y.pack(), z.pack()}), {p.pack()}}, texel.pack()};
     }

@@ -22,6 +22,9 @@ namespace {
 /// Columns for each entry of the guide of a row.
 constexpr std::size_t columns_a_guide = 4;
 
+/// Draws whose tables are fetched together.
+constexpr std::size_t draws_at_once = 16;
+
 /// Writes the guides: how many of `rising` are at most k / guides.size(), for each k; below(x): x in their unit.
 template <class Numbers, class Below>
 void write_guides(std::span<std::uint16_t> guides, const Numbers& rising, const Below& below) {
@@ -46,6 +49,22 @@ double rough_turns(double y, double x) {
     angle = ay > ax ? pi / 2 - angle : angle;
     angle = x < 0 ? pi - angle : angle;
     return (y < 0 ? -angle : angle) / (2 * pi);
+}
+
+/// The sine and cosine of an angle of 2 pi times `turns`, |turns| < 2^29, within 1e-13, in a third of the time of
+/// math::sincos: the series up to r^13 and r^14 for |r| <= pi / 4.
+math::SinCos rough_sincos(double turns) {
+    const double quarters = 4 * turns, nearest = std::floor(quarters + 0.5), r = (pi / 2) * (quarters - nearest),
+                 r2 = r * r;
+    constexpr std::array sine = {-1.0 / 39916800, 1.0 / 362880, -1.0 / 5040, 1.0 / 120, -1.0 / 6, 1.0};
+    constexpr std::array cosine = {1.0 / 479001600, -1.0 / 3628800, 1.0 / 40320, -1.0 / 720, 1.0 / 24, -0.5, 1.0};
+    double s = 1.0 / 6227020800, c = -1.0 / 87178291200;
+    for (const double term : sine) s = term + r2 * s;
+    for (const double term : cosine) c = term + r2 * c;
+    s *= r;
+    const int quarter = static_cast<int>(nearest) & 3;
+    const double sin = quarter & 1 ? c : s, cos = quarter & 1 ? s : c;
+    return {quarter & 2 ? -sin : sin, quarter == 1 || quarter == 2 ? -cos : cos};
 }
 
 /// The entry of a guide for x in [0, 1); 0 for NaN.
@@ -179,34 +198,68 @@ double SkyTable::solid_angle(int row) const {
 }
 
 SkyDraw SkyTable::sample(double u, double v) const {
-    const std::size_t last_row = rows_.size() - 1;
-    std::size_t row = row_guide_[entry_of(u, row_guide_.size())];
-    while (row < last_row && rows_[row] <= u * total_) ++row;
-    row = std::min(row, last_row);
+    SkyDraw out;
+    sample({&u, 1}, {&v, 1}, {&out, 1});
+    return out;
+}
+
+void SkyTable::sample(std::span<const double> u, std::span<const double> v, std::span<SkyDraw> out) const {
+    for (std::size_t first = 0; first < out.size(); first += draws_at_once) {
+        const std::size_t count = std::min(draws_at_once, out.size() - first);
+        sample_some(u.subspan(first, count), v.subspan(first, count), out.subspan(first, count));
+    }
+}
+
+void SkyTable::sample_some(std::span<const double> u, std::span<const double> v, std::span<SkyDraw> out) const {
+    struct Place {
+        std::size_t row, column;
+        double down, along;  // within the texel, 0 to 1
+    };
+    std::array<Place, draws_at_once> places;
     const auto inside = [](double x, double low, double high) {
         const double part = high > low ? (x - low) / (high - low) : 0.5;
         return std::clamp(part, 0.0, 1.0);
     };
-    const double down = inside(u * total_, row > 0 ? rows_[row - 1] : 0, rows_[row]);
-    const std::size_t columns = static_cast<std::size_t>(width());
-    const float* const first = &columns_[row * columns];
-    std::size_t column = column_guide_[row * guides_of_row_ + entry_of(v, guides_of_row_)];
-    column = std::min(column, columns - 1);
-    while (column + 1 < columns && double(first[column]) <= v) ++column;
-    const double along = inside(v, column > 0 ? double(first[column - 1]) : 0, double(first[column]));
-    const RowEdges edges = edges_of(static_cast<int>(row));
-    double h, y;
-    if (edges.across) {
-        y = (1 - edges.polar) * (1 - 2 * down);
-        h = 1 - std::fabs(y);
-    } else {
-        h = edges.polar + (edges.equatorial - edges.polar) * (edges.below ? 1 - down : down);
-        y = edges.below ? h - 1 : 1 - h;
+    const std::size_t count = out.size(), columns = static_cast<std::size_t>(width()), last_row = rows_.size() - 1;
+    for (std::size_t k = 0; k < count; ++k) {
+        std::size_t row = row_guide_[entry_of(u[k], row_guide_.size())];
+        while (row < last_row && rows_[row] <= u[k] * total_) ++row;
+        row = std::min(row, last_row);
+        places[k].row = row;
+        places[k].down = inside(u[k] * total_, row > 0 ? rows_[row - 1] : 0, rows_[row]);
+        __builtin_prefetch(&column_guide_[row * guides_of_row_ + entry_of(v[k], guides_of_row_)]);
     }
-    const double across = std::sqrt(h * (2 - h));
-    const math::SinCos phi = math::sincos(2 * pi * ((static_cast<double>(column) + along) / width() - turns_));
-    const auto texel = static_cast<std::uint32_t>(row * columns + column);
-    return {{across * phi.sin, y, -across * phi.cos}, texel, pdf(texel)};
+    for (std::size_t k = 0; k < count; ++k) {
+        Place& place = places[k];
+        const std::size_t guide = column_guide_[place.row * guides_of_row_ + entry_of(v[k], guides_of_row_)];
+        place.column = std::min(guide, columns - 1);
+        __builtin_prefetch(&columns_[place.row * columns + place.column]);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        Place& place = places[k];
+        const float* const shares = &columns_[place.row * columns];
+        std::size_t column = place.column;
+        while (column + 1 < columns && double(shares[column]) <= v[k]) ++column;
+        place.column = column;
+        place.along = inside(v[k], column > 0 ? double(shares[column - 1]) : 0, double(shares[column]));
+        image_->prefetch(3 * (place.row * columns + column));
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto& [row, column, down, along] = places[k];
+        const RowEdges edges = edges_of(static_cast<int>(row));
+        double h, y;
+        if (edges.across) {
+            y = (1 - edges.polar) * (1 - 2 * down);
+            h = 1 - std::fabs(y);
+        } else {
+            h = edges.polar + (edges.equatorial - edges.polar) * (edges.below ? 1 - down : down);
+            y = edges.below ? h - 1 : 1 - h;
+        }
+        const double across = std::sqrt(h * (2 - h));
+        const math::SinCos phi = rough_sincos((static_cast<double>(column) + along) / width() - turns_);
+        const auto texel = static_cast<std::uint32_t>(row * columns + column);
+        out[k] = {{across * phi.sin, y, -across * phi.cos}, texel, pdf(texel)};
+    }
 }
 
 std::uint32_t SkyTable::texel_at(Vec3d w) const {

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,8 @@ public:
 
     /// u and v in [0, 1). Rounding the direction may move it to a neighbouring texel: the result has the drawn one.
     SkyDraw sample(double u, double v) const;
+    /// As many draws as `out` has room for. What they read from memory is fetched for several together.
+    void sample(std::span<const double> u, std::span<const double> v, std::span<SkyDraw> out) const;
     /// w needs no unit length.
     std::uint32_t texel_at(Vec3d w) const;
     /// The density with which a direction of this texel is drawn, 1/sr.
@@ -86,6 +89,7 @@ private:
         bool across, below;  // it contains the equator; it is below it
     };
     RowEdges edges_of(int row) const;
+    void sample_some(std::span<const double> u, std::span<const double> v, std::span<SkyDraw> out) const;
 
     std::shared_ptr<const RgbImage> image_;
     double scale_, turns_;        // of the rotation

@@ -60,8 +60,10 @@ void triangle_radiance(const Surroundings& around, std::uint32_t triangle, float
 bool has_sky(const Surroundings& around) { return around.sky.has_value(); }
 bool has_meshes(const Surroundings& around) { return !around.rays.empty(); }
 
-SkyDraw sample_sky(const Surroundings& around, double u, double v) {
-    return around.sky ? around.sky->sample(u, v) : SkyDraw{{0, 1, 0}, no_texel, 0};
+void sample_sky(
+    const Surroundings& around, std::span<const double> u, std::span<const double> v, std::span<SkyDraw> out) {
+    if (around.sky) around.sky->sample(u, v, out);
+    else std::ranges::fill(out, SkyDraw{.w = {0, 1, 0}, .texel = no_texel, .pdf = 0});
 }
 
 double sky_pdf(const Surroundings& around, std::uint32_t texel, Vec3d d) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "base/vec.h"
 #include "scene/mesh/rays.h"
@@ -47,7 +48,9 @@ bool has_meshes(const Surroundings& around);
 
 // ---- The samplers: a direction, and its density in 1/sr; 0 where there is nothing to aim at.
 
-SkyDraw sample_sky(const Surroundings& around, double u, double v);
+/// As many as `out` has room for.
+void sample_sky(
+    const Surroundings& around, std::span<const double> u, std::span<const double> v, std::span<SkyDraw> out);
 /// Of direction d, or of a texel if that is known.
 double sky_pdf(const Surroundings& around, std::uint32_t texel, Vec3d d);
 /// `whole`: the density is that of all triangles that the direction meets, else that of the drawn one.

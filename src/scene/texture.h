@@ -43,6 +43,11 @@ struct RgbImage {
     std::size_t size() const { return rgb.size() + halves.size(); }
     /// Returns one of them.
     float operator[](std::size_t k) const { return halves.empty() ? rgb[k] : value_of_half(halves[k]); }
+    /// Fetches one of them from memory, as a hint.
+    void prefetch(std::size_t k) const {
+        if (halves.empty()) __builtin_prefetch(&rgb[k]);
+        else __builtin_prefetch(&halves[k]);
+    }
     /// Sets one of them to 0.
     void set_zero(std::size_t k) {
         if (halves.empty()) rgb[k] = 0;
