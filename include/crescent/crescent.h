@@ -21,6 +21,7 @@
 // in the input, OutputError a missing part or a failed write, Interrupted a requested stop, Bug a defect of crescent.
 #pragma once
 
+#include "base/counted.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/input.h"

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <tuple>
 
+#include "experiment/input_files.h"
 #include "samplers/info.h"
 
 namespace crescent {
@@ -79,9 +80,8 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
             out.push_back(fmt::format("{}: rho_d + rho_s is {:.7g}, above 1: it reflects more than it receives",
                 experiment.surface_name(k), albedo));
     }
-    if (experiment.sky && experiment.sky->raised > 0)
-        out.push_back(fmt::format("sky: {} numbers below 0, at most {:g} % of its energy, count as 0",
-            experiment.sky->raised, 100 * negative_share));
+    if (experiment.sky)
+        if (std::string note = note_on_sky(*experiment.sky); !note.empty()) out.push_back(std::move(note));
     if (const std::string why = why_no_evidence(experiment); experiment.note_evidence && !why.empty())
         out.push_back("note_evidence measures nothing: " + why);
     return out;

@@ -8,6 +8,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "base/counted.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "experiment/parser.h"
@@ -30,6 +31,12 @@ void load_sky(SkyLight& sky) {
             {sky.file, 0, 0}, fmt::format("expected an image with the content {}, found {}", *sky.content, content));
     sky.content = content;
     sky.image = std::move(image);
+}
+
+std::string note_on_sky(const SkyLight& sky) {
+    if (sky.raised == 0) return "";
+    return fmt::format("sky: {}, at most {:g} % of its energy, count{} as 0", counted(sky.raised, "number[s] below 0"),
+        100 * negative_share, sky.raised == 1 ? "s" : "");
 }
 
 namespace {

@@ -24,6 +24,9 @@ inline constexpr TextureKey texture_keys[] = {{"rho_d_texture", TextureOf::rho_d
 /// texel that is negative, not finite or too bright, no light, or another image than the experiment expects.
 void load_sky(SkyLight& sky);
 
+/// Returns how many numbers of a sky's file count as 0; "" if none.
+std::string note_on_sky(const SkyLight& sky);
+
 /// Reads a texture that has no image yet, next to the experiment's file `beside`. Throws InputError with the file and
 /// the texel.
 void load_texture(Texture& texture, TextureOf property, const std::string& beside);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <span>
 
+#include "base/counted.h"
 #include "base/parallel.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"
@@ -134,8 +135,8 @@ std::string why_no_sky(const RgbImage& image, double scale) {
     }
     if (below) {
         const Negative negative = negative_numbers(image);
-        return fmt::format("{}; the {} numbers below 0 are {:.3g} % of the energy, more than {:g} %",
-            at_texel(negative.lowest), negative.count, 100 * negative.share, 100 * negative_share);
+        return fmt::format("{}; {} {:.3g} % of the energy, more than {:g} %", at_texel(negative.lowest),
+            counted(negative.count, "number[s] below 0 [is|are]"), 100 * negative.share, 100 * negative_share);
     }
     if (largest <= 0) return "every texel is 0: expected a sky with light";
     if (largest >= darkest_sky) return "";

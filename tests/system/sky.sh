@@ -54,8 +54,8 @@ refuses 'cross.exr.*8 x 6.*cube' cross.exr
 image little.exr 8 '(1, -0.04 if (x, y) == (5, 2) else 1, 1)'
 experiment little.exr
 run 0 --only metrics --out little
-cat printed said | grep -q 'sky: 1 numbers below 0' || die "no count of numbers below 0: $(cat printed said)"
-refuses 'negative.exr.*numbers below 0 are .* %' negative.exr
+cat printed said | grep -q 'sky: 1 number below 0' || die "no count of numbers below 0: $(cat printed said)"
+refuses 'negative.exr.*1 number below 0 is .* %' negative.exr
 
 # Radiance HDR gives the numbers of the same texels in OpenEXR; its exposure divides.
 radiance() { # FILE HEADER: 8 x 4 texels of 1
