@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 #include "math/functions.h"
 #include "math/simd/math.h"
@@ -14,7 +15,7 @@ namespace crescent {
 
 namespace {
 
-constexpr double half_view = 20;            // degrees
+constexpr double half_view = 20;            // degrees of the ball around a model, from the eye
 constexpr double margin = 1.05;             // of the image around the model
 constexpr double longest = 8;               // length over width of a model that is seen from its side
 constexpr double foreshortened = 4;         // about half the length over width in the image of a longer one
@@ -84,12 +85,6 @@ void ModelPoints::add(const Mesh& mesh) {
     points_.insert(points_.end(), mesh.positions.begin(), mesh.positions.end());
 }
 
-Vec3d ModelPoints::Axes::middle() const {
-    Vec3d out{};
-    for (std::size_t k = 0; k < 3; ++k) out = out + 0.5 * (low[k] + high[k]) * axis[k];
-    return out;
-}
-
 ModelPoints::Axes ModelPoints::axes() const {
     const Vec3d middle = 0.5 * (widen(box_.low) + widen(box_.high));
     const auto coordinates = [](Vec3d v) { return std::array{v.x, v.y, v.z}; };
@@ -150,32 +145,70 @@ ModelPoints::Axes ModelPoints::axes() const {
     return out;
 }
 
-std::string camera_table(const ModelPoints& points) {
+namespace {
+
+/// The least tangent t with |x - m| <= t depth for all points at one m: the largest (x_i - x_j) / (depth_i + depth_j),
+/// by Dinkelbach's iteration (1967), whose steps grow and end.
+class Fit {
+public:
+    Fit(std::vector<double> offsets, const std::vector<double>& depths)
+        : offsets_(std::move(offsets)), depths_(depths) {
+        constexpr int most_steps = 64;
+        for (int step = 0; step < most_steps; ++step) {
+            const auto [i, j] = ends(tangent_);
+            const double next = (offsets_[i] - offsets_[j]) / (depths_[i] + depths_[j]);
+            if (!(next > tangent_)) break;
+            tangent_ = next;
+        }
+    }
+    double tangent() const { return tangent_; }
+    double middle() const {
+        const auto [i, j] = ends(tangent_);
+        return 0.5 * (offsets_[i] - tangent_ * depths_[i] + offsets_[j] + tangent_ * depths_[j]);
+    }
+
+private:
+    /// The points that bound m from below and above.
+    std::pair<std::size_t, std::size_t> ends(double tangent) const {
+        std::pair<std::size_t, std::size_t> out{0, 0};
+        for (std::size_t k = 0; k < offsets_.size(); ++k) {
+            const double reach = tangent * depths_[k];
+            if (offsets_[k] - reach > offsets_[out.first] - tangent * depths_[out.first]) out.first = k;
+            if (offsets_[k] + reach < offsets_[out.second] + tangent * depths_[out.second]) out.second = k;
+        }
+        return out;
+    }
+
+    std::vector<double> offsets_;
+    const std::vector<double>& depths_;
+    double tangent_ = 0;
+};
+
+}  // namespace
+
+std::string camera_table(const ModelPoints& points, double aspect) {
     const ModelPoints::Axes axes = points.axes();
     const Bounds& box = points.box();
     const double radius = 0.5 * norm(widen(box.high) - widen(box.low));
-    const double distance = margin * radius / math::sin(half_view * pi / 180);
-    const Vec3d towards = direction_to_eye(axes);
-    if (!(axes.extent(0) > longest * axes.extent(1))) {
-        const Vec3d middle = 0.5 * (widen(box.low) + widen(box.high));
-        return fmt::format("[camera]\neye = {}\ntarget = {}\nvfov_deg = {}\n",
-            point_in_table(middle + distance * towards, radius), point_in_table(middle, radius), 2 * half_view);
-    }
-    const Vec3d middle = axes.middle(), eye = middle + distance * towards;
-    const Vec3d up = std::fabs(towards.y) > 0.95 ? Vec3d{0, 0, -1} : Vec3d{0, 1, 0};
+    const double distance = radius / math::sin(half_view * pi / 180);
+    const Vec3d towards = direction_to_eye(axes), middle = 0.5 * (widen(box.low) + widen(box.high));
+    const bool is_from_above = std::fabs(towards.y) > 0.95;
+    const Vec3d up = is_from_above ? Vec3d{0, 0, -1} : Vec3d{0, 1, 0};
     const Vec3d across = normalize(cross(-1.0 * towards, up)), above = cross(across, -1.0 * towards);
-    double tangent = 0;  // of half the view, for an image that is at least as wide as high
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        Vec3d to{};
-        for (std::size_t k = 0; k < 3; ++k) to = to + (corner >> k & 1 ? axes.high[k] : axes.low[k]) * axes.axis[k];
-        to = to - eye;
-        const double depth = -dot(to, towards);
-        tangent = std::max({tangent, std::fabs(dot(to, across)) / depth, std::fabs(dot(to, above)) / depth});
+    std::vector<double> depths, to_the_right, upwards;
+    for (const Vec3f& point : points.points()) {
+        const Vec3d from_middle = widen(point) - middle;
+        depths.push_back(distance - dot(from_middle, towards));
+        to_the_right.push_back(dot(from_middle, across));
+        upwards.push_back(dot(from_middle, above));
     }
-    const double detail = std::max(axes.extent(1), 1e-6 * radius);
-    return fmt::format("[camera]\neye = {}\ntarget = {}\nup = [{}, {}, {}]\nvfov_deg = {:.6g}\n",
-        point_in_table(eye, detail), point_in_table(middle, detail), up.x, up.y, up.z,
-        2 * math::atan2(margin * tangent, 1.0) * 180 / pi);
+    const Fit wide(std::move(to_the_right), depths), high(std::move(upwards), depths);
+    const double tangent = std::max(wide.tangent() / aspect, high.tangent());
+    const Vec3d target = middle + wide.middle() * across + high.middle() * above;
+    const double detail = std::clamp(axes.extent(1), 1e-6 * radius, radius);
+    return fmt::format("[camera]\neye = {}\ntarget = {}\n{}vfov_deg = {:.6g}\n",
+        point_in_table(target + distance * towards, detail), point_in_table(target, detail),
+        is_from_above ? "up = [0, 0, -1]\n" : "", 2 * math::atan2(margin * tangent, 1.0) * 180 / pi);
 }
 
 }  // namespace crescent

@@ -24,6 +24,7 @@ public:
     void add(const Bounds& box);
     /// The corners of its triangles.
     void add(const Mesh& mesh);
+    const std::vector<Vec3f>& points() const { return points_; }
     /// Around all points.
     const Bounds& box() const { return box_; }
 
@@ -32,7 +33,6 @@ public:
         Vec3d axis[3];
         double low[3], high[3];
         double extent(std::size_t k) const { return high[k] - low[k]; }
-        Vec3d middle() const;
     };
     Axes axes() const;
     /// Whether a triangle may be seen in an image of this aspect. False only if none is: all points are behind the
@@ -44,8 +44,10 @@ private:
     std::vector<Vec3f> points_;
 };
 
-/// Returns the table [camera] of a view in which the whole model is seen, from above and the side.
-std::string camera_table(const ModelPoints& points);
+/// Returns the table [camera] of a view in which the whole model is seen, from above and the side. It fills an image of
+/// this width over height in one direction, but for a margin of 5 %, and is in the middle in the other one; in a wider
+/// image it is seen whole too.
+std::string camera_table(const ModelPoints& points, double aspect = 1);
 
 /// A point with six digits of `detail`, a length: far from the origin, more digits than six.
 std::string point_in_table(Vec3d v, double detail);

@@ -60,7 +60,7 @@ std::string experiment_for(const std::vector<NamedMesh>& meshes, const std::opti
     const std::string first = std::filesystem::path(meshes.at(0).first).stem().string();
     std::string out = fmt::format(
         "title = \"{}\"\nn = 64\n\n[image]\nwidth = {}\nheight = {}\n\n", table_name_of(first), width, height);
-    out += camera_table(points) + "\n";
+    out += camera_table(points, static_cast<double>(width) / height) + "\n";
     for (const auto& [file, pack] : meshes)
         out += fmt::format(
             "[meshes.{}]\nfile = \"{}\"\nrho_d = [0.3, 0.25, 0.2]\nrho_s = 0.4\nbrdf = \"ggx\"\nalpha = 0.2\n\n",
@@ -105,7 +105,7 @@ std::string experiment_for(const ModelScene& scene) {
         out += fmt::format("[camera]\neye = {}\ntarget = {}\nup = {}\nvfov_deg = {:.6g}\n\n",
             point_in_table(scene.camera->eye, ball.radius), point_in_table(scene.camera->target, ball.radius),
             point_in_table(scene.camera->up, 1), scene.camera->vfov_deg);
-    else out += camera_table(scene.points) + "\n";
+    else out += camera_table(scene.points, scene.aspect) + "\n";
     for (const ModelMesh& mesh : scene.meshes) out += mesh_table(mesh);
     out += scene.sky ? sky_table(*scene.sky, scene.sky_layer) : light_over(ball);
     out += "\n[reference]\nn = 64\n\n";

@@ -31,6 +31,47 @@ TEST(ModelExperiment, IsReadByTheParser) {
     }
 }
 
+/// The ends of points in a square image from -1 to 1.
+struct Frame {
+    double left = INFINITY, right = -INFINITY, low = INFINITY, high = -INFINITY;
+    bool is_in_front = true;
+    double largest() const { return std::max({-left, right, -low, high}); }
+};
+Frame frame_of(const Camera& camera, const std::vector<Vec3f>& points) {
+    const auto unit = [](Vec3d v) { return (1 / std::sqrt(dot(v, v))) * v; };
+    const Vec3d forward = unit(camera.target - camera.eye), across = unit(cross(forward, camera.up)),
+                up = cross(across, forward);
+    const double tangent = std::tan(camera.vfov_deg * pi / 360);
+    Frame out;
+    for (const Vec3f& p : points) {
+        const Vec3d to = widen(p) - camera.eye;
+        const double depth = dot(to, forward);
+        const double x = dot(to, across) / (tangent * depth), y = dot(to, up) / (tangent * depth);
+        out.is_in_front = out.is_in_front && depth > 0;
+        out.left = std::min(out.left, x);
+        out.right = std::max(out.right, x);
+        out.low = std::min(out.low, y);
+        out.high = std::max(out.high, y);
+    }
+    return out;
+}
+
+std::vector<Vec3f> corners_of(const Bounds& box) {
+    std::vector<Vec3f> out;
+    for (unsigned corner = 0; corner < 8; ++corner)
+        out.push_back({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+            corner & 4 ? box.high.z : box.low.z});
+    return out;
+}
+
+/// The camera that is made for these points.
+Camera camera_for(const ModelPoints& points, double aspect) {
+    std::string text = experiment_for({{"m.mesh", tetrahedron()}}, std::nullopt);
+    const std::size_t begin = text.find("[camera]"), end = text.find("\n\n", begin);
+    text.replace(begin, end - begin, camera_table(points, aspect));
+    return parse(text, "view").camera;
+}
+
 TEST(ModelExperiment, SeesAModelFarFromTheOrigin) {
     for (const double distance : {0.0, 4e5}) {
         Bounds box;
@@ -38,15 +79,14 @@ TEST(ModelExperiment, SeesAModelFarFromTheOrigin) {
             const double x = distance + side;
             box.add(Vec3f{static_cast<float>(x), static_cast<float>(-x), static_cast<float>(2 * x)});
         }
-        std::string text = experiment_for({{"far.mesh", tetrahedron()}}, std::nullopt);
-        const std::size_t begin = text.find("[camera]"), end = text.find("\n\n", begin);
-        text.replace(begin, end - begin, camera_table(ModelPoints(box)));
-        const Camera camera = parse(text, "far").camera;
+        const Camera camera = camera_for(ModelPoints(box), 1);
         const Vec3d middle = 0.5 * (widen(box.low) + widen(box.high)), size = widen(box.high) - widen(box.low);
         const double radius = 0.5 * std::sqrt(dot(size, size));
         const Vec3d offset = camera.target - middle, view = camera.eye - camera.target;
-        EXPECT_LT(std::sqrt(dot(offset, offset)), 1e-4 * radius) << distance;
-        EXPECT_NEAR(std::sqrt(dot(view, view)) / radius, 1.05 / std::sin(20 * pi / 180), 1e-3) << distance;
+        EXPECT_LT(std::sqrt(dot(offset, offset)), 0.3 * radius) << distance;
+        EXPECT_NEAR(std::sqrt(dot(view, view)) / radius, 1 / std::sin(20 * pi / 180), 1e-3) << distance;
+        const Frame frame = frame_of(camera, corners_of(box));
+        EXPECT_NEAR(frame.largest(), 1 / 1.05, 1e-3) << distance;
     }
 }
 
@@ -75,20 +115,13 @@ struct View {
     bool has_corners = true;
 };
 View view_of(const Mesh& mesh) {
-    std::string text = experiment_for({{"m.mesh", tetrahedron()}}, std::nullopt);
-    const std::size_t begin = text.find("[camera]"), end = text.find("\n\n", begin);
-    text.replace(begin, end - begin, camera_table(ModelPoints(mesh)));
-    const Camera c = parse(text, "view").camera;
+    const Camera c = camera_for(ModelPoints(mesh), 1);
     const auto unit = [](Vec3d v) { return (1 / std::sqrt(dot(v, v))) * v; };
     const Vec3d forward = unit(c.target - c.eye), across = unit(cross(forward, c.up)), up = cross(across, forward);
     const double tangent = std::tan(c.vfov_deg * pi / 360);
+    const Frame frame = frame_of(c, mesh.positions);
     View out;
-    for (const Vec3f& p : mesh.positions) {
-        const Vec3d to = widen(p) - c.eye;
-        const double depth = dot(to, forward);
-        out.has_corners = out.has_corners && depth > 0 && std::fabs(dot(to, across)) < tangent * depth &&
-            std::fabs(dot(to, up)) < tangent * depth;
-    }
+    out.has_corners = frame.is_in_front && frame.largest() < 1;
     constexpr int side = 64;
     for (int i = 0; i < side; ++i)
         for (int j = 0; j < side; ++j) {
@@ -118,6 +151,26 @@ TEST(ModelExperiment, SeesAllOfAModelOfAnyAspect) {
                 EXPECT_GT(view.pixels, 40)
                     << size.x << " x " << size.y << " x " << size.z << ", turned by " << yaw << ", " << pitch;
             }
+}
+
+/// One pair of opposite sides of the image is as far from the model as the margin, the other pair is equally far.
+TEST(ModelExperiment, FillsTheImageWithAModelOfAnyAspect) {
+    for (const Vec3d size : {Vec3d{1, 1, 1}, Vec3d{7, 1, 1}, Vec3d{1, 7, 1}, Vec3d{1, 1, 7}, Vec3d{1000, 1, 1},
+             Vec3d{1, 1000, 1}, Vec3d{1, 1000, 1000}, Vec3d{1000, 1, 1000}, Vec3d{1000, 1000, 0}})
+        for (const double yaw : {0.0, 0.4, 2.0})
+            for (const double pitch : {0.0, 0.35, 1.5})
+                for (const double aspect : {0.5, 4.0 / 3, 2.0}) {
+                    const Mesh mesh = box_of(size, yaw, pitch);
+                    Frame frame = frame_of(camera_for(ModelPoints(mesh), aspect), mesh.positions);
+                    frame.left /= aspect;
+                    frame.right /= aspect;
+                    const testing::Message what = testing::Message()
+                        << size.x << " x " << size.y << " x " << size.z << ", turned by " << yaw << ", " << pitch;
+                    EXPECT_NEAR(frame.largest(), 1 / 1.05, 2e-3) << what;
+                    EXPECT_NEAR(frame.left + frame.right, 0, 4e-3) << what;
+                    EXPECT_NEAR(frame.low + frame.high, 0, 4e-3) << what;
+                    EXPECT_NEAR(std::max(frame.right - frame.left, frame.high - frame.low), 2 / 1.05, 4e-3) << what;
+                }
 }
 
 TEST(ModelExperiment, OfAWholeSceneHasItsMaterialsCopiesAndCamera) {
