@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -25,7 +26,7 @@ namespace {
 
 constexpr const char* importer_name = "crescent-import";
 constexpr std::size_t longest_description = std::size_t{16} << 20;  // bytes
-constexpr std::size_t longest_name = 200;                           // characters
+constexpr std::size_t longest_name = 200, longest_line = 500;       // characters
 
 /// The importer next to this program, otherwise the one in PATH.
 std::string importer() {
@@ -134,24 +135,33 @@ const Json* material_of_mesh(const Json& description, const std::string& name) {
     return nullptr;
 }
 
-/// The keys of its table; without a material, a grey diffuse surface.
-std::string material_keys(const Imported& imported, const ImportFlags& flags, bool has_uv, Counts& cut) {
+/// The keys of its table; without a material, a grey diffuse surface. Adds comment lines to the notes.
+std::string material_keys(const Imported& imported, const ImportFlags& flags, bool has_uv, std::string& notes) {
     const auto colour = [](const Rgb& c) { return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", c[0], c[1], c[2]); };
     const Json* from = material_of_mesh(imported.description, flags.material);
     if (!from) return fmt::format("rho_d = {}\n", colour({0.5, 0.5, 0.5}));
     const std::filesystem::path beside = std::filesystem::absolute(flags.out).parent_path();
+    std::map<std::size_t, std::string> missing, unread;
     const auto mean_of_image = [&](const char* key, bool linear) {
         if (!from->contains(key) || !has_uv) return Rgb{1, 1, 1};
-        const Json& picture = imported.description["pictures"][(*from)[key].get<std::size_t>()];
+        const auto index = (*from)[key].get<std::size_t>();
+        const Json& picture = imported.description["pictures"][index];
         const std::string_view bytes =
             std::string_view(imported.files)
                 .substr(picture["begin"].get<std::size_t>(), picture["size"].get<std::size_t>());
+        const std::string name = picture["name"].get<std::string>();
         Staging scratch((beside / ".crescent-import").string(), "import");
-        const auto image = decoded_image(bytes, picture["name"].get<std::string>(), linear, scratch.scratch());
+        std::optional<RgbImage> image;
+        if (!bytes.empty()) image = decoded_image(bytes, name, linear, scratch.scratch());
+        if (!image) (bytes.empty() ? missing : unread)[index] = name;
+        if (image && !linear && states_other_encoding(bytes))
+            notes += fmt::format("# assumed: {}\n", counted(1, stated_encoding));
         return image ? mean_of(*image) : Rgb{1, 1, 1};
     };
+    Counts cut;
     const ImportedMaterial to =
         material_of(*from, mean_of_image("colours", false), mean_of_image("surface", true)[2], cut);
+    notes += left_out_images(missing, unread) + cut_lines(cut);
     std::string out = fmt::format("rho_d = {}\n", colour(to.rho_d));
     if (std::ranges::max(to.rho_s) > 0)
         out += fmt::format("rho_s = {}\nbrdf = \"ggx\"\nalpha = {:.4g}\n", colour(to.rho_s), to.alpha);
@@ -173,9 +183,14 @@ std::string list_of(const Json& entries, const std::function<std::string(const J
 
 }  // namespace
 
+std::string assumed_lines(const Json& description) {
+    return list_of(description.value("assumed", Json::array()),
+        [](const Json& what) { return "assumed: " + printable(what.get<std::string>(), longest_line); });
+}
+
 std::string left_out_lines(const Json& description) {
     return list_of(description.value("left_out", Json::array()),
-        [](const Json& what) { return "left out: " + printable(what.get<std::string>(), longest_name); });
+        [](const Json& what) { return "left out: " + printable(what.get<std::string>(), longest_line); });
 }
 
 namespace {
@@ -213,25 +228,29 @@ int import(const ImportFlags& flags) {
 
     const Mesh& mesh = pack->mesh;
     const Bounds box = mesh.bounds();
-    std::string out = fmt::format("# {}: {} triangles, {} vertices, hash {:016x}\n", flags.out, mesh.triangles.size(),
-        mesh.positions.size(), pack->hash);
+    std::string out = fmt::format("# {}: {}, {}, hash {:016x}\n", flags.out,
+        counted(mesh.triangles.size(), "triangle[s]"), counted(mesh.positions.size(), "vert[ex|ices]"), pack->hash);
     out += fmt::format("# box {} to {}\n", point_text(widen(box.low)), point_text(widen(box.high)));
     out += fmt::format("# normals: {}; texture coordinates: {}\n", mesh.normals.empty() ? "of the triangles" : "smooth",
         mesh.uv.empty() ? "none" : "one set");
     out += moved_line(imported.description);
-    if (pack->degenerate > 0) out += fmt::format("# {} triangles without area are left out\n", pack->degenerate);
-    if (pack->duplicate > 0) out += fmt::format("# {} triangles that occur twice are left out\n", pack->duplicate);
+    if (pack->degenerate > 0)
+        out += fmt::format("# left out: {}\n", counted(pack->degenerate, "triangle[s] without area"));
+    if (pack->duplicate > 0)
+        out += fmt::format("# left out: {}\n", counted(pack->duplicate, "triangle[s] that occur[s|] twice"));
+    out += assumed_lines(imported.description);
     out += left_out_lines(imported.description);
-    const Json materials = imported.description.value("materials", Json::array());
+    Json materials = imported.description.value("materials", Json::array());
+    if (materials.size() == 1 && materials[0].value("name", "").empty()) materials.clear();  // there is no choice
     out += list_of(materials, [&](const Json& material) {
-        return fmt::format("material '{}': {} triangles{}{}", printable(material.value("name", ""), longest_name),
-            material.value("triangles", 0),
+        return fmt::format("material '{}': {}{}{}", printable(material.value("name", ""), longest_name),
+            counted(material.value("triangles", std::size_t{0}), "triangle[s]"),
             material.contains("texture") ? ", texture " + printable(material.value("texture", ""), longest_name) : "",
             materials.size() > 1 && flags.material.empty() ? " (alone: --material NAME)" : "");
     });
-    Counts cut;
-    const std::string keys = material_keys(imported, flags, !mesh.uv.empty(), cut);
-    out += cut_lines(cut) + "\n" + camera_table(ModelPoints(mesh));
+    std::string notes;
+    const std::string keys = material_keys(imported, flags, !mesh.uv.empty(), notes);
+    out += notes + "\n" + camera_table(ModelPoints(mesh));
     out += fmt::format("\n[meshes.{}]\nfile = \"{}\"\n{}", table_name_of(flags.out),
         std::filesystem::path(flags.out).filename().string(), keys);
     print(out);

@@ -25,6 +25,8 @@ int import_folder(const ImportFlags& flags);
 
 /// How the model was moved and scaled.
 std::string moved_line(const Json& description);
+/// What the file does not say, a line each.
+std::string assumed_lines(const Json& description);
 /// What is not taken along, a line each.
 std::string left_out_lines(const Json& description);
 /// "[1, 2, 3]", six digits each.

@@ -54,8 +54,9 @@ public:
 
     std::string summary() {
         const auto file = [&](const char* name) { return (std::filesystem::path(flags_.out) / name).string(); };
-        std::string out = fmt::format("# {}: {} meshes, {} triangles, {} images\n", file("experiment.toml"),
-            scene_.meshes.size(), triangles_, texture_files_.size());
+        std::string out =
+            fmt::format("# {}: {}, {}, {}\n", file("experiment.toml"), counted(scene_.meshes.size(), "mesh[es]"),
+                counted(triangles_, "triangle[s]"), counted(texture_files_.size(), "image[s]"));
         out += fmt::format("# box {} to {}\n", point_text(widen(scene_.points.box().low)),
             point_text(widen(scene_.points.box().high)));
         out += moved_line(imported_.description);
@@ -64,19 +65,23 @@ public:
                 : sees_nothing_ ? "one that sees the whole model; that of the file sees nothing of it"
                                 : "one that sees the whole model",
             scene_.sky ? "the sky" : "a disk");
-        out += fmt::format("# taken: {} materials, colours as rho_d and rho_s, roughness as alpha\n", used_.size());
         const auto taken = [&](std::size_t count, const char* what) {
-            if (count > 0) out += fmt::format("# taken: {} {}\n", count, what);
+            if (count > 0) out += fmt::format("# taken: {}\n", counted(count, what));
         };
-        taken(colours_, "images of colours, as rho_d_texture");
-        taken(roughness_, "images of roughness, as alpha_texture");
-        taken(copies_, "copies of meshes, as instances");
-        taken(emitters_, "meshes that emit");
+        taken(used_.size(), "material[s], colours as rho_d and rho_s, roughness as alpha");
+        taken(colours_, "image[s] of colours, as rho_d_texture");
+        taken(roughness_, "image[s] of roughness, as alpha_texture");
+        taken(copies_, "cop[y|ies] of meshes, as [an instance|instances]");
+        taken(emitters_, "mesh[es] that emit[s|]");
+        out += assumed_lines(imported_.description);
+        if (other_encoding_ > 0) out += fmt::format("# assumed: {}\n", counted(other_encoding_, stated_encoding));
+        if (!sky_note_.empty()) out += "# " + sky_note_ + "\n";
         out += left_out_lines(imported_.description);
         out += cut_lines(cut_);
         for (const std::string& line : kept_) out += "# " + printable(line) + "\n";
         for (const std::string& line : monitor_.take_lines()) out += "# " + printable(line) + "\n";
-        for (const auto& [what, count] : left_out_) out += fmt::format("# left out: {} {}\n", count, what);
+        for (const auto& [what, count] : left_out_) out += fmt::format("# left out: {}\n", counted(count, what));
+        out += left_out_images(missing_, unread_);
         return out +
             fmt::format(
                 "crescent run {} --out out/{}\n", shell_word(file("experiment.toml")), table_name_of(flags_.out));
@@ -105,8 +110,8 @@ private:
         const std::string bytes(bytes_of(from));
         const std::shared_ptr<const MeshPack> pack = read_mesh(bytes, flags_.file);
         if (pack->mesh.triangles.empty()) return;
-        leave_out(pack->degenerate, "triangles without area");
-        leave_out(pack->duplicate, "triangles that occur twice");
+        leave_out(pack->degenerate, "triangle[s] without area");
+        leave_out(pack->duplicate, "triangle[s] that occur[s|] twice");
         stage_.write(to.file, bytes);
         written_.push_back(to.file);
         for (const Json& rows : from.value("instances", Json::array())) {
@@ -182,8 +187,6 @@ private:
         Rgb mean{1, 1, 1};
         double mean_metal = 1;
         const bool has_uv = !pack.mesh.uv.empty();
-        for (const char* key : {"colours", "surface"})
-            if (from.contains(key) && !has_uv) ++left_out_["images of parts without texture coordinates"];
         if (const Json* picture = picture_of(from, "colours", has_uv))
             if (const auto texture = texture_of(*picture, from["colours"].get<std::size_t>(), {})) {
                 to.rho_d_texture = texture->file;
@@ -219,7 +222,7 @@ private:
         const auto [entry, is_new] = textures_.try_emplace({index, alpha.value_or(0)});
         std::optional<WrittenTexture>& written = entry->second;
         if (!is_new) return written;
-        std::optional<RgbImage> image = decoded(picture, alpha.has_value());
+        std::optional<RgbImage> image = decoded(picture, index, alpha.has_value());
         if (!image) return std::nullopt;
         written = WrittenTexture{"", mean_of(*image)};
         if (alpha)
@@ -236,15 +239,13 @@ private:
         return written;
     }
 
-    std::optional<RgbImage> decoded(const Json& picture, bool linear) {
+    std::optional<RgbImage> decoded(const Json& picture, std::size_t index, bool linear) {
         const std::string_view bytes = bytes_of(picture);
-        if (bytes.empty()) {
-            ++left_out_["images that are not there"];
-            return std::nullopt;
-        }
-        std::optional<RgbImage> out =
-            decoded_image(bytes, picture["name"].get<std::string>(), linear, stage_.scratch());
-        if (!out) ++left_out_["images of a format that is not read"];
+        const std::string name = picture["name"].get<std::string>();
+        std::optional<RgbImage> out;
+        if (!bytes.empty()) out = decoded_image(bytes, name, linear, stage_.scratch());
+        if (!out) (bytes.empty() ? missing_ : unread_)[index] = name;
+        other_encoding_ += out && !linear && states_other_encoding(bytes);
         return out;
     }
 
@@ -274,6 +275,7 @@ private:
         SkyLight sky{.file = flags_.sky};
         if (!flags_.layer.empty()) sky.layer = flags_.layer;
         load_sky(sky);  // refused with the place in the reader's own file
+        sky_note_ = note_on_sky(sky);
         stage_.write(name, contents_of(flags_.sky));
         written_.push_back(name);
         scene_.sky = name;
@@ -292,6 +294,9 @@ private:
     std::set<std::size_t> used_;
     std::set<std::size_t> materials_taken_;
     Counts left_out_, cut_;
+    std::map<std::size_t, std::string> missing_, unread_;  // images, by their indices
+    std::size_t other_encoding_ = 0;                       // images
+    std::string sky_note_;
     bool sees_nothing_ = false;  // the file's camera
     std::size_t triangles_ = 0, copies_ = 0, colours_ = 0, roughness_ = 0, emitters_ = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <utility>
 
@@ -79,11 +80,11 @@ ImportedMaterial material_of(const Json& from, const Rgb& mean_colour, double me
     const auto count = [&](bool holds, const char* what) {
         if (holds) ++cut[what];
     };
-    count(std::ranges::max(colour) > rounding, "materials' colours (Kd) above 1, to 1");
-    count(std::ranges::max(of_lobe) > rounding, "materials' colours of the lobe (Ks) above 1, to 1");
-    count(from["metal"].get<double>() > rounding, "materials' metal above 1, to 1");
-    count(from["alpha"].get<double>() > rounding, "materials' roughness above 1, to 1");
-    count(from["alpha"].get<double>() < least_roughness, "materials' alpha below 0.001, to 0.001");
+    count(std::ranges::max(colour) > rounding, "material[s] with colours (Kd) above 1, to 1");
+    count(std::ranges::max(of_lobe) > rounding, "material[s] with colours of the lobe (Ks) above 1, to 1");
+    count(from["metal"].get<double>() > rounding, "material[s] with metal above 1, to 1");
+    count(from["alpha"].get<double>() > rounding, "material[s] with roughness above 1, to 1");
+    count(from["alpha"].get<double>() < least_roughness, "material[s] with alpha below 0.001, to 0.001");
     to.rho_d = albedo(to.rho_d);
     to.rho_s = albedo(to.rho_s);
     bool exceeds = false;
@@ -91,15 +92,55 @@ ImportedMaterial material_of(const Json& from, const Rgb& mean_colour, double me
         exceeds = exceeds || to.rho_d[c] + to.rho_s[c] > rounding;
         to.rho_s[c] = std::min(to.rho_s[c], 1 - to.rho_d[c]);
     }
-    count(exceeds, "materials' rho_s, to 1 - rho_d: together they reflect more than all light");
+    count(exceeds, "material[s] with rho_s above 1 - rho_d, to it: together they reflect more than all light");
     to.rho_s = albedo(to.rho_s);
     return to;
 }
 
 std::string cut_lines(const Counts& cut) {
     std::string out;
-    for (const auto& [what, count] : cut) out += fmt::format("# cut: {} {}\n", count, what);
+    for (const auto& [what, count] : cut) out += fmt::format("# cut: {}\n", counted(count, what));
     return out;
+}
+
+std::string left_out_images(
+    const std::map<std::size_t, std::string>& missing, const std::map<std::size_t, std::string>& unread) {
+    std::string out;
+    for (const auto& [names, what] : {std::pair{&missing, "image[s] that [is|are] not in the model or its folder"},
+             {&unread, "image[s], damaged or of a format that is not read"}}) {
+        if (names->empty()) continue;
+        constexpr std::size_t most_names = 3, longest_name = 100;
+        std::string list;
+        std::size_t count = 0;
+        for (const auto& [index, name] : *names)
+            if (!name.empty() && ++count <= most_names)
+                list += (list.empty() ? ": " : ", ") + printable(name, longest_name);
+        if (count > most_names) list += fmt::format(" and {} more", count - most_names);
+        out += fmt::format("# left out: {}{}\n", counted(names->size(), what), list);
+    }
+    return out;
+}
+
+/// PNG 1.2, sections 4.2.2 and 11.3.3: an image has the chunk sRGB, or states another curve by gAMA or iCCP.
+bool states_other_encoding(std::string_view bytes) {
+    constexpr std::size_t signature = 8;
+    constexpr std::uint32_t gamma_of_srgb = 45455;  // 1e5 / 2.2
+    if (!bytes.starts_with("\x89PNG")) return false;
+    const auto number = [&](std::size_t begin) {
+        std::uint32_t out = 0;
+        for (std::size_t k = 0; k < 4; ++k) out = out << 8 | static_cast<unsigned char>(bytes[begin + k]);
+        return out;
+    };
+    bool is_other = false;
+    for (std::size_t place = signature; place + 12 <= bytes.size();) {
+        const std::size_t size = number(place);
+        const std::string_view kind = bytes.substr(place + 4, 4);
+        if (kind == "sRGB") return false;
+        if (kind == "IDAT" || size > bytes.size() - place - 12) break;
+        is_other = is_other || kind == "iCCP" || (kind == "gAMA" && size == 4 && number(place + 8) != gamma_of_srgb);
+        place += size + 12;
+    }
+    return is_other;
 }
 
 std::optional<RgbImage> decoded_image(

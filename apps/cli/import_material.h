@@ -10,7 +10,7 @@
 
 namespace crescent::cli {
 
-/// How often something of a kind occurs, for lines such as "2 materials' Kd above 1".
+/// How often something of a kind occurs: the kinds as counted() takes them.
 using Counts = std::map<std::string, std::size_t>;
 
 /// The keys of a mesh of an experiment.
@@ -25,7 +25,7 @@ struct ImportedMaterial {
 /// takes, and counted in `cut`.
 ImportedMaterial material_of(const Json& from, const Rgb& mean_colour, double mean_metal, Counts& cut);
 
-/// "cut: 2 materials' colours above 1, to 1", a comment line for each.
+/// "cut: 2 materials with colours above 1, to 1", a comment line for each.
 std::string cut_lines(const Counts& cut);
 
 /// The least alpha of an experiment that is imported.
@@ -35,6 +35,16 @@ double least_imported_alpha();
 /// format is not read.
 std::optional<RgbImage> decoded_image(
     std::string_view bytes, const std::string& name, bool linear, const std::string& scratch);
+
+/// Comment lines on the images without which an experiment is.
+std::string left_out_images(
+    const std::map<std::size_t, std::string>& missing, const std::map<std::size_t, std::string>& unread);
+
+/// Whether an image of colours states another encoding than sRGB, as which it is read (glTF 2.0, section 3.9.2: what an
+/// image states is not used).
+bool states_other_encoding(std::string_view bytes);
+inline constexpr const char* stated_encoding =
+    "image[s] of colours [is|are] sRGB, although [it states|they state] a gamma or a profile";
 
 Rgb mean_of(const RgbImage& image);
 

@@ -8,10 +8,12 @@
 // to standard output, the mesh to descriptor 3; with "folder", one mesh for each material and one for each mesh with
 // copies, and the images, one after another, at the places that the description states. Exit code 2: {"error": "..."}.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <string>
 #include <unordered_map>
 
@@ -134,8 +136,9 @@ private:
     std::unordered_map<Corner, std::uint32_t, CornerHash> index_of_corner_;
 };
 
-/// JSON has no numbers that are not finite: from 0 to 1e6, and 0 for NaN.
-float number_of(float x) { return x > 0 ? std::min(x, 1e6f) : 0; }
+constexpr float largest_number = 1e6f;  // of a material
+/// JSON has no numbers that are not finite: 0 for NaN.
+float number_of(float x) { return x > 0 ? std::min(x, largest_number) : 0; }
 OrderedJson numbers_of(Vec3f v) { return {number_of(v.x), number_of(v.y), number_of(v.z)}; }
 OrderedJson numbers_of(Vec3d v) { return {v.x, v.y, v.z}; }
 
@@ -170,7 +173,9 @@ void write_all(int to, std::string_view bytes) {
 Model read_model(const std::filesystem::path& file, const ReadingScope& scope) {
     const std::string extension = lower_extension(file);
     if (extension == ".ply") return read_ply(file);
-    return extension == ".gltf" || extension == ".glb" ? read_gltf(file, scope) : read_by_assimp(file, scope);
+    if (extension == ".obj") return read_obj(file, scope);
+    if (extension == ".stl") return read_stl(file, scope);
+    return read_gltf(file, scope);
 }
 
 std::vector<const Part*> parts_of(const Model& model, const std::string& material) {
@@ -208,17 +213,25 @@ OrderedJson matrix_of(const Transform& to) {
     return out;
 }
 
-/// Writes a mesh for each material, of all parts without copies, and one for each part with copies.
+/// Whether a part does not have the texture coordinates that the images of its material need: they have no effect on it
+/// (glTF 2.0, section 3.9.2).
+bool lacks_uv(const Model& model, const Part& part) {
+    const importer::Material& material = model.materials[part.material];
+    return part.uv.empty() && (material.colours || material.surface);
+}
+
+/// Writes a mesh for each material, of all parts without copies, and one for each part with copies. Parts that lack
+/// texture coordinates are a mesh of their own.
 OrderedJson write_meshes(
     const Model& model, const ModelPlacement& placement, const std::string& material, std::size_t& end) {
     OrderedJson out = OrderedJson::array();
     const Transform to_scene = transform_of(placement);
-    std::vector<std::vector<const Part*>> of_material(model.materials.size());
+    std::map<std::pair<std::size_t, bool>, std::vector<const Part*>> of_material;
     std::vector<const Part*> copied;
     for (const Part* part : parts_of(model, material)) {
         const bool shared = !part->copies.empty() && are_instances(part->copies, to_scene);
         if (shared) copied.push_back(part);
-        else of_material[part->material].push_back(part);
+        else of_material[{part->material, lacks_uv(model, *part)}].push_back(part);
     }
     const auto add = [&](const std::vector<const Part*>& parts, bool shared) {
         const Gatherer gathered(parts, placement, shared);
@@ -234,10 +247,37 @@ OrderedJson write_meshes(
         }
         out.push_back(std::move(one));
     };
-    for (const auto& parts : of_material)
-        if (!parts.empty()) add(parts, false);
+    for (const auto& [key, parts] : of_material) add(parts, false);
     for (const Part* part : copied) add({part}, true);
     return out;
+}
+
+void list_numbers_out_of_range(Model& model) {
+    const auto list = [&](const auto& is_out, std::string_view what) {
+        const auto count = std::ranges::count_if(model.materials, [&](const importer::Material& m) {
+            return std::ranges::any_of(std::array{m.rho_d.x, m.rho_d.y, m.rho_d.z, m.rho_s.x, m.rho_s.y, m.rho_s.z,
+                                           m.emission.x, m.emission.y, m.emission.z, m.metal, m.alpha},
+                is_out);
+        });
+        if (count > 0) model.left_out.push_back(counted(static_cast<std::size_t>(count), what));
+    };
+    list([](float x) { return !(x >= 0); }, "material[s] with numbers below 0: [it has|they have] 0 in their place");
+    list([](float x) { return x > largest_number; },
+        "material[s] with numbers above 1e6: [it has|they have] 1e6 in their place");
+}
+
+void list_unused_materials(Model& model) {
+    std::vector<bool> is_used(model.materials.size());
+    for (const Part& part : model.parts) is_used[part.material] = true;
+    if (const auto count = std::ranges::count(is_used, false); count > 0)
+        model.left_out.push_back(counted(static_cast<std::size_t>(count), "material[s] that no part has"));
+}
+
+void list_parts_without_uv(Model& model) {
+    const auto count = std::ranges::count_if(model.parts, [&](const Part& part) { return lacks_uv(model, part); });
+    if (count > 0)
+        model.left_out.push_back(counted(static_cast<std::size_t>(count),
+            "part[s] without texture coordinates, of a material with images: [it has|they have] its colours alone"));
 }
 
 OrderedJson write_pictures(const Model& model, const OrderedJson& materials, std::size_t& end) {
@@ -263,11 +303,14 @@ OrderedJson import(const std::string& file, const OrderedJson& options) {
     const bool folder = options.value("folder", false);
     const std::string material = options.value("material", "");
     Model model = read_model(file, {.whole_scene = folder || options.contains("select"), .images = true});
+    list_unused_materials(model);
     if (options.contains("select")) select(model, options["select"].get<std::string>());
     turn_and_scale(model, options.value("up", "y") == "z", options.value("scale", 1.0));
     if (options.contains("smooth")) smooth(model, options["smooth"].get<double>());
     const ModelPlacement placement = placement_of(model);
-    OrderedJson out = {{"materials", materials_of(model)}, {"left_out", model.left_out}};
+    list_numbers_out_of_range(model);
+    list_parts_without_uv(model);
+    OrderedJson out = {{"materials", materials_of(model)}, {"left_out", model.left_out}, {"assumed", model.assumed}};
     if (placement.is_needed()) {
         out["moved"] = {-placement.from.x, -placement.from.y, -placement.from.z};
         out["scaled"] = placement.by;

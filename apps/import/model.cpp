@@ -2,10 +2,13 @@
 #include "model.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
+
+#include <fmt/format.h>
+
+#include "lines.h"
 
 namespace crescent::importer {
 
@@ -21,11 +24,7 @@ std::string bytes_of(const fs::path& file) {
     return out;
 }
 
-std::string lower_extension(const fs::path& file) {
-    std::string out = file.extension().string();
-    for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return out;
-}
+std::string lower_extension(const fs::path& file) { return lower_case(file.extension().string()); }
 
 std::optional<double> number_in(std::string_view word) {
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -42,6 +41,39 @@ bool is_inside(const fs::path& folder, const fs::path& file) {
     const fs::path path = fs::weakly_canonical(fs::absolute(file), error);
     const auto end = std::mismatch(outer.begin(), outer.end(), path.begin(), path.end()).first;
     return !error && (end == outer.end() || end->empty());
+}
+
+std::optional<FoundFile> file_named(std::string_view name, std::span<const fs::path> folders, const fs::path& outer) {
+    std::string with_slashes(name);
+    std::ranges::replace(with_slashes, '\\', '/');
+    const auto found_as = [&](const fs::path& wanted) -> std::optional<fs::path> {
+        std::error_code unknown;
+        for (const fs::path& folder : folders)
+            if (const fs::path file = folder / wanted; fs::is_regular_file(file, unknown) && is_inside(outer, file))
+                return file;
+        return std::nullopt;
+    };
+    if (name.empty() || name.find('\0') != name.npos) return std::nullopt;
+    for (const fs::path& wanted : {fs::path(name), fs::path(with_slashes)})
+        if (auto file = found_as(wanted)) return FoundFile{*std::move(file)};
+    if (auto file = found_as(fs::path(with_slashes).filename())) return FoundFile{*std::move(file), true};
+    return std::nullopt;
+}
+
+void count_kind(Kinds& kinds, const std::string& name) {
+    constexpr std::size_t most_kinds = 50, longest = 60;
+    const auto found = kinds.find(name);
+    if (found != kinds.end()) ++found->second;
+    else ++kinds[kinds.size() < most_kinds && name.size() <= longest ? name : other_kinds];
+}
+
+std::string some_of(const std::vector<std::string>& names) {
+    constexpr std::size_t most_names = 3;
+    std::string out;
+    for (std::size_t k = 0; k < std::min(names.size(), most_names); ++k)
+        out += (k > 0 ? ", '" : "'") + names[k].substr(0, 100) + "'";
+    if (names.size() > most_names) out += fmt::format(" and {} more", names.size() - most_names);
+    return out;
 }
 
 }  // namespace crescent::importer

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -68,13 +70,13 @@ struct ModelCamera {
     double vfov_deg = 40, aspect = 4.0 / 3;
 };
 
-/// Triangles of one material.
 /// Where a copy of a part is, and the names of the nodes above it.
 struct Copy {
     Transform to;
     std::vector<std::string> names;
 };
 
+/// Triangles of one material.
 struct Part {
     std::size_t material = 0;
     std::vector<std::string> names;  // of its mesh, and of the nodes above it if it is there once
@@ -91,6 +93,7 @@ struct Model {
     std::vector<Picture> pictures;
     std::optional<ModelCamera> camera;
     std::vector<std::string> left_out;  // what the file has besides, "12 edges"
+    std::vector<std::string> assumed;   // where the file does not say what is meant
 };
 
 inline Vec3f narrow(Vec3d v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
@@ -107,6 +110,25 @@ std::optional<double> number_in(std::string_view word);
 /// Whether the file is in this folder or below it, links resolved.
 bool is_inside(const std::filesystem::path& folder, const std::filesystem::path& file);
 
+/// A file that a model names.
+struct FoundFile {
+    std::filesystem::path path;
+    bool is_other = false;  // the name has a folder that is not there
+};
+/// Returns the regular file that a name means in one of these folders: as it is written, with '/' for '\\', or by its
+/// last part alone, as paths of other machines need. It is in the folder `outer` or below it; nothing if there is none.
+std::optional<FoundFile> file_named(
+    std::string_view name, std::span<const std::filesystem::path> folders, const std::filesystem::path& outer);
+
+/// Statements that are not read by their names, and how often they occur.
+using Kinds = std::map<std::string, std::size_t>;
+inline constexpr const char* other_kinds = "";  // the name of those beyond the fiftieth
+/// A file of another format has any number of kinds: those beyond the fiftieth are counted as one.
+void count_kind(Kinds& kinds, const std::string& name);
+
+/// Returns "'a', 'b', 'c' and 4 more".
+std::string some_of(const std::vector<std::string>& names);
+
 /// What is read besides the triangles.
 struct ReadingScope {
     bool whole_scene = false;  // parts keep their names, meshes that are placed twice their placements
@@ -116,7 +138,7 @@ struct ReadingScope {
 // Each reads a file of its format; throws ModelError with the place of a mistake, std::bad_alloc.
 Model read_gltf(const std::filesystem::path& file, const ReadingScope& scope);
 Model read_ply(const std::filesystem::path& file);
-/// OBJ and STL.
-Model read_by_assimp(const std::filesystem::path& file, const ReadingScope& scope);
+Model read_obj(const std::filesystem::path& file, const ReadingScope& scope);
+Model read_stl(const std::filesystem::path& file, const ReadingScope& scope);
 
 }  // namespace crescent::importer

@@ -1,6 +1,5 @@
-// Lines are read as assimp reads them: what it would skip or misread without a word is corrected or refused here.
-#include "obj.h"
-
+// Wavefront's OBJ ("Object Files", version 3.0): vertices, faces, names and libraries of materials. A statement that is
+// not read is listed by its name. The numbers are read first, because a face may name a vertex below it.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -9,240 +8,343 @@
 #include <functional>
 #include <map>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "lines.h"
 #include "model.h"
+#include "mtl.h"
+#include "polygon.h"
 
 namespace crescent::importer {
 
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-/// Whether a number begins behind this text, which may have its sign.
-bool begins_number(std::string_view before) {
-    if (before.ends_with('-') || before.ends_with('+')) before.remove_suffix(1);
-    return !before.empty() && is_blank(before.back());
-}
-
-bool is_number(std::string_view word) { return number_in(word).has_value(); }
-
-/// The box of the vertices, and whether one has a weight.
-struct Extent {
-    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-    bool has_weights = false;
-
-    void add(const std::vector<std::string_view>& words) {
-        has_weights = has_weights || words.size() == 4;
-        std::size_t k = 0;
-        for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
-            const double value = number_in(words[k++]).value_or(0);
-            low.*axis = std::min(low.*axis, value);
-            high.*axis = std::max(high.*axis, value);
-        }
-    }
-    /// The middle, if it is more than a hundred extents away: single precision would leave fewer than
-    /// 2^17 steps.
-    Vec3d origin() const {
-        double extent = 0, largest = 0;
-        for (const auto axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
-            extent = std::max(extent, high.*axis - low.*axis);
-            largest = std::max({largest, std::fabs(low.*axis), std::fabs(high.*axis)});
-        }
-        if (has_weights || !std::isfinite(largest) || !(extent > 0) || largest <= 100 * extent) return {};
-        return 0.5 * (low + high);
-    }
-};
-
-/// The text with the numbers of its vertices relative to an origin.
-std::string moved_to(Vec3d origin, std::string_view text) {
-    std::string out;
-    out.reserve(text.size());
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        std::string_view line = text.substr(begin, end - begin);
-        begin = end + 1;
-        if (line.starts_with("v ") || line.starts_with("v\t")) {
-            out += 'v';
-            line.remove_prefix(1);
-            for (const double x : {origin.x, origin.y, origin.z}) {
-                line.remove_prefix(line.find_first_not_of(" \t"));
-                const std::string_view word = line.substr(0, line.find_first_of(" \t"));
-                line.remove_prefix(word.size());
-                out += fmt::format(" {:.17g}", number_in(word).value_or(0) - x);
-            }
-        }
-        out += line;
-        out += '\n';
-    }
-    return out;
-}
-
-/// Joins continued lines; the lines that were joined follow as empty ones, so that numbers of lines stay. A line that
-/// begins with '#' is a comment and is not continued: it becomes empty. assimp skips a number without a digit before
-/// its dot, and takes the next one: a vertex with .5 becomes one with 0.5.
-std::string normalised(std::string_view text) {
-    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-    std::string out;
-    out.reserve(text.size() + 1);
-    std::size_t begin = 0, owed = 0;  // of the line in `out`; empty lines after it
-    for (std::size_t k = 0; k <= text.size(); ++k) {
-        const bool is_end = k == text.size() || text[k] == '\r' || text[k] == '\n';
-        if (!is_end) {
-            const bool is_indent = out.size() == begin && is_blank(text[k]);
-            if (text[k] == '.' && out.size() > begin + 1 && out[begin] == 'v' && begins_number(out)) out += '0';
-            if (!is_indent) out += text[k];
-            continue;
-        }
-        if (k + 1 < text.size() && text[k] == '\r' && text[k + 1] == '\n') ++k;
-        if (out.size() > begin && out[begin] == '#') out.resize(begin);
-        if (out.size() > begin && out.back() == '\\' && k < text.size()) {
-            out.back() = ' ';
-            ++owed;
-            continue;
-        }
-        out.append(owed + 1, '\n');
-        owed = 0;
-        begin = out.size();
-    }
-    return out;
-}
-
-/// The largest index of a kind that is counted from the first, and its line: the element may follow.
-struct Largest {
-    std::int64_t index = 0;
-    std::size_t line = 0;
-};
-
 constexpr std::array<std::string_view, 3> kinds = {"v", "vt", "vn"};
-constexpr std::array<std::size_t, 3> numbers_of = {3, 1, 3};
-/// How many of so many numbers assimp reads: of v also a weight or a colour.
-constexpr std::size_t read_of(std::size_t kind, std::size_t count) {
-    if (kind != 0) return std::min<std::size_t>(count, 3);
-    return count > 6 ? 6 : count == 5 ? 3 : count;
-}
+constexpr std::array<std::size_t, 3> least_numbers = {3, 1, 3};
 
-/// Of MTL: keys with numbers, and other ones. assimp refuses a file with others, and with words in place of numbers.
-constexpr std::array<std::string_view, 14> keys_with_numbers = {
-    "Ka", "Kd", "Ks", "Ke", "Tf", "Ns", "Ni", "d", "Tr", "illum", "Pr", "Pm", "Ps", "Pc"};
-constexpr std::array<std::string_view, 6> other_keys = {"newmtl", "bump", "norm", "refl", "disp", "Pcr"};
+/// The indices of a corner into the positions, texture coordinates and normals, from 1 on; 0: none.
+using Corner = std::array<std::uint64_t, 3>;
+
+struct CornerHash {
+    std::size_t operator()(const Corner& corner) const {
+        return std::hash<std::string_view>{}({reinterpret_cast<const char*>(corner.data()), sizeof corner});
+    }
+};
+
+class ObjReader {
+public:
+    Model model;
+
+    ObjReader(const std::filesystem::path& file, const ReadingScope& scope)
+        : folder_(std::filesystem::absolute(file).parent_path()), scope_(scope), text_(joined_lines(bytes_of(file))) {
+        read_numbers();
+        for (const std::string& library : libraries_) read_library(library);
+        read_faces();
+        list_what_is_left_out();
+    }
+
+private:
+    // ---- The first pass: numbers and libraries.
+
+    void read_numbers() {
+        Statements statements(text_);
+        while (const std::optional<Statement> one = statements.next()) {
+            const auto kind = static_cast<std::size_t>(std::ranges::find(kinds, one->key) - kinds.begin());
+            if (kind < kinds.size()) add_numbers(kind, *one);
+            else if (one->key == "mtllib") libraries_.emplace_back(one->rest);
+        }
+    }
+
+    void add_numbers(std::size_t kind, const Statement& statement) {
+        const auto numbers = numbers_of(without_comment(statement.rest));
+        if (!numbers || numbers->size() < least_numbers[kind])
+            throw ModelError(fmt::format("line {}: expected {} after '{}'", statement.line,
+                counted(least_numbers[kind], "number[s]"), kinds[kind]));
+        const std::vector<double>& x = *numbers;
+        if (kind == 1) {
+            uv_.push_back({static_cast<float>(x[0]), x.size() > 1 ? static_cast<float>(x[1]) : 0});
+            further_numbers_ += x.size() > 3;
+            return;
+        }
+        if (kind == 2) {
+            normals_.push_back(narrow({x[0], x[1], x[2]}));
+            further_numbers_ += x.size() > 3;
+            return;
+        }
+        positions_.push_back({x[0], x[1], x[2]});
+        // Of curves: polygons have no weights.
+        weights_ += (x.size() == 4 || x.size() == 7) && x[3] != 1;
+        colours_ += x.size() == 6 || x.size() == 7;
+        further_numbers_ += x.size() == 5 || x.size() > 7;
+    }
+
+    // ---- Materials.
+
+    /// One name, or several, each of which may have blanks and ends with .mtl.
+    void read_library(std::string_view names) {
+        if (open_library(without_quotes(names), false)) return;
+        names = without_comment_of_name(names);
+        std::string_view rest = names;
+        while (!rest.empty()) {
+            const std::string_view before = rest;
+            std::string word;
+            do word = lower_case(take_word(rest));
+            while (!rest.empty() && !word.ends_with(".mtl") && !word.ends_with(".mtl\""));
+            const std::string_view name =
+                without_quotes(without_blanks_at_ends(before.substr(0, before.size() - rest.size())));
+            if (!name.empty() && !open_library(name, true))
+                model.left_out.push_back(fmt::format("the materials of '{}', which cannot be opened", name));
+        }
+    }
+
+    /// `may_be_other`: the file may be in another folder than the name has.
+    bool open_library(std::string_view name, bool may_be_other) {
+        const std::optional<FoundFile> found = file_named(name, std::array{folder_}, folder_);
+        if (!found || (found->is_other && !may_be_other)) return false;
+        note_other_name(*found, name);
+        Mtl read = read_mtl(bytes_of(found->path));
+        for (const auto& [statement, count] : read.statements) material_statements_[statement] += count;
+        before_materials_ += read.before_first;
+        for (const auto& [option, count] : read.options) image_options_[option] += count;
+        for (MtlMaterial& one : read.materials) {
+            const bool is_new = material_of_name_.try_emplace(one.material.name, model.materials.size()).second;
+            if (!is_new) {
+                ++taken_names_;
+                continue;
+            }
+            if (!one.image.empty()) add_image(one, found->path.parent_path());
+            model.materials.push_back(std::move(one.material));
+            uv_uses_.push_back({one.scale, one.offset});
+        }
+        return true;
+    }
+
+    void add_image(MtlMaterial& to, const std::filesystem::path& folder_of_library) {
+        const std::array folders = {folder_of_library, folder_};
+        std::string name = to.image;
+        std::optional<FoundFile> found = file_named(name, folders, folder_);
+        if (!found) {
+            name = without_comment_of_name(name);
+            found = file_named(name, folders, folder_);
+        }
+        if (found) note_other_name(*found, name);
+        std::ranges::replace(name, '\\', '/');
+        to.material.texture = name;
+        if (!scope_.images) return;
+        const auto [picture, is_new] =
+            picture_of_file_.try_emplace(found ? found->path.string() : name, model.pictures.size());
+        to.material.colours = picture->second;
+        if (is_new) model.pictures.push_back({name, found ? bytes_of(found->path) : ""});
+    }
+
+    void note_other_name(const FoundFile& found, std::string_view name) {
+        if (found.is_other)
+            model.assumed.push_back(
+                fmt::format("'{}' is '{}' of another folder", found.path.filename().string(), name));
+    }
+
+    /// Of a name in `usemtl`; a grey one if no library has it.
+    std::size_t material_named(std::string_view name) {
+        const auto found = material_of_name_.find(name);
+        if (found != material_of_name_.end()) return found->second;
+        if (const std::string_view shorter = without_comment_of_name(name); shorter != name)
+            return material_named(shorter);
+        if (!name.empty()) unknown_materials_.emplace_back(name);
+        const std::size_t index = model.materials.size();
+        material_of_name_.emplace(name, index);
+        model.materials.push_back({std::string(name)});
+        uv_uses_.emplace_back();
+        return index;
+    }
+
+    // ---- The second pass: faces with their names and materials.
+
+    void read_faces() {
+        Statements statements(text_);
+        while (const std::optional<Statement> one = statements.next()) {
+            const std::string_view key = one->key;
+            const auto kind = static_cast<std::size_t>(std::ranges::find(kinds, key) - kinds.begin());
+            if (kind < kinds.size()) ++counts_[kind];
+            else if (key == "f" || key == "fo") add_face(*one);  // fo: before version 3.0
+            else if (key == "o" || key == "g") {
+                (key == "o" ? object_ : group_) = one->rest;
+                is_changed_ = true;
+            } else if (key == "usemtl") {
+                material_ = one->rest;
+                is_changed_ = true;
+            } else if (key == "s") {
+                const std::string_view word = without_blanks_at_ends(without_comment(one->rest));
+                is_smooth_ = !word.empty() && word != "off" && word != "0";
+            } else if (key == "p" || key == "l") ++points_and_lines_;
+            else if (key == "curv" || key == "curv2" || key == "surf") ++curves_;
+            else if (key != "mtllib") count_kind(statements_, std::string(key));
+        }
+    }
+
+    void add_face(const Statement& statement) {
+        std::string_view rest = without_comment(statement.rest);
+        corners_.clear();
+        bool has_uv = true, has_normals = true, has_some_uv = false;
+        for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
+            if (corners_.size() == most_corners)
+                throw ModelError(
+                    fmt::format("line {}: expected a face of at most {} corners", statement.line, most_corners));
+            corners_.push_back(corner_of(word, statement.line));
+            has_uv = has_uv && corners_.back()[1] > 0;
+            has_some_uv = has_some_uv || corners_.back()[1] > 0;
+            has_normals = has_normals && corners_.back()[2] > 0;
+        }
+        if (corners_.size() < 3) {
+            ++points_and_lines_;
+            return;
+        }
+        unsmoothed_ += is_smooth_ && !has_normals;
+        half_textured_ += has_some_uv && !has_uv;
+        const std::size_t index = part_for(has_uv);
+        Part& part = model.parts[index];
+        vertices_.clear();
+        for (Corner& corner : corners_) {
+            if (!has_uv) corner[1] = 0;
+            vertices_.push_back(vertex(part, vertex_of_corner_[index], corner));
+        }
+        triangulate(part.positions, vertices_, part.triangles);
+    }
+
+    /// v, v/vt, v//vn or v/vt/vn; an index below 0 counts back from the last one above.
+    Corner corner_of(std::string_view word, std::size_t line) const {
+        Corner out{};
+        const auto bad = [&] {
+            return ModelError(
+                fmt::format("line {}: expected an index, v, v/vt, v//vn or v/vt/vn, not '{}'", line, word));
+        };
+        std::string_view rest = word;
+        for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+            const std::string_view digits = rest.substr(0, rest.find('/'));
+            const bool is_last = digits.size() == rest.size();
+            rest.remove_prefix(std::min(digits.size() + 1, rest.size()));
+            if (digits.empty() && kind == 0) throw bad();
+            if (!digits.empty()) out[kind] = index_in(digits, kind, line).value_or(0);
+            if (!digits.empty() && out[kind] == 0) throw bad();
+            if (is_last) return out;
+        }
+        if (!rest.empty() || std::ranges::count(word, '/') > 2) throw bad();
+        return out;
+    }
+    std::optional<std::uint64_t> index_in(std::string_view digits, std::size_t kind, std::size_t line) const {
+        const std::array<std::size_t, 3> totals = {positions_.size(), uv_.size(), normals_.size()};
+        if (digits.starts_with('+')) digits.remove_prefix(1);
+        std::int64_t index = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+        if (error != std::errc{} || end != digits.data() + digits.size() || index == 0) return std::nullopt;
+        const auto above = static_cast<std::int64_t>(counts_[kind]);
+        if (index < -above)
+            throw ModelError(fmt::format("line {}: the index {} of '{}', of which {} above", line, index, kinds[kind],
+                counts_[kind] == 1 ? "1 is" : fmt::format("{} are", counts_[kind])));
+        if (index > static_cast<std::int64_t>(totals[kind]))
+            throw ModelError(fmt::format("line {}: the index {} of '{}', of which there {}", line, index, kinds[kind],
+                totals[kind] == 1 ? "is 1" : fmt::format("are {}", totals[kind])));
+        return static_cast<std::uint64_t>(index > 0 ? index : above + index + 1);
+    }
+
+    /// The part of the present names and material, with or without texture coordinates.
+    std::size_t part_for(bool has_uv) {
+        if (is_changed_) current_ = {};
+        is_changed_ = false;
+        std::optional<std::size_t>& current = current_[has_uv];
+        if (current) return *current;
+        const std::size_t material = material_named(material_);
+        std::vector<std::string> names;
+        if (scope_.whole_scene)
+            for (const std::string_view name : {object_, group_})
+                if (!name.empty()) names.emplace_back(name);
+        const auto [part, is_new] = part_of_.try_emplace({names, material, has_uv}, model.parts.size());
+        current = part->second;
+        if (!is_new) return part->second;
+        vertex_of_corner_.emplace_back();
+        model.parts.emplace_back();
+        model.parts.back().material = material;
+        model.parts.back().names = std::move(names);
+        return part->second;
+    }
+
+    std::uint32_t vertex(
+        Part& part, std::unordered_map<Corner, std::uint32_t, CornerHash>& indices, const Corner& corner) {
+        const auto [index, is_new] = indices.try_emplace(corner, static_cast<std::uint32_t>(part.positions.size()));
+        if (!is_new) return index->second;
+        part.positions.push_back(positions_[corner[0] - 1]);
+        // A corner without a normal has that of its triangle.
+        if (corner[2] > 0) part.normals.resize(part.positions.size() - 1);
+        if (corner[2] > 0) part.normals.push_back(normals_[corner[2] - 1]);
+        else if (!part.normals.empty()) part.normals.emplace_back();
+        if (corner[1] > 0) {
+            const UvUse& use = uv_uses_[part.material];
+            const Vec2<float> uv = uv_[corner[1] - 1];
+            part.uv.push_back({static_cast<float>(use.scale.x * static_cast<double>(uv.x) + use.offset.x),
+                static_cast<float>(use.scale.y * static_cast<double>(uv.y) + use.offset.y)});
+        }
+        return index->second;
+    }
+
+    void list_what_is_left_out() {
+        const auto add = [&](std::size_t count, std::string_view what) {
+            if (count > 0) model.left_out.push_back(counted(count, what));
+        };
+        add(curves_, "curve[s] or surface[s]");
+        add(points_and_lines_, "point[s] or line[s]");
+        add(weights_, "weight[s] of vertices");
+        add(colours_, "colour[s] of vertices");
+        add(further_numbers_, "vert[ex|ices] with more numbers than are read");
+        add(half_textured_, "face[s] with texture coordinates at some corners alone: the coordinates");
+        add(unsmoothed_, "face[s] of smoothing groups without normals: the smoothing (--smooth DEG)");
+        add(taken_names_, "material[s] with a name that another one has");
+        add(before_materials_, "statement[s] of libraries before their first material");
+        if (const std::size_t count = unknown_materials_.size(); count > 0)
+            model.left_out.push_back(fmt::format("{}, which no library has: grey in place of {}",
+                counted(count, "material[s]"), some_of(unknown_materials_)));
+        for (const auto& [key, count] : statements_)
+            model.left_out.push_back(key == other_kinds ? counted(count, "other statement[s]")
+                                                        : fmt::format("{} '{}'", counted(count, "statement[s]"), key));
+        for (const auto& [key, count] : material_statements_)
+            model.left_out.push_back(fmt::format(
+                "{} of {}", key == other_kinds ? "other statements" : "'" + key + "'", counted(count, "material[s]")));
+        for (const auto& [key, count] : image_options_)
+            model.left_out.push_back(fmt::format("the option '{}' of {}", key, counted(count, "image[s]")));
+    }
+
+    /// uv' = scale uv + offset.
+    struct UvUse {
+        Vec2<double> scale{1, 1}, offset{0, 0};
+    };
+
+    std::filesystem::path folder_;
+    ReadingScope scope_;
+    std::string text_;
+    std::vector<std::string> libraries_, unknown_materials_;
+    std::vector<Vec3d> positions_;
+    std::vector<Vec2<float>> uv_;
+    std::vector<Vec3f> normals_;
+    std::map<std::string, std::size_t, std::less<>> material_of_name_;
+    std::vector<UvUse> uv_uses_;  // of each material
+    std::map<std::string, std::size_t> picture_of_file_;
+    // Of the second pass.
+    std::array<std::size_t, 3> counts_{};  // above the present line
+    std::string_view object_, group_, material_;
+    bool is_smooth_ = false, is_changed_ = false;
+    std::array<std::optional<std::size_t>, 2> current_{};  // parts, without and with texture coordinates
+    std::map<std::tuple<std::vector<std::string>, std::size_t, bool>, std::size_t> part_of_;
+    std::vector<std::unordered_map<Corner, std::uint32_t, CornerHash>> vertex_of_corner_;  // of each part
+    std::vector<Corner> corners_;
+    std::vector<std::uint32_t> vertices_;
+    Kinds statements_, material_statements_, image_options_;
+    std::size_t curves_ = 0, points_and_lines_ = 0, weights_ = 0, colours_ = 0, further_numbers_ = 0,
+                half_textured_ = 0, unsmoothed_ = 0, taken_names_ = 0, before_materials_ = 0;
+};
 
 }  // namespace
 
-ObjText checked_obj(std::string_view file) {
-    ObjText out{normalised(file), {}, {}};
-    std::array<std::int64_t, 3> counts{};
-    std::array<Largest, 3> largest{};
-    std::size_t curves = 0, points_and_lines = 0;
-    Extent extent;
-    const auto check_corner = [&](std::string_view corner, std::size_t line) {
-        for (std::size_t kind = 0; kind < 3 && !corner.empty(); ++kind) {
-            const std::string_view word = corner.substr(0, corner.find('/'));
-            corner.remove_prefix(std::min(word.size() + 1, corner.size()));
-            if (word.empty()) continue;
-            std::int64_t index = 0;
-            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
-            if (error != std::errc{} || end != word.data() + word.size() || index == 0)
-                throw ModelError(fmt::format("line {}: expected an index, not '{}'", line, word));
-            if (index < -counts[kind])
-                throw ModelError(fmt::format(
-                    "line {}: the index {} of '{}', of which {} are above", line, index, kinds[kind], counts[kind]));
-            if (index > largest[kind].index) largest[kind] = {index, line};
-        }
-    };
-    std::size_t line = 0;
-    for (std::size_t begin = 0; begin < out.text.size();) {
-        ++line;
-        const std::size_t end = std::min(out.text.find('\n', begin), out.text.size());
-        std::string_view rest = std::string_view(out.text).substr(begin, end - begin);
-        begin = end + 1;
-        const auto next = [&rest] {
-            rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
-            const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
-            rest.remove_prefix(word.size());
-            return word;
-        };
-        const std::string_view key = next();
-        curves += key == "curv" || key == "curv2" || key == "surf";
-        if (key == "o" || key == "g") {
-            // assimp ends a name at a blank.
-            const std::size_t from = rest.find_first_not_of(" \t"), to = rest.find_last_not_of(" \t");
-            if (from != rest.npos)
-                for (std::size_t k = from; k < to; ++k)
-                    if (rest[k] == ' ' || rest[k] == '\t')
-                        out.text[static_cast<std::size_t>(rest.data() - out.text.data()) + k] = blank_of_name;
-        }
-        points_and_lines += key == "p" || key == "l";
-        if (key == "mtllib") {
-            const std::size_t from = std::min(rest.find_first_not_of(" \t"), rest.size());
-            out.libraries.emplace_back(rest.substr(from, rest.find_last_not_of(" \t") + 1 - from));
-        }
-        const auto kind = static_cast<std::size_t>(std::ranges::find(kinds, key) - kinds.begin());
-        if (kind == kinds.size() && key != "f") continue;
-        // assimp takes a comment behind numbers for more of them.
-        if (const std::size_t comment = rest.find('#'); comment != rest.npos) {
-            std::fill_n(out.text.begin() + static_cast<std::ptrdiff_t>(end - rest.size() + comment),
-                rest.size() - comment, ' ');
-            rest = rest.substr(0, comment);
-        }
-        if (kind < kinds.size()) {
-            ++counts[kind];
-            std::vector<std::string_view> words;
-            for (std::string_view word = next(); !word.empty(); word = next()) words.push_back(word);
-            if (words.size() < numbers_of[kind] || !std::ranges::all_of(words, is_number))
-                throw ModelError(fmt::format("line {}: expected {} numbers after '{}'", line, numbers_of[kind], key));
-            if (kind == 0) extent.add(words);
-            // assimp skips a line with another count.
-            const std::size_t kept = read_of(kind, words.size());
-            if (kept < words.size())
-                std::fill(out.text.begin() + (words[kept].data() - out.text.data()),
-                    out.text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
-            continue;
-        }
-        std::size_t corners = 0;
-        for (std::string_view corner = next(); !corner.empty(); corner = next()) {
-            if (++corners > most_corners)
-                throw ModelError(fmt::format("line {}: expected a face of at most {} corners", line, most_corners));
-            check_corner(corner, line);
-        }
-    }
-    for (std::size_t kind = 0; kind < 3; ++kind)
-        if (largest[kind].index > counts[kind])
-            throw ModelError(fmt::format("line {}: the index {} of '{}', of which there are {}", largest[kind].line,
-                largest[kind].index, kinds[kind], counts[kind]));
-    if (curves > 0) out.left_out.push_back(fmt::format("{} curves and surfaces", curves));
-    if (points_and_lines > 0) out.left_out.push_back(fmt::format("{} points and lines", points_and_lines));
-    out.origin = extent.origin();
-    if (dot(out.origin, out.origin) > 0) out.text = moved_to(out.origin, out.text);
-    return out;
-}
-
-std::string checked_mtl(std::string_view file, std::vector<std::string>& left_out) {
-    std::string out = normalised(file);
-    std::map<std::string, std::size_t, std::less<>> removed;
-    for (std::size_t begin = 0; begin < out.size();) {
-        const std::size_t end = std::min(out.find('\n', begin), out.size());
-        const std::string_view line = std::string_view(out).substr(begin, end - begin);
-        const std::size_t key_end = std::min(line.find_first_of(" \t"), line.size());
-        const std::string_view key = line.substr(0, key_end);
-        const std::size_t first = std::min(line.find_first_not_of(" \t", key_end), line.size());
-        const std::string_view word = line.substr(first, line.find_first_of(" \t", first) - first);
-        const bool has_numbers = std::ranges::find(keys_with_numbers, key) != keys_with_numbers.end();
-        const bool is_known = has_numbers
-            ? is_number(word)
-            : key.empty() || key.starts_with("map_") || std::ranges::find(other_keys, key) != other_keys.end();
-        if (!is_known) {
-            ++removed[has_numbers ? fmt::format("{} {}", key, word) : std::string(key)];
-            std::fill(
-                out.begin() + static_cast<std::ptrdiff_t>(begin), out.begin() + static_cast<std::ptrdiff_t>(end), ' ');
-        }
-        begin = end + 1;
-    }
-    for (const auto& [what, count] : removed)
-        left_out.push_back(fmt::format("'{}' of {} material{}", what, count, count == 1 ? "" : "s"));
-    return out;
-}
+Model read_obj(const std::filesystem::path& file, const ReadingScope& scope) { return ObjReader(file, scope).model; }
 
 }  // namespace crescent::importer

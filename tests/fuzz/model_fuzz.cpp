@@ -33,7 +33,9 @@ const std::filesystem::path& folder() {
 Model read_as(const std::string& extension, const std::filesystem::path& file) {
     const ReadingScope scope{.whole_scene = true, .images = true};
     if (extension == ".ply") return read_ply(file);
-    return extension == ".gltf" || extension == ".glb" ? read_gltf(file, scope) : read_by_assimp(file, scope);
+    if (extension == ".obj") return read_obj(file, scope);
+    if (extension == ".stl") return read_stl(file, scope);
+    return read_gltf(file, scope);
 }
 
 void check_parts(const Model& model) {

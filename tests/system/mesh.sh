@@ -3,7 +3,7 @@
 # textures, parts that join without the files, bad files refused with the place, damaged files of all kinds that do not
 # end the program.
 . "$(dirname "$0")/common.sh"
-# The rest of this script has a build with assimp; without it, the command says what is missing.
+# The rest of this script needs the importer; without it, the command says what is missing.
 "$CRESCENT" import nothing.obj --out nothing.mesh >printed 2>said
 [ $? -eq 2 ] || die "a missing model: $(cat said)"
 if [ ! -x "$(dirname "$CRESCENT")/crescent-import" ] && ! command -v crescent-import >/dev/null; then
@@ -181,7 +181,7 @@ refuses 'within 1000000 m' tent-obj.mesh 'translate = [1e6, 0, 0]'
 refuses 'found both' tent-obj.mesh $'scale = 2\nmatrix = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]'
 refuses 'paired' tent-obj.mesh $'[reference]\nkind = "quadrature"'
 
-# Numbers as other programs write them, and statements of MTL that assimp refuses.
+# Numbers as other programs write them, and statements of MTL that are not read.
 cat >dot.obj <<'O'
 mtllib dot.mtl
 v 0 0 0

@@ -162,7 +162,7 @@ def tried(program: str, seed: int, k: int, images: list[bytes]) -> tuple[int, bo
             files |= {name: mutant(draw.choice(own), draw), "a.toml": EXPERIMENT.encode()}
         for file, data in files.items():
             Path(folder, file).write_bytes(data)
-        # Some claim 4294967295 vertices, and assimp believes them.
+        # Some claim 4294967295 vertices.
         words = ["import", name, "--out", "a.mesh", "--timeout", "1", "--memory", "256"]
         if name in SCENE:
             words = ["run", "a.toml", "--quiet", "--only", "metrics", "--threads", "1", "--out", "out"]
