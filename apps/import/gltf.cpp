@@ -108,6 +108,7 @@ std::uint32_t number_at(std::string_view bytes, std::size_t begin) {
 struct Container {
     std::string_view json;
     std::optional<std::string_view> buffer;
+    std::size_t other_parts = 0, rest = 0;  // rest: bytes behind the last one
 };
 
 Container container_of(std::string_view file) {
@@ -116,15 +117,18 @@ Container container_of(std::string_view file) {
     if (!file.starts_with(magic)) return {file, std::nullopt};
     if (file.size() < 12 || number_at(file, 4) != 2) throw ModelError("expected version 2 of GLB");
     Container out;
-    for (std::size_t place = 12; place + 8 <= file.size();) {
+    std::size_t place = 12;
+    while (place + 8 <= file.size()) {
         const std::uint32_t size = number_at(file, place), kind = number_at(file, place + 4);
         if (size > file.size() - place - 8)
             throw ModelError(fmt::format("byte {}: a part of {} bytes, beyond the end of the file", place, size));
         const std::string_view bytes = file.substr(place + 8, size);
         if (kind == json_chunk && out.json.empty()) out.json = bytes;
-        if (kind == buffer_chunk && !out.buffer) out.buffer = bytes;
+        else if (kind == buffer_chunk && !out.buffer) out.buffer = bytes;
+        else ++out.other_parts;
         place += 8 + (std::size_t{size} + 3) / 4 * 4;
     }
+    out.rest = file.size() - std::min(place, file.size());
     return out;
 }
 
@@ -200,15 +204,17 @@ public:
         for (std::size_t k = 0; k < size_of("materials"); ++k) add_material(k);
         place_scene();
         const auto left_out = [&](std::size_t count, const char* what) {
-            if (count > 0) model.left_out.push_back(fmt::format("{} {}", count, what));
+            if (count > 0) model.left_out.push_back(counted(count, what));
         };
-        left_out(points_and_lines_, "primitives of points or lines");
-        left_out(size_of("skins"), "skins");
-        left_out(size_of("animations"), "animations");
-        left_out(targets_, "primitives' morph targets");
+        left_out(container_.other_parts, "part[s] of the file of an unknown kind");
+        left_out(container_.rest, "byte[s] after the last part of the file");
+        left_out(points_and_lines_, "primitive[s] of points or lines, or without positions");
+        left_out(size_of("skins"), "skin[s]");
+        left_out(size_of("animations"), "animation[s]");
+        left_out(targets_, "primitive[s] with morph targets");
         for (const auto& [what, count] : dropped_) left_out(count, what.c_str());
         for (const auto& [name, count] : attributes_)
-            model.left_out.push_back(fmt::format("the attribute {} of {} primitives", name, count));
+            model.left_out.push_back(fmt::format("the attribute {} of {}", name, counted(count, "primitive[s]")));
     }
 
 private:
@@ -253,8 +259,22 @@ private:
                 fail("extensionsRequired", fmt::format("the extension '{}' is not supported", name));
             left_out.insert(name);
         }
+        // Extensions that the file does not declare are left out too.
+        std::map<std::string, std::size_t> places;
+        count_extensions(root_, places);
+        for (const auto& [name, count] : places) left_out.insert(name);
         for (const std::string& name : left_out)
-            if (!is_read(name)) model.left_out.push_back(fmt::format("the extension {}", name));
+            if (!is_read(name))
+                model.left_out.push_back(
+                    fmt::format("the extension {}, in {}", name, counted(places[name], "place[s]")));
+    }
+    /// Adds how many objects of the file have each extension, to a depth that glTF does not reach.
+    static void count_extensions(const Json& json, std::map<std::string, std::size_t>& to, int depth = 0) {
+        if (!json.is_structured() || depth > 32) return;
+        if (const Json* found = json.is_object() ? object(json, "extensions") : nullptr)
+            for (const auto& [name, value] : found->items()) ++to[name];
+        for (const auto& [key, value] : json.items())
+            if (key != "extras") count_extensions(value, to, depth + 1);
     }
 
     void add_material(std::size_t index) {
@@ -264,10 +284,10 @@ private:
         if (const auto emission = numbers<3>(from, "emissiveFactor", place))
             to.emission = narrow({(*emission)[0], (*emission)[1], (*emission)[2]});
         if (const Json* strength = extension(from, "KHR_materials_emissive_strength"))
-            to.emission = static_cast<float>(number(*strength, "emissiveStrength", 1)) * to.emission;
+            to.emission = static_cast<float>(number(*strength, "emissiveStrength", 1, place)) * to.emission;
         if (from.contains("emissiveTexture")) {
             to.emission = {};
-            ++dropped_["images of emission, with the emission"];
+            ++dropped_["image[s] of emission, with the emission"];
         }
         to.two_sided = from.value("doubleSided", Json(false)) == Json(true);
         to.rho_d = {1, 1, 1};
@@ -275,9 +295,10 @@ private:
         if (const Json* gloss = extension(from, "KHR_materials_pbrSpecularGlossiness"))
             add_gloss(*gloss, member_place(place, "extensions.KHR_materials_pbrSpecularGlossiness"), to);
         else add_metal(from, place, to);
-        dropped_["normal maps"] += from.contains("normalTexture");
-        dropped_["images of occlusion"] += from.contains("occlusionTexture");
-        dropped_["materials' transparency"] += text(from, "alphaMode") == "MASK" || text(from, "alphaMode") == "BLEND";
+        dropped_["normal map[s]"] += from.contains("normalTexture");
+        dropped_["image[s] of occlusion"] += from.contains("occlusionTexture");
+        dropped_["material[s] with transparency"] +=
+            text(from, "alphaMode") == "MASK" || text(from, "alphaMode") == "BLEND";
         model.materials.push_back(std::move(to));
     }
 
@@ -286,12 +307,13 @@ private:
         to.rho_s = {0.04f, 0.04f, 0.04f};
         to.metal = to.alpha = 1;
         const auto found = from.find("pbrMetallicRoughness");
-        if (found == from.end() || !found->is_object()) return;
+        if (found == from.end()) return;
         const std::string inner = member_place(place, "pbrMetallicRoughness");
+        if (!found->is_object()) fail(inner, "expected an object");
         if (const auto colour = numbers<4>(*found, "baseColorFactor", inner))
             to.rho_d = narrow({(*colour)[0], (*colour)[1], (*colour)[2]});
-        to.metal = static_cast<float>(number(*found, "metallicFactor", 1));
-        to.alpha = static_cast<float>(sqr(number(*found, "roughnessFactor", 1)));
+        to.metal = static_cast<float>(number(*found, "metallicFactor", 1, inner));
+        to.alpha = alpha_of(number(*found, "roughnessFactor", 1, inner));
         if (const Json* texture = object(*found, "baseColorTexture"))
             add_colours(*texture, member_place(inner, "baseColorTexture"), to);
         if (const Json* texture = object(*found, "metallicRoughnessTexture")) {
@@ -299,7 +321,7 @@ private:
             const UvUse use = uv_use(*texture, texture_place);
             if (!to.colours) uv_uses_.back() = use;
             if (use == uv_uses_.back()) to.surface = picture(*texture, texture_place);
-            else ++dropped_["images of roughness, placed otherwise than the colours"];
+            else ++dropped_["image[s] of roughness, placed otherwise than the colours"];
         }
     }
     /// The older extension: two colours and a glossiness, of which the image is left out.
@@ -309,10 +331,10 @@ private:
         to.rho_s = {1, 1, 1};
         if (const auto colour = numbers<3>(from, "specularFactor", place))
             to.rho_s = narrow({(*colour)[0], (*colour)[1], (*colour)[2]});
-        to.alpha = static_cast<float>(sqr(1 - number(from, "glossinessFactor", 1)));
+        to.alpha = alpha_of(1 - number(from, "glossinessFactor", 1, place));
         if (const Json* texture = object(from, "diffuseTexture"))
             add_colours(*texture, member_place(place, "diffuseTexture"), to);
-        dropped_["images of gloss"] += from.contains("specularGlossinessTexture");
+        dropped_["image[s] of gloss"] += from.contains("specularGlossinessTexture");
     }
     void add_colours(const Json& texture, const std::string& place, Material& to) {
         uv_uses_.back() = uv_use(texture, place);
@@ -328,10 +350,14 @@ private:
         const Json* extensions = object(json, "extensions");
         return extensions ? object(*extensions, name) : nullptr;
     }
-    static double number(const Json& json, const char* key, double otherwise) {
+    static double number(const Json& json, const char* key, double otherwise, const std::string& place) {
         const auto found = json.find(key);
-        return found != json.end() && found->is_number() ? found->get<double>() : otherwise;
+        if (found == json.end()) return otherwise;
+        if (!found->is_number()) fail(member_place(place, key), "expected a number");
+        return found->get<double>();
     }
+    /// The square of a roughness, with its sign.
+    static float alpha_of(double roughness) { return static_cast<float>(roughness * std::fabs(roughness)); }
 
     UvUse uv_use(const Json& texture, const std::string& place) {
         UvUse out{.set = whole_number(texture, "texCoord", place).value_or(0)};
@@ -341,7 +367,7 @@ private:
         out.set = whole_number(*transform, "texCoord", inner).value_or(out.set);
         out.offset = numbers<2>(*transform, "offset", inner).value_or(out.offset);
         out.scale = numbers<2>(*transform, "scale", inner).value_or(out.scale);
-        out.rotation = number(*transform, "rotation", 0);
+        out.rotation = number(*transform, "rotation", 0, inner);
         return out;
     }
 
@@ -378,9 +404,10 @@ private:
     std::optional<std::size_t> picture(const Json& from, const std::string& place) {
         std::size_t index = 0;
         const Json* image = image_of(from, place, index);
-        if (!image) ++dropped_["images in a format of an extension"];
+        if (!image) ++dropped_["image[s] in a format of an extension"];
         if (!image || !scope_.images) return std::nullopt;
-        dropped_["images that are clamped or mirrored at their ends, and repeat here"] += !repeats(from, place);
+        dropped_["image[s] that [is|are] clamped or mirrored at [its|their] ends, and repeat[s|] here"] +=
+            !repeats(from, place);
         const auto [picture, is_new] = picture_of_image_.try_emplace(index, model.pictures.size());
         if (!is_new) return picture->second;
         const std::string image_place = element_place("images", index), uri = text(*image, "uri");
@@ -392,11 +419,16 @@ private:
             auto bytes = comma == uri.npos ? std::nullopt : base64_decoded(std::string_view(uri).substr(comma + 8));
             if (!bytes) fail(member_place(image_place, "uri"), "expected base64");
             out.bytes = std::move(*bytes);
-        } else if (const std::filesystem::path path = folder_ / percent_decoded(uri); is_inside(folder_, path)) {
-            out.name = path.filename().string();
-            try {
-                out.bytes = bytes_of(path);
-            } catch (const ModelError&) {}  // counted by who writes the images
+        } else {
+            std::string name = percent_decoded(uri);
+            std::optional<FoundFile> found = file_named(name, std::array{folder_}, folder_);
+            if (!found) found = file_named(uri, std::array{folder_}, folder_);
+            if (found && found->is_other)
+                model.assumed.push_back(
+                    fmt::format("'{}' is '{}' of another folder", found->path.filename().string(), name));
+            // One that is not there is counted by who writes the images.
+            if (found) out.bytes = bytes_of(found->path);
+            out.name = found ? found->path.filename().string() : std::move(name);
         }
         model.pictures.push_back(std::move(out));
         return picture->second;
@@ -497,8 +529,11 @@ private:
             need_bytes(out.place, bytes.size(), out.count, out.stride, out.components * size);
         }
         if (one.contains("sparse")) out.sparse = &one["sparse"];
-        else if (out.bytes.empty()) fail(out.place, "expected 'bufferView' or 'sparse'");
         return out;
+    }
+    static void need_unsigned(std::size_t type, const std::string& place) {
+        if (type != type_u8 && type != type_u16 && type != type_u32)
+            fail(member_place(place, "componentType"), fmt::format("expected 5121, 5123 or 5125, not {}", type));
     }
     static void need_bytes(
         const std::string& place, std::size_t have, std::size_t count, std::size_t stride, std::size_t last) {
@@ -536,6 +571,7 @@ private:
             return out;
         };
         const std::size_t type = needed(sparse["indices"], "componentType", member_place(place, "indices"));
+        need_unsigned(type, member_place(place, "indices"));
         const std::size_t index_size = bytes_of_type(type, place), size = bytes_of_type(from.type, place);
         const std::string_view indices = part("indices", index_size), values = part("values", from.components * size);
         for (std::size_t k = 0; k < count; ++k) {
@@ -553,6 +589,10 @@ private:
     static Transform transform_of(const Json& node, const std::string& place) {
         Transform out;
         if (const auto m = numbers<16>(node, "matrix", place)) {
+            for (const char* key : {"translation", "rotation", "scale"})
+                if (node.contains(key)) fail(place, fmt::format("expected 'matrix' or '{}', found both", key));
+            if ((*m)[3] != 0 || (*m)[7] != 0 || (*m)[11] != 0 || (*m)[15] != 1)
+                fail(member_place(place, "matrix"), "expected 0, 0, 0 and 1 as the last row");
             for (std::size_t k = 0; k < 3; ++k) out.columns[k] = {(*m)[4 * k], (*m)[4 * k + 1], (*m)[4 * k + 2]};
             out.origin = {(*m)[12], (*m)[13], (*m)[14]};
             return out;
@@ -560,7 +600,11 @@ private:
         const auto t = numbers<3>(node, "translation", place).value_or(std::array<double, 3>{0, 0, 0});
         const auto q = numbers<4>(node, "rotation", place).value_or(std::array<double, 4>{0, 0, 0, 1});
         const auto s = numbers<3>(node, "scale", place).value_or(std::array<double, 3>{1, 1, 1});
-        const double x = q[0], y = q[1], z = q[2], w = q[3];
+        const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+        constexpr double rounding = 0.01;  // of a byte
+        if (!(std::fabs(length - 1) <= rounding))
+            fail(member_place(place, "rotation"), fmt::format("expected a quaternion of length 1, not {:.4g}", length));
+        const double x = q[0] / length, y = q[1] / length, z = q[2] / length, w = q[3] / length;
         out.columns[0] = s[0] * Vec3d{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
         out.columns[1] = s[1] * Vec3d{2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
         out.columns[2] = s[2] * Vec3d{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
@@ -617,14 +661,14 @@ private:
             if (const auto mesh = whole_number(node, "mesh", place))
                 placed.push_back({*mesh, transform, member_place(place, "mesh"), names});
             if (const auto camera = whole_number(node, "camera", place)) add_camera(*camera, transform, place);
-            if (extension(node, "KHR_lights_punctual")) ++dropped_["lights"];
+            if (extension(node, "KHR_lights_punctual")) ++dropped_["light[s]"];
             std::vector<std::size_t> inner = children(node, "children", place);
             std::ranges::reverse(inner);
             for (const std::size_t child : inner)
                 open.push_back({child, transform, member_place(place, "children"), names});
         }
         for (std::size_t k = 0; k < visited.size(); ++k)
-            dropped_["meshes outside of the scene"] += !visited[k] && element("nodes", k, "nodes").contains("mesh");
+            dropped_["mesh[es] outside of the scene"] += !visited[k] && element("nodes", k, "nodes").contains("mesh");
         std::map<std::size_t, std::size_t> uses;
         for (const Open& one : placed) ++uses[one.node];
         std::map<std::size_t, std::pair<std::size_t, std::size_t>> shared;  // the parts of a mesh
@@ -643,14 +687,14 @@ private:
     void add_camera(std::size_t index, const Transform& transform, const std::string& from) {
         const Json& camera = element("cameras", index, member_place(from, "camera"));
         const Json* lens = object(camera, "perspective");
-        if (!lens || model.camera) return void(++dropped_["cameras"]);
-        const double vfov = number(*lens, "yfov", 0);
+        if (!lens || model.camera) return void(++dropped_["camera[s]"]);
+        const double vfov = number(*lens, "yfov", 0, element_place("cameras", index));
         if (!(vfov > 0 && vfov < pi)) fail(element_place("cameras", index), "expected a 'yfov' between 0 and pi");
         model.camera = {.eye = transform.origin,
             .view = transform.turned({0, 0, -1}),
             .up = transform.turned({0, 1, 0}),
             .vfov_deg = vfov * 180 / pi,
-            .aspect = number(*lens, "aspectRatio", 4.0 / 3)};
+            .aspect = number(*lens, "aspectRatio", 4.0 / 3, element_place("cameras", index))};
     }
 
     void add_mesh(
@@ -779,6 +823,7 @@ private:
             return out;
         }
         const Array array = this->array(*index, member_place(place, "indices"), "SCALAR");
+        need_unsigned(array.type, array.place);
         const std::vector<double> values = values_of(array);
         for (std::size_t k = 0; k < values.size(); ++k) {
             if (!(values[k] >= 0 && values[k] < static_cast<double>(vertices)) || values[k] != std::floor(values[k]))

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "lines.h"
 #include "model.h"
 #include "polygon.h"
 
@@ -43,18 +44,9 @@ struct Element {
 struct Header {
     Format format = Format::ascii;
     std::vector<Element> elements;
-    std::size_t size = 0;  // bytes
+    std::size_t size = 0;    // bytes
+    std::size_t images = 0;  // that comments of MeshLab name
 };
-
-std::vector<std::string_view> words_of(std::string_view line) {
-    std::vector<std::string_view> out;
-    for (std::size_t begin = 0; (begin = line.find_first_not_of(" \t", begin)) != line.npos;) {
-        const std::size_t end = std::min(line.find_first_of(" \t", begin), line.size());
-        out.push_back(line.substr(begin, end - begin));
-        begin = end;
-    }
-    return out;
-}
 
 const Type& type_named(std::string_view name, std::size_t line) {
     for (const Type& type : types)
@@ -76,11 +68,12 @@ Header read_header(std::string_view file) {
         if (line == 1) {
             if (words.size() != 1 || words[0] != "ply") throw bad("the word ply");
         } else if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
-            continue;
+            out.images += words.size() > 2 && words[1] == "TextureFile";
         } else if (words[0] == "end_header") {
             if (!has_format) throw bad("a line 'format ... 1.0' before end_header");
             return out;
         } else if (words[0] == "format" && words.size() == 3) {
+            if (words[2] != "1.0") throw bad("the version 1.0 of the format");
             has_format = true;
             if (words[1] == "ascii") out.format = Format::ascii;
             else if (words[1] == "binary_little_endian") out.format = Format::little;
@@ -116,8 +109,8 @@ public:
         for (const Property& property : element.properties)
             least += format_ == Format::ascii ? 1 : (property.count_type ? property.count_type : property.type)->bytes;
         if (element.count > 0 && (least == 0 || element.count > (rest_.size() + 1) / least))
-            throw ModelError(
-                fmt::format("expected {} elements '{}', the file ends before", element.count, element.name));
+            throw ModelError(fmt::format(
+                "expected {} '{}', the file ends before", counted(element.count, "element[s]"), element.name));
     }
     /// Whether so many numbers of a type can still be there.
     bool has(std::size_t count, const Type& type) const {
@@ -194,9 +187,10 @@ public:
         }
         for (std::size_t k = 0; k < polygons_.size(); ++k) add_polygon(polygons_[k], k);
         for (std::size_t k = 0; k < strips_.size(); ++k) add_strip(strips_[k], k);
-        if (in_.rest() > 0) model.left_out.push_back(fmt::format("{} bytes after the last element", in_.rest()));
+        if (header_.images > 0) model.left_out.push_back(counted(header_.images, "image[s] of a comment TextureFile"));
+        if (in_.rest() > 0) model.left_out.push_back(counted(in_.rest(), "byte[s] after the last element"));
         if (points_and_lines_ > 0)
-            model.left_out.push_back(fmt::format("{} faces of one or two corners", points_and_lines_));
+            model.left_out.push_back(counted(points_and_lines_, "face[s] of fewer than three corners"));
     }
 
 private:
@@ -204,7 +198,7 @@ private:
 
     Part& part() { return model.parts[0]; }
     void leave_out(std::size_t count, const std::string& what) {
-        if (count > 0) model.left_out.push_back(fmt::format("{} elements '{}'", count, what));
+        if (count > 0) model.left_out.push_back(fmt::format("{} '{}'", counted(count, "element[s]"), what));
     }
 
     List read(const Property& property, const Element& element, std::size_t row) {
@@ -219,8 +213,9 @@ private:
         constexpr double most_values = 4294967296;
         if (!(count >= 0 && count < most_values) || count != std::floor(count) ||
             !in_.has(static_cast<std::size_t>(count), *property.type))
-            throw ModelError(fmt::format("{} {}: a list '{}' of {} numbers, expected a whole number that the file has",
-                element.name, row, property.name, count));
+            throw ModelError(
+                fmt::format("{} {}: a list '{}' with the length {}, expected a whole number that the file has",
+                    element.name, row, property.name, count));
         List out(static_cast<std::size_t>(count));
         for (double& value : out) value = number(*property.type);
         return out;

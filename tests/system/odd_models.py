@@ -60,7 +60,7 @@ def ply(name, form, elements, types, rows):
     head = f"ply\nformat {form} 1.0\ncomment by hand\n"
     for element, properties in zip(elements, types):
         head += f"element {element} {len(rows[element])}\n" + "".join(f"property {p}\n" for p in properties)
-    body = b""
+    body = bytearray()
     codes = {"char": "b", "uchar": "B", "short": "h", "int": "i", "float": "f", "double": "d"}
     order = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}[form]
     for element, properties in zip(elements, types):
@@ -144,7 +144,7 @@ for name, text in {"indented": cube.replace("f ", "  f "), "path": "# C:\\models
     pathlib.Path(f"{name}.obj").write_text(text)
     reads(f"{name}.obj", 12, (0, 0, 0), (1, 1, 1))
 pathlib.Path("nowhere.obj").write_text("mtllib nowhere.mtl\n" + cube + "l 1 2\n")
-reads("nowhere.obj", 12, words=("left out: the materials of 'nowhere.mtl'", "left out: 1 points and lines"))
+reads("nowhere.obj", 12, words=("left out: the materials of 'nowhere.mtl'", "left out: 1 point or line\n"))
 pathlib.Path("infinite.mtl").write_text("newmtl a\nKd nan 1e39 0\n")
 pathlib.Path("infinite.obj").write_text("mtllib infinite.mtl\nusemtl a\n" + cube)
 reads("infinite.obj", 12)

@@ -4,55 +4,11 @@ import pathlib
 import struct
 import subprocess
 import sys
-import zlib
 
 import sky_image
+from model_files import Glb, command, has, png
 
 crescent = sys.argv[1]
-
-
-def png(width, height, texel):
-    rows = b"".join(b"\0" + b"".join(bytes(texel(x, y)) for x in range(width)) for y in range(height))
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-
-
-class Glb:
-    """Views and accessors of one buffer."""
-
-    def __init__(self):
-        self.bytes, self.views, self.accessors = b"", [], []
-
-    def view(self, data):
-        self.views.append({"buffer": 0, "byteOffset": len(self.bytes), "byteLength": len(data)})
-        self.bytes += data + bytes(-len(data) % 4)
-        return len(self.views) - 1
-
-    def array(self, rows, kind, code, component):
-        flat = [x for row in rows for x in (row if isinstance(row, (list, tuple)) else [row])]
-        self.accessors.append({"bufferView": self.view(struct.pack(f"<{len(flat)}{code}", *flat)), "componentType": component, "count": len(rows), "type": kind})
-        return len(self.accessors) - 1
-
-    def write(self, name, root):
-        root = {"asset": {"version": "2.0"}, "buffers": [{"byteLength": len(self.bytes)}], "bufferViews": self.views, "accessors": self.accessors, **root}
-        text = json.dumps(root).encode()
-        text += b" " * (-len(text) % 4)
-        body = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(self.bytes), 0x004E4942) + self.bytes
-        pathlib.Path(name).write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body)
-
-
-def command(*words, code=0):
-    done = subprocess.run([crescent, *words], capture_output=True, text=True, timeout=300)
-    assert done.returncode == code, f"{' '.join(words)}: exit {done.returncode}, expected {code}:\n{done.stdout}{done.stderr}"
-    return done.stdout + done.stderr
-
-
-def has(text, *words):
-    for word in words:
-        assert word in text, f"no '{word}' in:\n{text}"
 
 
 square = [(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)]
@@ -92,8 +48,8 @@ scene = {
 }
 g.write("scene.glb", scene)
 said = command("import", "scene.glb", "--out", "scene")
-has(said, "3 meshes", "50 triangles", "2 images", "camera: that of the file", "3 copies", "1 meshes that emit", "left out: 1 normal maps",
-    "1 materials' transparency", "1 lights", "COLOR_0", "1 images that are clamped or mirrored at their ends")
+has(said, "3 meshes", "50 triangles", "2 images", "camera: that of the file", "3 copies", "1 mesh that emits", "left out: 1 normal map\n",
+    "1 material with transparency", "1 light\n", "COLOR_0", "1 image that is clamped or mirrored at its ends, and repeats here")
 text = pathlib.Path("scene/experiment.toml").read_text()
 has(text, "[meshes.cube]", "[[meshes.cube.instances]]", "rho_s = [1, 0.8, 0.3]", "alpha = 0.25", "emission = [5, 5, 5]",
     "rho_d_texture = \"textures/", "alpha_texture = \"textures/", "eye = [0, 0.8, 4]", "height = 160")
@@ -149,9 +105,9 @@ assert pathlib.Path("scene/notes.txt").read_text() == "mine" and not meshes[0].e
 said = command("import", "scene.glb", "--out", "baked.mesh")
 has(said, "50 triangles", "box [-1, 0, -1] to [1, 1.4, 1]")
 # Parts of it; names that are near.
-has(command("import", "scene.glb", "--out", "cubes", "--select", "cubes"), "1 meshes", "36 triangles")
+has(command("import", "scene.glb", "--out", "cubes", "--select", "cubes"), "1 mesh,", "36 triangles")
 has(command("import", "scene.glb", "--out", "gold", "--select", "gold"), "36 triangles")
-has(command("import", "scene.glb", "--out", "right", "--select", "right"), "12 triangles", "box [0.4, 0,", "1 copies")
+has(command("import", "scene.glb", "--out", "right", "--select", "right"), "12 triangles", "box [0.4, 0,", "1 copy of meshes, as an instance")
 has(command("import", "scene.glb", "--out", "none", "--select", "gild", code=2), "'gild'", "'gold'")
 assert not pathlib.Path("none").exists()
 
@@ -163,7 +119,7 @@ pathlib.Path("cube.mtl").write_text("newmtl red\nKd 0.8 0.1 0.1\nKs 0.5 0.5 0.5\
 has(command("import", "cube.obj", "--out", "flat.mesh"), "normals: of the triangles")
 has(command("import", "cube.obj", "--out", "edges.mesh", "--smooth", "80"), "normals: of the triangles")
 has(command("import", "cube.obj", "--out", "round.mesh", "--smooth", "100"), "normals: smooth", "8 vertices")
-has(command("import", "cube.obj", "--out", "cube"), "1 meshes", "12 triangles", "the whole model")
+has(command("import", "cube.obj", "--out", "cube"), "1 mesh,", "12 triangles", "the whole model")
 has(pathlib.Path("cube/experiment.toml").read_text(), "[meshes.red]", "rho_d = [0.8, 0.1, 0.1]", "rho_s = [0.2, 0.5, 0.5]", "alpha = 0.1414")
 command("import", "cube.obj", "--out", "cube.text", code=2)
 
@@ -173,17 +129,17 @@ pathlib.Path("names.obj").write_text(
     "mtllib names.mtl\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in cube) +
     "o my car\nusemtl red paint\nf 1 2 4 3\no  two  blanks \nusemtl dull\nf 5 7 8 6\ng a wheel\nf 1 5 6 2\n")
 pathlib.Path("names.mtl").write_text("newmtl red paint\nKd 1.5 0.1 0.1\nKs 0 0 0\nnewmtl dull\nKd 0.3 0.3 0.3\nKs 0.2 3 0.2\n")
-has(command("import", "names.obj", "--out", "names", "--select", "my car"), "1 meshes", "2 triangles")
+has(command("import", "names.obj", "--out", "names", "--select", "my car"), "1 mesh,", "2 triangles")
 has(command("import", "names.obj", "--out", "names", "--select", "my", code=2), "'my car'", "'two  blanks'", "'red paint'")
-has(command("import", "names.obj", "--out", "names", "--select", "red paint"), "1 meshes", "2 triangles")
+has(command("import", "names.obj", "--out", "names", "--select", "red paint"), "1 mesh,", "2 triangles")
 # What an experiment does not take is cut to what it takes, and counted.
 said = command("import", "names.obj", "--out", "names")
-has(said, "cut: 1 materials' colours (Kd) above 1, to 1", "cut: 1 materials' colours of the lobe (Ks) above 1, to 1",
-    "cut: 1 materials' rho_s, to 1 - rho_d")
+has(said, "cut: 1 material with colours (Kd) above 1, to 1", "cut: 1 material with colours of the lobe (Ks) above 1, to 1",
+    "cut: 1 material with rho_s above 1 - rho_d")
 has(pathlib.Path("names/experiment.toml").read_text(), "rho_d = [1, 0.1, 0.1]", "rho_s = [0.2, 0.7, 0.2]")
-has(command("import", "names.obj", "--out", "names.mesh", "--material", "red paint"), "cut: 1 materials' colours (Kd) above 1, to 1",
+has(command("import", "names.obj", "--out", "names.mesh", "--material", "red paint"), "cut: 1 material with colours (Kd) above 1, to 1",
     "rho_d = [1, 0.1, 0.1]")
-assert "cut:" not in command("import", "cube.obj", "--out", "kept", "--select", "red").replace("cut: 1 materials' rho_s", "")
+assert "cut:" not in command("import", "cube.obj", "--out", "kept", "--select", "red").replace("cut: 1 material with rho_s", "")
 
 # A model of any aspect is seen by the camera that is made for it.
 for x, y, z in ((1000, 1, 1), (1, 2000, 0.5), (1000, 0.001, 1000)):
