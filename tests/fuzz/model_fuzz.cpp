@@ -1,5 +1,5 @@
-// Any bytes as a model: its first byte selects PLY, OBJ, STL, glTF or GLB. It is read, or rejected with a ModelError.
-// Triangles name vertices that there are.
+// Any bytes as a model: its first byte selects PLY, OBJ, STL, glTF, GLB or, of an OBJ, its materials. It is read, or
+// rejected with a ModelError. Triangles name vertices that there are.
 #include <unistd.h>
 
 #include <array>
@@ -51,13 +51,16 @@ void check_parts(const Model& model) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static constexpr std::array extensions = {".ply", ".obj", ".stl", ".gltf", ".glb"};
+    static constexpr std::array extensions = {".ply", ".obj", ".stl", ".gltf", ".glb", ".mtl"};
     if (size == 0) return -1;
     const std::string extension = extensions[data[0] % extensions.size()];
     const std::filesystem::path file = folder() / ("model" + extension);
     std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(data) + 1, std::streamsize(size) - 1);
+    const std::filesystem::path with_materials = folder() / "material.obj";
+    std::ofstream(with_materials) << "mtllib model.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";
     try {
-        Model model = read_as(extension, file);
+        Model model = extension == ".mtl" ? read_obj(with_materials, {.whole_scene = true, .images = true})
+                                          : read_as(extension, file);
         check_parts(model);
         turn_and_scale(model, true, 2);
         smooth(model, 30);
