@@ -650,14 +650,13 @@ def sweep(
     arms: Sequence[str] | None = None,
 ) -> Figure:
     """A metric of a sweep, such as "rmse.H" or "efficiency_time.H": of each arm at its largest N, over one axis as curves
-    with bands over seeds, over two as heat maps on one scale.
+    with bands over seeds, over two as heat maps on one scale. Of a sweep of checks, the map of the kinds of its points.
 
     `over`: one or two of the swept keys, the mean is over the others; by default all that have several values.
     """
     from ._sweep.figures import figure_of
-    from ._sweep.summary import Numbers
 
-    return figure_of(Numbers(folder), metric, over, arms)
+    return figure_of(folder, metric, over, arms)
 
 
 def page(

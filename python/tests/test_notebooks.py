@@ -14,8 +14,8 @@ NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 PAPER = Path(os.environ.get("CRESCENT_PAPER", Path(__file__).resolve().parents[2] / "examples" / "paper"))
 
 
-def test_there_are_three():
-    assert {n.stem for n in NOTEBOOKS} == {"check_a_numpy_sampler", "arms_at_equal_n", "paper_figures"}
+def test_there_are_four():
+    assert {n.stem for n in NOTEBOOKS} == {"check_a_numpy_sampler", "arms_at_equal_n", "paper_figures", "sweep"}
 
 
 def run_cell(source, names):
@@ -57,7 +57,11 @@ def run(path, monkeypatch):
     names = {}
     for cell in notebook["cells"]:
         source = "".join(cell["source"])
-        if cell["cell_type"] == "code" and "matplotlib" in source:
+        if cell["cell_type"] != "code":
+            continue
+        if "matplotlib" in source or "import plot" in source:
             pytest.importorskip("matplotlib")
-        if cell["cell_type"] == "code":
-            run_cell(source, names)
+        if "crescent.sweep" in source:
+            for needed in ("dask", "distributed", "pyarrow"):
+                pytest.importorskip(needed)
+        run_cell(source, names)

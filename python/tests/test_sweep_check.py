@@ -115,9 +115,14 @@ def test_arms_are_checked_over_keys_lights_and_attributes(tmp_path):
         e, over={**over, "key.radius": [0.6, 0.9]}, check="mine", pixels=2, out=tmp_path / "out", workers=1
     )
     assert again.computed == 2 and len(again.points) == 6
-    assert "right" in (tmp_path / "out" / "report.html").read_text()
     with pytest.raises(ValueError, match="alpha"):
         crescent.sweep(e, over=over, check="mine", pixels=2, out=tmp_path / "out", alpha=0.01)
+    pytest.importorskip("matplotlib").use("Agg")
+    drawn = crescent.plot.sweep(tmp_path / "out").axes[0]
+    assert drawn.images[0].get_array().shape == (2, 3)  # factors by radii
+    assert {"right", "wrong"} <= {text.get_text() for text in drawn.get_legend().get_texts()}
+    with pytest.raises(ValueError, match="has one map"):
+        crescent.plot.sweep(tmp_path / "out", "rmse")
 
 
 def test_all_arms_are_checked_and_each_is_stored(tmp_path):

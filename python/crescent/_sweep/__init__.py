@@ -127,7 +127,6 @@ def sweep(
             say=_silent,
         )  # fmt: skip
         return run_arm_sweep(e, check, pixels or 0, sampler_versions or {}, checking)
-    from .report import write_report
     from .sweep import run_sweep, settled_options
 
     options = settled_options(
@@ -135,10 +134,7 @@ def sweep(
         verify=0.01 if verify is None else verify, workers=workers, sampler_versions=sampler_versions,
         progress=progress, say=_silent,
     )  # fmt: skip
-    result = run_sweep(e, options, dry_run)
-    if result.points:
-        write_report(options.out)
-    return result
+    return run_sweep(e, options, dry_run)
 
 
 def sweep_check(

@@ -10,7 +10,6 @@ from __future__ import annotations
 import ast
 import contextlib
 import functools
-import html
 import io
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -33,13 +32,6 @@ from .store import Store, locked, read_json, write_whole
 from .sweep import Say, _folder, say_unhashable, usable_points
 
 KINDS = ("right", "heavy-tailed", "inconclusive", "wrong", "error")
-_COLOURS = {
-    "right": "#009e73",
-    "heavy-tailed": "#e69f00",
-    "inconclusive": "#bdbdbd",
-    "wrong": "#d55e00",
-    "error": "#000000",
-}
 
 
 @dataclass
@@ -302,11 +294,10 @@ def _check_points(
             bar.show(last=True)
     write_state()
     _write_dataset(folder)
-    write_whole(folder / "report.html", page_of_checks(folder))
-    return CheckSweep(folder, _found(folder), computed, failed)
+    return CheckSweep(folder, found_checks(folder), computed, failed)
 
 
-def _found(out: str | PathLike[str]) -> list[dict[str, Any]]:
+def found_checks(out: str | PathLike[str]) -> list[dict[str, Any]]:
     """The points that were checked, with their verdicts."""
     store = Store(Path(out))
     state = read_json(Path(out) / "sweep.json")
@@ -322,7 +313,7 @@ def _write_dataset(out: Path) -> None:
     import pyarrow as pa  # type: ignore[import-untyped,import-not-found,unused-ignore]
     import pyarrow.parquet as parquet  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
-    points = _found(out)
+    points = found_checks(out)
     rows = [
         {
             **p["values"], "kind": p["kind"], **v, "alpha": p["alpha"], "sampler_id": p["sampler"],
@@ -342,7 +333,7 @@ def _sorted(values: list[Any]) -> list[Any]:
     return sorted(values, key=str if any(isinstance(v, str) for v in values) else None)
 
 
-def _map(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) -> tuple[list[str], list[Any], list[Any], Any]:
+def map_of_kinds(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) -> tuple[list[str], list[Any], list[Any], Any]:
     """The first two axes, and the worst kind at each pair of values; a missing one is -1."""
     paths = sorted(axes, key=lambda path: -len(axes[path]))[:2]
     across = _sorted(axes[paths[0]])
@@ -357,10 +348,10 @@ def _map(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) -> tuple[l
 def summary_of_checks(out: str | PathLike[str]) -> str:
     """The map as text, the counts, and the first message of each kind that is not right."""
     state = read_json(Path(out) / "sweep.json")
-    points = _found(out)
+    points = found_checks(out)
     lines = [f"{state['title']}: {len(points)} points, alpha {state['alpha']:g} over all"]
     if points:
-        paths, across, up, kinds = _map(points, state["axes"])
+        paths, across, up, kinds = map_of_kinds(points, state["axes"])
         letters = {-1: " ", **{k: name[0].upper() if name != "right" else "." for k, name in enumerate(KINDS)}}
         width = max(len(short(v)) for v in across)
         left = max((len(short(v)) for v in up), default=0)
@@ -389,57 +380,3 @@ def _first(point: Mapping[str, Any], kind: str) -> Mapping[str, Any] | None:
         if kind != "right" and v["state"] == state and (kind != "heavy-tailed" or v["verdict"] == "tail"):
             return dict(v)
     return None
-
-
-def page_of_checks(out: str | PathLike[str]) -> str:
-    """report.html of a check sweep: the map, and a table of the points that are not right."""
-    from .report import _image, opening
-
-    state = read_json(Path(out) / "sweep.json")
-    points = _found(out)
-    note = (
-        f"{len(points)} points; the probability that any correct point is called wrong is at most {state['alpha']:g}. "
-        f"crescent {state['numerics']}"
-    )
-    parts = opening(f"Check over a grid: {state['title']}", note, state)
-    if points:
-        try:
-            parts.append(_image(_figure(points, state["axes"]), "map of kinds"))
-        except ImportError:
-            parts.append('<p class="note">No figures: pip install matplotlib</p>\n')
-    rows = []
-    for point in points:
-        verdict = _first(point, point["kind"])
-        if verdict is not None:
-            cells = (label(point["values"]), point["kind"], verdict["case"], verdict["verdict"], verdict["message"])
-            rows.append("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>")
-    if rows:
-        parts.append("<h2>Points that are not right</h2><table>" + "\n".join(rows) + "</table>\n")
-    parts.append(f"<h2>Summary</h2><pre>{html.escape(summary_of_checks(out))}</pre>\n")
-    return "".join(parts)
-
-
-def _figure(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) -> Any:
-    """The map of kinds."""
-    from matplotlib.colors import ListedColormap
-    from matplotlib.figure import Figure
-    from matplotlib.patches import Patch
-
-    from .. import plot
-    from .figures import heat_map
-
-    paths, across, up, kinds = _map(points, axes)
-    with plot.style():
-        figure = Figure(figsize=(1.8 + 0.5 * len(across), 1.3 + 0.35 * len(up)), layout="constrained")
-        ax = figure.subplots()
-        shown = np.ma.masked_less(kinds, 0)
-        colours = ListedColormap([_COLOURS[kind] for kind in KINDS])
-        heat_map(
-            ax, shown, (paths[0], across), (paths[1] if len(paths) > 1 else "", up), cmap=colours, vmin=-0.5, vmax=4.5
-        )
-        there = sorted({int(k) for k in kinds.ravel() if k >= 0})
-        ax.legend(
-            handles=[Patch(color=_COLOURS[KINDS[k]], label=KINDS[k]) for k in there], frameon=False,
-            loc="upper left", bbox_to_anchor=(1.01, 1),
-        )  # fmt: skip
-    return figure

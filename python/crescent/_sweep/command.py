@@ -83,7 +83,7 @@ def _parser() -> _Parser:
     add("--verify", metavar="SHARE", help="share of tasks that another worker repeats; default 1%%")
     add("--sampler-version", action="append", default=[], metavar="ARM=VERSION",
         help="identifies a sampler in place of the hash of its source")  # fmt: skip
-    add("--metric", metavar="NAME", help="of the report and the summary, such as rmse.H")
+    add("--metric", metavar="NAME", help="of the summary, such as rmse.H")
     add("--check", nargs="?", const=True, metavar="SAMPLER",
         help="check an arm of FILE, or all; without FILE a sampler FILE.py:NAME or a built-in one")  # fmt: skip
     add("--pixels", type=_whole(4096), metavar="K",
@@ -189,7 +189,6 @@ def _check(given: argparse.Namespace) -> int:
     if given.dry_run:
         return 0
     print(result.summary())
-    print(f"{out}/report.html: the map")
     _list_failures(result.failed)
     kinds = result.kinds
     if result.failed or kinds["error"]:
@@ -200,7 +199,6 @@ def _check(given: argparse.Namespace) -> int:
 
 
 def _run(given: argparse.Namespace) -> int:
-    from .report import write_report
     from .sweep import experiment_of, run_sweep, settled_options, with_settings
 
     if not given.file:
@@ -217,10 +215,10 @@ def _run(given: argparse.Namespace) -> int:
     if given.dry_run:
         return 3 if result.failed else 0
     if given.engine != "commands":
-        page = write_report(out, given.metric or "")
-        print(result.summary(given.metric or "") if page else "no results")
-        if page:
-            print(f"{out}/report.html, {out}/data (Parquet), {out}/points")
+        there = any((result.out / "data").glob("*.parquet"))
+        print(result.summary(given.metric or "") if there else "no results")
+        if there:
+            print(f"{out}/data (Parquet), {out}/points")
     _list_failures(result.failed)
     return 3 if result.failed else 0
 

@@ -1,15 +1,16 @@
-"""Figures of a sweep: curves over one axis and heat maps over two, in the style of crescent.plot."""
+"""Figures of a sweep: curves over one axis, heat maps over two, and the map of checks, in the style of crescent.plot."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import _crescent
 from .grid import UsageError, hint, short
-from .summary import Numbers, geometric
+from .summary import Numbers, geometric, state_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,11 +18,15 @@ if TYPE_CHECKING:
 Axis = tuple[str, list[Any]]  #: a swept key and its values
 
 
-def axes_over(numbers: Numbers, over: Sequence[str] | None = None) -> list[Axis]:
+_COLOURS = {
+    "right": "#009e73", "heavy-tailed": "#e69f00", "inconclusive": "#bdbdbd", "wrong": "#d55e00", "error": "#000000",
+}  # fmt: skip
+
+
+def axes_over(numbers: Numbers, over: Sequence[str] | None) -> list[Axis]:
     """The swept keys with several values; or these, one or two."""
-    several = [axis for axis in numbers.axes.items() if len(axis[1]) > 1]
     if over is None:
-        return several
+        return [axis for axis in numbers.axes.items() if len(axis[1]) > 1]
     if isinstance(over, str):
         raise UsageError(f"over is {over!r}: expected a list of one or two swept keys, [{over!r}]")
     for path in over:
@@ -31,16 +36,23 @@ def axes_over(numbers: Numbers, over: Sequence[str] | None = None) -> list[Axis]
     return [(path, numbers.axes[path]) for path in over]
 
 
-def figure_of(numbers: Numbers, metric: str, over: Sequence[str] | None, arms: Sequence[str] | None) -> Figure:
-    """Curves over one axis, or heat maps over two."""
+def figure_of(
+    folder: str | PathLike[str], metric: str, over: Sequence[str] | None, arms: Sequence[str] | None
+) -> Figure:
+    """Curves over one axis, or heat maps over two; of a sweep of checks the map of kinds."""
+    if state_of(folder).get("kind") == "check":
+        if metric or over is not None or arms is not None:
+            raise UsageError(f"{folder}: a sweep of checks has one map: expected no metric, over and arms")
+        return map_of_checks(folder)
+    numbers = Numbers(folder)
     if isinstance(arms, str):
         raise UsageError(f"arms is {arms!r}: expected a list of names, [{arms!r}]")
     name, region = numbers.chosen(metric)
-    known = [arm for arm in numbers.arms() if numbers.counts(arm, name, region)]
+    measured_arms = [arm for arm in numbers.arms() if numbers.counts(arm, name, region)]
     for arm in arms or ():
-        if arm not in known:
-            near = _crescent.nearest(str(arm), known)
-            raise KeyError(f"no arm {arm!r}: there are {', '.join(known)}" + hint(near))
+        if arm not in measured_arms:
+            near = _crescent.nearest(str(arm), measured_arms)
+            raise KeyError(f"no arm {arm!r}: there are {', '.join(measured_arms)}" + hint(near))
     axes = axes_over(numbers, over)
     if not axes:
         raise UsageError("the sweep has one point: expected several values of a key")
@@ -49,25 +61,21 @@ def figure_of(numbers: Numbers, metric: str, over: Sequence[str] | None, arms: S
             f"the sweep has {len(axes)} axes: expected over= one or two of {', '.join(p for p, _ in axes)}"
         )
     if len(axes) == 1:
-        return curves(numbers, name, region, arms or known, axes[0])
+        return curves(numbers, name, region, arms or measured_arms, axes[0])
     across, up = axes if over is not None else sorted(axes, key=lambda axis: -len(axis[1]))
-    figure = heat_maps(numbers, name, region, arms or known, across, up)
-    if figure is None:
-        raise UsageError(f"the sweep has no {metric} yet")
-    return figure
+    return heat_maps(numbers, name, region, arms or measured_arms, across, up)
 
 
-def grid_of(points: list[dict[str, Any]], across: Axis, up: Axis, of: Any) -> Any:
-    """The mean of `of` over the points of each pair of values."""
+def grid_of(numbers: Numbers, across: Axis, up: Axis, arm: str, n: int, metric: str, region: str) -> Any:
+    """The mean of a metric over the points of each pair of values."""
+    means: dict[tuple[int, int], list[float]] = {}
+    for point in numbers.points():
+        if values := numbers.values.get((point["scene"], arm, n, metric, region)):
+            cell = (up[1].index(point["values"][up[0]]), across[1].index(point["values"][across[0]]))
+            means.setdefault(cell, []).append(geometric(values))
     out = np.full((len(up[1]), len(across[1])), np.nan)
-    sums: dict[tuple[int, int], list[float]] = {}
-    for point in points:
-        value = of(point)
-        if value is not None:
-            at = (up[1].index(point["values"][up[0]]), across[1].index(point["values"][across[0]]))
-            sums.setdefault(at, []).append(value)
-    for at, values in sums.items():
-        out[at] = geometric(values)
+    for cell, of_points in means.items():
+        out[cell] = geometric(of_points)
     return out
 
 
@@ -80,7 +88,7 @@ def heat_map(ax: Any, values: Any, across: Axis, up: Axis, **how: Any) -> Any:
     return drawn
 
 
-def heat_maps(numbers: Numbers, metric: str, region: str, arms: Sequence[str], across: Axis, up: Axis) -> Figure | None:
+def heat_maps(numbers: Numbers, metric: str, region: str, arms: Sequence[str], across: Axis, up: Axis) -> Figure:
     """The metric of each arm over two axes, on one logarithmic scale; the mean over further axes."""
     from matplotlib.figure import Figure
     from matplotlib.colors import LogNorm, Normalize
@@ -90,19 +98,12 @@ def heat_maps(numbers: Numbers, metric: str, region: str, arms: Sequence[str], a
     maps = []
     for arm in arms:
         n = max(numbers.counts(arm, metric, region))
-
-        def mean(point: dict[str, Any], arm: str = arm, n: int = n) -> float | None:
-            values = numbers.values.get((point["scene"], arm, n, metric, region))
-            return geometric(values) if values else None
-
-        maps.append((arm, n, grid_of(numbers.points(), across, up, mean)))
-    every = np.concatenate([m.ravel() for *_, m in maps])
-    every = every[np.isfinite(every)]
-    if every.size == 0:
-        return None
-    norm: Any = Normalize(every.min(), every.max())
-    if every.min() > 0:
-        norm = LogNorm(every.min(), every.max() if every.max() > every.min() else every.min() * 1.01)
+        maps.append((arm, n, grid_of(numbers, across, up, arm, n, metric, region)))
+    finite = np.concatenate([m[np.isfinite(m)] for *_, m in maps])
+    if finite.size == 0:
+        raise UsageError(f"the sweep has no {metric} yet")
+    low, high = finite.min(), finite.max()
+    norm: Any = LogNorm(low, high if high > low else low * 1.01) if low > 0 else Normalize(low, high)
     with plot.style():
         columns = min(len(maps), 3)
         rows = -(-len(maps) // columns)
@@ -117,16 +118,8 @@ def heat_maps(numbers: Numbers, metric: str, region: str, arms: Sequence[str], a
             if values.size <= 100:
                 for (y, x), value in np.ndenumerate(values):
                     if np.isfinite(value):
-                        dark = norm(value) < 0.55
-                        ax.text(
-                            x,
-                            y,
-                            f"{value:.3g}",
-                            ha="center",
-                            va="center",
-                            fontsize=6,
-                            color="white" if dark else "black",
-                        )
+                        colour = "white" if norm(value) < 0.55 else "black"
+                        ax.text(x, y, f"{value:.3g}", ha="center", va="center", fontsize=6, color=colour)
         figure.colorbar(drawn, ax=list(grid_axes.ravel()), label=plot._label(metric, region), shrink=0.9)
     return figure
 
@@ -146,9 +139,9 @@ def curves(numbers: Numbers, metric: str, region: str, arms: Sequence[str], axis
             n = max(numbers.counts(arm, metric, region), default=0)
             found: dict[Any, list[float]] = {}
             for p in numbers.points():
-                at = p["values"][path] if numeric else values.index(p["values"][path])
-                found.setdefault(at, []).extend(numbers.values.get((p["scene"], arm, n, metric, region), []))
-            found = {at: over for at, over in found.items() if over}
+                x = p["values"][path] if numeric else values.index(p["values"][path])
+                found.setdefault(x, []).extend(numbers.values.get((p["scene"], arm, n, metric, region), []))
+            found = {x: over_seeds for x, over_seeds in found.items() if over_seeds}
             band(ax, list(found), list(found.values()), k, f"{arm}, N = {n}")
         if not numeric:
             ax.set_xticks(range(len(values)), [short(v) for v in values])
@@ -164,16 +157,40 @@ def curves(numbers: Numbers, metric: str, region: str, arms: Sequence[str], axis
     return figure
 
 
-def band(ax: Any, x: list[Any], over: list[list[float]], k: int, name: str) -> None:
+def band(ax: Any, x: list[Any], over_seeds: list[list[float]], k: int, name: str) -> None:
     """Medians over seeds with the band of crescent.plot."""
     from .. import plot
 
     if not x:
         return
-    low, high = (5.0, 95.0) if min(map(len, over)) >= 20 else (0.0, 100.0)
+    low, high = (5.0, 95.0) if min(map(len, over_seeds)) >= 20 else (0.0, 100.0)
     colour = plot._COLOURS[k % len(plot._COLOURS)]
     marker, dashes = plot._MARKERS[k % len(plot._MARKERS)], plot._DASHES[k % len(plot._DASHES)]
-    ax.plot(x, [np.median(v) for v in over], marker, ls=dashes, ms=3, color=colour, label=name)
-    ax.fill_between(
-        x, [np.percentile(v, low) for v in over], [np.percentile(v, high) for v in over], color=colour, alpha=0.2, lw=0
-    )
+    ax.plot(x, [np.median(v) for v in over_seeds], marker, ls=dashes, ms=3, color=colour, label=name)
+    bounds = [[np.percentile(v, share) for v in over_seeds] for share in (low, high)]
+    ax.fill_between(x, *bounds, color=colour, alpha=0.2, lw=0)
+
+
+def map_of_checks(folder: str | PathLike[str]) -> Figure:
+    """The worst kind at each pair of values of the first two axes."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+
+    from .. import plot
+    from .check_sweep import KINDS, found_checks, map_of_kinds
+
+    points = found_checks(folder)
+    if not points:
+        raise UsageError(f"{folder}: no point was checked yet")
+    paths, across, up, kinds = map_of_kinds(points, state_of(folder)["axes"])
+    with plot.style():
+        figure = Figure(figsize=(1.8 + 0.5 * len(across), 1.3 + 0.35 * len(up)), layout="constrained")
+        ax = figure.subplots()
+        axes = (paths[0], across), (paths[1] if len(paths) > 1 else "", up)
+        colours = ListedColormap([_COLOURS[kind] for kind in KINDS])
+        heat_map(ax, np.ma.masked_less(kinds, 0), *axes, cmap=colours, vmin=-0.5, vmax=len(KINDS) - 0.5)
+        found = [KINDS[k] for k in sorted({int(k) for k in kinds.ravel() if k >= 0})]
+        patches = [Patch(color=_COLOURS[kind], label=kind) for kind in found]
+        ax.legend(handles=patches, frameon=False, loc="upper left", bbox_to_anchor=(1.01, 1))
+    return figure

@@ -31,8 +31,6 @@ class Numbers:
 
     def __init__(self, out: str | PathLike[str]) -> None:
         self.state = state_of(out)
-        if self.state.get("kind") == "check":
-            raise UsageError(f"{out}: a sweep of checks, which has no metrics: its map is in report.html")
         table = read(out)
         self.axes: dict[str, list[Any]] = {
             path: sorted(values, key=lambda v: (isinstance(v, str), v)) if all(
@@ -116,6 +114,10 @@ def summary(out: str | PathLike[str], metric: str = "") -> str:
 
         return summary_of_checks(out)
     numbers = Numbers(out)
+    notes = [f"{numbers.suspect} suspect rows are left out"] if numbers.suspect else []
+    notes += [f"failed: {place}: {error}" for place, error in state.get("failed", {}).items()]
+    if not numbers.metrics:
+        return "\n".join(["no results", *notes])
     name, region = numbers.chosen(metric)
     arms = numbers.arms()
     head = [*numbers.axes, *(f"{arm} N={max(numbers.counts(arm, name, region), default=0)}" for arm in arms), "seeds"]
@@ -139,9 +141,6 @@ def summary(out: str | PathLike[str], metric: str = "") -> str:
     text = "\n".join("  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows)
     title = f"{name}{' of region ' + region if region else ''}: geometric mean over seeds [95 % interval]"
     title += "; efficiency at equal time, 1/(variance times seconds on one thread)" if timed else ""
-    notes = [f"{numbers.suspect} suspect rows are left out"] if numbers.suspect else []
-    failed = state.get("failed", {})
-    notes += [f"failed: {place}: {error}" for place, error in failed.items()]
     return "\n".join([title, text, *notes])
 
 
