@@ -161,7 +161,7 @@ def test_a_sweep_has_the_bytes_of_runs_and_computes_only_what_is_new(tiny, tmp_p
 
     more = crescent.sweep(tiny, over=over, seeds=5, out=out, workers=2)  # seeds 4 and 5 alone
     new = [path for path in results(out) if path not in before]
-    assert {path.name for path in new} == {"4-5.json"} and more.computed == 4
+    assert {path.name for path in new} == {"4-5.json"} and more.computed == 8
     assert all(path.stat().st_mtime_ns == when for path, when in before.items())
 
     e = crescent.load(tiny, {"ball.s": 8, "key.radius": 0.3, "seeds": 5})
@@ -223,7 +223,7 @@ def test_a_dry_run_states_the_cost_and_writes_nothing(tiny, tmp_path):
     ended = command(tiny, "--over", "ball.s=8,32", "--seeds", "64", "--out", out, "--dry-run")
     assert ended.returncode == 0 and not out.exists()
     assert re.search(r"2 points, 64 seeds, 2 samplers: \d+ tasks, [\d.]+ \w*samples", ended.stderr), ended.stderr
-    assert "estimated from a measurement" in ended.stderr and "byte on disk" in ended.stderr
+    assert re.search(r"[\d.]+ \w*byte on disk", ended.stderr), ended.stderr
 
 
 def test_zip_pairs_values_and_a_wrong_call_ends_with_2(tiny, tmp_path):
@@ -250,7 +250,7 @@ def test_commands_can_run_twice_and_in_any_order(tiny, tmp_path):
     out = tmp_path / "out"
     words = [tiny, "--over", "ball.s=8", "--seeds", "2", "--out", out]
     printed = command(*words, "--engine", "commands").stdout.splitlines()
-    assert len(printed) == 3
+    assert len(printed) == 4  # references, two arms, studies
     for line in [*reversed(printed), printed[0]]:
         subprocess.run(["sh", "-c", line], check=True)
     ended = command(*words)
@@ -480,10 +480,10 @@ compute = runner.Runner.compute
 
 def flipped(self, task, reference, unwanted):
     result = compute(self, task, reference, unwanted)
-    for part in result.get("parts", {}).values():
-        at = part["json"].index('"rmse": ') + len('"rmse": ') + 3
-        digit = part["json"][at]
-        part["json"] = part["json"][:at] + chr(ord(digit) ^ 1) + part["json"][at + 1:]
+    if task["kind"] == "part":
+        text = result["json"]
+        place = text.index('"rmse": ') + len('"rmse": ') + 3
+        result["json"] = text[:place] + chr(ord(text[place]) ^ 1) + text[place + 1:]
     return result
 
 def dask_setup(worker):

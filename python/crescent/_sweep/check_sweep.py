@@ -23,12 +23,13 @@ import numpy as np
 from .. import _crescent, arms as built_in
 from .._sampler import whole
 from ..experiments import Experiment
-from .engines import DaskEngine, Job, engine_of
+from .engines import DaskEngine, engine_of
 from .grid import UsageError, axes_of, grid, hint, label, short
 from .identity import NUMERICS, _of_python, arms_of, digest, scene_id
 from .plan import points_of
 from .progress import Progress
 from .store import Store, locked, read_json, write_whole
+from .tasks import Job
 from .sweep import Say, _folder, say_unhashable, usable_points
 
 KINDS = ("right", "heavy-tailed", "inconclusive", "wrong", "error")
@@ -279,17 +280,17 @@ def _check_points(
             if address := dask.dashboard:
                 options.say(f"dashboard: {address}")
             bar = Progress(len(new), 0, options.progress)
-            jobs = (Job(name, {**check.task, "alpha": share}, check.values) for name, check in new.items())
+            jobs = (Job(name, {**check.task, "alpha": share}, label(check.values), check.values) for name, check in new.items())
             for job, result in dask.run(jobs, lambda name: None):
                 error = result.get("error")
                 if error is None:
                     try:
-                        store.add_check(job.id, {**result, "values": job.about, "alpha": share, "version": NUMERICS})
+                        store.add_check(job.id, {**result, "values": job.row, "alpha": share, "version": NUMERICS})
                         computed += 1
                     except OSError as problem:
                         error = f"cannot write the result: {problem.strerror or problem}"
                 if error is not None:
-                    failed[label(job.about)] = error
+                    failed[job.label] = error
                 bar.add(0, error is not None)
             bar.show(last=True)
     write_state()

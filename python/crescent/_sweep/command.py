@@ -79,7 +79,7 @@ def _parser() -> _Parser:
     add("--films", action="store_true", help="keep the films of the first seed of each point")
     add("--resume", action="store_true", default=True, help="compute only what is missing (default)")
     add("--no-resume", dest="resume", action="store_false", help="compute every point of this call again")
-    add("--dry-run", action="store_true", help="print tasks, samples, time and disk; compute nothing")
+    add("--dry-run", action="store_true", help="print tasks, samples and disk; compute nothing")
     add("--verify", metavar="SHARE", help="share of tasks that another worker repeats; default 1%%")
     add("--sampler-version", action="append", default=[], metavar="ARM=VERSION",
         help="identifies a sampler in place of the hash of its source")  # fmt: skip

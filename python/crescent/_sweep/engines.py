@@ -20,14 +20,13 @@ import tomllib
 import urllib.request
 import uuid
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from .. import _crescent
 from .grid import UsageError, hint
 from .runner import Runner, TaskStopped
-from .tasks import Result, Task, host
+from .tasks import Job, Result, Task, host
 
 #: Set by Ctrl-C: a KeyboardInterrupt that is raised while Python finalizes an object is lost.
 interrupted = threading.Event()
@@ -70,19 +69,6 @@ def on_worker(task: Task, reference: Any = None) -> Result:
     except TaskStopped:
         result = {"error": "stopped"}
     return {**result, "worker": str(worker.address), "host": host(), "name": str(worker.name)}
-
-
-@dataclass
-class Job:
-    """A task on its way."""
-
-    id: str
-    task: Task
-    about: Any = None  #: of the caller
-    needs: str = ""  #: the identity of its references
-    avoid: str = ""  #: the address of a worker that must not compute it
-    weight: float = 0.0  #: samples
-    tries: int = field(default=0, compare=False)
 
 
 def usable_cores() -> int:
@@ -433,7 +419,7 @@ class DaskEngine:
 
 
 class InProcess:
-    """One child process without Dask: for the calibration, and for tasks of `commands`."""
+    """One child process without Dask, for tasks of `commands`."""
 
     def __enter__(self) -> InProcess:
         self._runner = Runner()

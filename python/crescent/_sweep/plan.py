@@ -1,13 +1,11 @@
 """From a grid to tasks: which results are missing, and how many seeds a task has.
 
-A task has as many seeds as last about `TASK_S` seconds by a measurement of the samples per second of each sampler,
-which runs once and is stored.
+A task is one arm at one point with as many seeds as have about a given number of samples.
 """
 
 from __future__ import annotations
 
 import functools
-import json
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,19 +13,18 @@ from pathlib import Path
 from typing import Any
 
 from .._paths import found as found_at
-from .._paths import lines, overrides
-from ..experiments import Experiment, parse
+from .._paths import overrides
+from ..experiments import Experiment
 from .attributes import of_samplers, with_attributes
-from .engines import InProcess, Job
 from .grid import label
 from .identity import NOT_OF_THE_SCENE, NUMERICS, Arm, arms_of, digest, reference_id, scene_id
-from .store import Store, read_json, write_whole
-from .tasks import error_text
+from .store import Store, read_json
+from .tasks import Job, error_text
 
-TASK_S = 12.0  #: length of a task; results of 5 to 30 s keep both the overhead and the loss of a failure small
-_LONGEST_S = 30.0
-_SHORTEST_S = 5.0
-_CALIBRATION_PIXELS = 160 * 90
+#: Of built-in samplers, which draw 20 to 300 million samples a second on a core, and of others, which draw 3 to 6 million in
+#: NumPy: a task lasts 2 to 25 s, so that both its overhead (2 ms) and what is lost with a worker are small.
+SAMPLES_PER_TASK = 5e8
+SAMPLES_PER_TASK_OF_OTHERS = 4e7
 
 
 @dataclass
@@ -45,6 +42,17 @@ class Point:
     def tree(self) -> dict[str, Any]:
         """Every value of the experiment."""
         return self.experiment._tree()
+
+    @property
+    def pixels(self) -> int:
+        """The pixels of a film."""
+        return int(self.tree["image"]["width"]) * int(self.tree["image"]["height"])
+
+    def samples(self, name: str) -> float:
+        """Samples of one seed of an arm, if every pixel sees geometry."""
+        control = self.tree.get("exponent")
+        of_control = control["n"] * len(control["s"]) if control and control["arm"] == name else 0
+        return float(self.pixels * (self.arms[name].most + of_control))
 
     @functools.cached_property
     def key(self) -> str:
@@ -68,15 +76,14 @@ class Point:
         """A task of this point, with the arms of the combinations among these."""
         named = {
             name: {
-                "kind": arm.kind, "code": arm.code, "sampler": arm.sampler, "most": arm.most,
-                "of": arm.of, "run": name in arms,
+                "kind": arm.kind, "code": arm.code, "sampler": arm.sampler, "of": arm.of,
             }  # fmt: skip
             for name, arm in self.arms.items()
             if name in arms or any(name in self.arms[other].of for other in arms)
         }
         return {
-            "kind": kind, "numerics": NUMERICS, "text": more.pop("text", self.experiment.text),
-            "file": self.experiment._core.file, "changes": more.pop("changes", self.changes), "arms": named,
+            "kind": kind, "numerics": NUMERICS, "text": self.experiment.text,
+            "file": self.experiment._core.file, "changes": self.changes, "arms": named,
             "code_id": digest(codes) if any(codes := [arm["code"] for arm in named.values()]) else "",
             **more,
         }  # fmt: skip
@@ -90,6 +97,11 @@ def families_of(tree: Mapping[str, Any], path: str) -> str:
         return path.partition(".")[0]
 
 
+def studies_id(point: Point) -> str:
+    """The identity of the studies of a point."""
+    return digest(NUMERICS, point.experiment.hash, [arm.id for arm in point.arms.values()])
+
+
 def points_of(
     base: Experiment, values: Sequence[Mapping[str, Any]], seeds: int, versions: Mapping[str, str]
 ) -> tuple[list[Point], dict[str, str]]:
@@ -97,224 +109,99 @@ def points_of(
     call = uuid.uuid4().hex
     good: list[Point] = []
     bad: dict[str, str] = {}
-    for at in values:
+    for point_values in values:
         try:
-            attributes = of_samplers(at)
-            keys = {path: value for path, value in at.items() if path not in attributes} | {"seeds": seeds}
+            attributes = of_samplers(point_values)
+            keys = {path: value for path, value in point_values.items() if path not in attributes} | {"seeds": seeds}
             e = with_attributes(base.with_(keys), attributes)
             with_arms = e._with_arms()
-            changes = overrides(keys)
-            point = Point(
-                dict(at), with_arms, changes, scene_id(with_arms), reference_id(with_arms), arms_of(e, versions, call)
-            )
+            arms = arms_of(e, versions, call)
+            identities = scene_id(with_arms), reference_id(with_arms)
+            good.append(Point(dict(point_values), with_arms, overrides(keys), *identities, arms))
         except (ValueError, TypeError, OSError) as error:
-            bad[label(at)] = error_text(error) if not isinstance(error, OSError) else str(error)
-            continue
-        good.append(point)
+            bad[label(point_values)] = error_text(error) if not isinstance(error, OSError) else str(error)
     return good, bad
 
 
 def missing(blocks: Sequence[tuple[int, int]], seeds: int) -> list[tuple[int, int]]:
     """The ranges of 1 to `seeds` that are in no block."""
-    out, at = [], 1
-    for first, last in sorted(blocks):
-        if first > at:
-            out.append((at, min(first - 1, seeds)))
-        at = max(at, last + 1)
-    if at <= seeds:
-        out.append((at, seeds))
-    return [r for r in out if r[0] <= r[1]]
-
-
-# ---- calibration
-
-
-def _small(base: Experiment) -> tuple[Experiment, int]:
-    """The scene in a small picture, with the arms and nothing else; and its pixels."""
-    import tomllib
-
-    whole = tomllib.loads(base._with_arms()._core.text)
-    kept = {
-        k: v
-        for k, v in whole.items()
-        if k not in ("plates", "assertions", "furnaces", "exponent", "regions", "published")
-    }
-    kept["note_evidence"] = False
-    width, height = whole["image"]["width"], whole["image"]["height"]
-    scale = min(1.0, (_CALIBRATION_PIXELS / (width * height)) ** 0.5)
-    kept["image"] = {**whole["image"], "width": max(int(width * scale), 16), "height": max(int(height * scale), 16)}
-    kept["seeds"] = 80
-    small = parse("\n".join(lines(kept)), base._core.file)
-    return small, kept["image"]["width"] * kept["image"]["height"]
-
-
-def calibrate(point: Point, store: Store) -> dict[str, Any]:
-    """Samples per second of each arm and seconds per pixel of the reference, on one core of this machine."""
-    path = store.root / "calibration.json"
-    known = read_json(path) or {}
-    wanted = {name: arm for name, arm in point.arms.items() if arm.id not in known.get("arms", {})}
-    if wanted or "reference_s" not in known:
-        small, pixels = _small(point.experiment)
-        with InProcess() as engine:
-            task = point.task("rates", list(wanted), text=small.text, changes=[], pixels=pixels)
-            found = engine.compute(task)
-        if "error" in found:
-            found = {"arms": {}, "reference_s": 1e-5, "seen": 1.0}
-        rates = {point.arms[name].id: rate for name, rate in found["arms"].items()}
-        known = {
-            "arms": {**known.get("arms", {}), **rates},
-            "reference_s": found["reference_s"],
-            "seen": found["seen"] if found["arms"] else known.get("seen", 1.0),
-            "host": found.get("host", ""),
-        }
-        write_whole(path, json.dumps(known))
-    return dict(known)
-
-
-class Costs:
-    """Seconds and samples of the tasks of a point, from the calibration."""
-
-    def __init__(self, calibration: Mapping[str, Any]) -> None:
-        self._rates, self._known = calibration["arms"], calibration
-
-    def _pixels(self, point: Point) -> int:
-        return int(point.tree["image"]["width"]) * int(point.tree["image"]["height"])
-
-    def samples(self, point: Point, name: str) -> float:
-        """Samples of one seed of an arm; misses are not counted."""
-        arm = point.arms[name]
-        counts: list[int] = [arm.most]
-        control = point.tree.get("exponent")
-        if control and control["arm"] == name:
-            counts += [control["n"]] * len(control["s"])
-        pixels = float(self._known["seen"]) * self._pixels(point)
-        return pixels * sum(counts)
-
-    def seconds(self, point: Point, name: str) -> float:
-        """Seconds of one seed of an arm."""
-        slow = min(self._rates.values(), default=5e6)
-        return self.samples(point, name) / float(self._rates.get(point.arms[name].id, slow))
-
-    def reference(self, point: Point) -> float:
-        """Seconds of the references."""
-        control = point.tree.get("exponent")
-        count = len(control["s"]) if control else 1
-        return float(self._known["reference_s"]) * self._pixels(point) * count
-
-
-# ---- the tasks
+    out: list[tuple[int, int]] = []
+    seed = 1
+    for first, last in [*sorted(blocks), (seeds + 1, seeds + 1)]:
+        if seed < min(first, seeds + 1):
+            out.append((seed, min(first - 1, seeds)))
+        seed = max(seed, last + 1)
+    return out
 
 
 class Plan:
     """The tasks that are missing, in the order in which they are computed."""
 
-    def __init__(self, points: Sequence[Point], store: Store, seeds: int, costs: Costs, films: bool) -> None:
-        self._points, self._store, self._seeds, self._costs, self._films = points, store, seeds, costs, films
-        self.slots = 1
-        self.references = len({p.reference for p in points if self._parts(p) and not self._has_reference(p)})
-
-    def _has_reference(self, point: Point) -> bool:
-        return self._store.has_reference(point.reference)
-
-    def studies_name(self, point: Point) -> str:
-        """The identity of the studies of a point."""
-        return digest(NUMERICS, point.experiment.hash, [arm.id for arm in point.arms.values()])
-
-    def _wanted(self, point: Point) -> dict[tuple[tuple[tuple[int, int], ...], str], list[str]]:
-        """Arms by the ranges of seeds that they lack; an arm that is not built in is by itself."""
-        out: dict[tuple[tuple[tuple[int, int], ...], str], list[str]] = {}
-        for name, arm in point.arms.items():
-            ranges = tuple(missing(self._store.blocks(point.scene, arm.id), self._seeds))
-            if ranges:
-                out.setdefault((ranges, "" if arm.built_in else name), []).append(name)
-        return out
-
-    def _groups(self, point: Point, names: list[str]) -> Iterator[list[str]]:
-        """Splits arms of which one seed lasts too long together."""
-        group: list[str] = []
-        total = 0.0
-        for name in names:
-            seconds = self._costs.seconds(point, name)
-            if group and total + seconds > _LONGEST_S:
-                yield group
-                group, total = [], 0.0
-            group.append(name)
-            total += seconds
-        yield group
-
-    def _parts(self, point: Point) -> list[tuple[list[str], int, int, float, float]]:
-        """(arms, first seed, last seed, seconds, samples) of each missing task of a point."""
-        out = []
-        for (ranges, _), names in self._wanted(point).items():
-            for group in self._groups(point, names):
-                seconds = sum(self._costs.seconds(point, name) for name in group)
-                samples = sum(self._costs.samples(point, name) for name in group)
-                block = max(1, round(TASK_S / max(seconds, 1e-9)))
-                for first, last in ranges:
-                    for start in range(first, last + 1, block):
-                        end = min(start + block - 1, last)
-                        count = end - start + 1
-                        out.append((group, start, end, seconds * count, samples * count))
-        return out
+    def __init__(self, points: Sequence[Point], store: Store, seeds: int, films: bool) -> None:
+        self._points, self._store, self._seeds, self._films = points, store, seeds, films
+        self.threads = 1  #: of the task of a reference
 
     def cost(self) -> dict[str, float]:
-        """Tasks, samples, seconds on one core and bytes of the missing results."""
-        total = {"tasks": 0.0, "samples": 0.0, "seconds": 0.0, "bytes": 0.0}
-        seen: set[str] = set()
-        for point in self._points:
-            parts = self._parts(point)
-            if parts and not self._has_reference(point) and point.reference not in seen:
-                seen.add(point.reference)
-                pixels = self._costs._pixels(point)
-                control = point.tree.get("exponent")
-                films = (len(control["s"]) if control else 1) * (1 + bool(point.tree["reference"].get("monte_carlo")))
-                total["tasks"] += 1
-                total["seconds"] += self._costs.reference(point)
-                total["bytes"] += 20.0 * pixels * films
-            if parts and self._store.studies(self.studies_name(point)) is None:
-                total["tasks"] += 1
-            regions = len(point.tree.get("regions", {}))
-            for arms, first, last, seconds, samples in parts:
-                total["tasks"] += 1
-                total["seconds"] += seconds
-                total["samples"] += samples
-                counts = sum(len(point.tree["arms"][name]["n"]) for name in arms)
-                total["bytes"] += 12_000 * len(arms) + (last - first + 1) * counts * (1_400 + 900 * regions)
-                if self._films and first == 1:
-                    total["bytes"] += 36.0 * self._costs._pixels(point) * counts
+        """Tasks, those of references, samples and bytes of the missing results."""
+        total = {"tasks": 0.0, "references": 0.0, "samples": 0.0, "bytes": 0.0}
+        for job in self.jobs():
+            total["tasks"] += 1
+            total["references"] += job.task["kind"] == "reference"
+            total["samples"] += job.samples
+            total["bytes"] += job.bytes
         return total
 
     def jobs(self) -> Iterator[Job]:
-        """The missing tasks."""
-        made: set[str] = set()
-        spread = max(1, self.slots // max(self.references, 1))
+        """The missing tasks. Points that differ in one arm share the results of the others."""
+        planned: set[str] = set()
         for point in self._points:
-            parts = self._parts(point)
-            if parts and not self._has_reference(point) and point.reference not in made:
-                made.add(point.reference)
-                yield Job(
-                    point.reference, point.task("reference", threads=spread, id=point.reference), ("reference", point)
-                )
-            for arms, first, last, _, samples in parts:
-                task = point.task("part", arms, first=first, last=last, reference=point.reference, films=self._films)
-                name = digest(point.scene, [point.arms[a].id for a in arms], first, last)
-                yield Job(name, task, ("part", point, arms, first, last), needs=point.reference, weight=samples)
-            name = self.studies_name(point)
-            if name not in made and self._store.studies(name) is None:
-                made.add(name)
-                yield Job(name, point.task("studies", list(point.arms)), ("studies", point))
+            parts = [job for job in self._parts(point) if job.id not in planned]
+            if parts and point.reference not in planned and not self._store.has_reference(point.reference):
+                planned.add(point.reference)
+                yield self.reference(point)
+            yield from parts
+            planned.update(job.id for job in parts)
+            name = studies_id(point)
+            if name not in planned and self._store.studies(name) is None:
+                planned.add(name)
+                yield Job(name, point.task("studies", list(point.arms)), f"{point.label}, studies")
+
+    def reference(self, point: Point) -> Job:
+        """The task of the references of a point."""
+        task = point.task("reference", threads=self.threads, id=point.reference)
+        control = point.tree.get("exponent")
+        films = (len(control["s"]) if control else 1) * (1 + bool(point.tree["reference"].get("monte_carlo")))
+        return Job(point.reference, task, f"{point.label}, reference", bytes=20.0 * point.pixels * films)
+
+    def _parts(self, point: Point) -> Iterator[Job]:
+        for name, arm in point.arms.items():
+            samples = point.samples(name)
+            block = max(1, round((SAMPLES_PER_TASK if arm.built_in else SAMPLES_PER_TASK_OF_OTHERS) / samples))
+            counts = len(point.tree["arms"][name]["n"])
+            seed_bytes = counts * (1_400.0 + 900 * len(point.tree.get("regions", {})))
+            row = {
+                "values": point.values, "point": point.key, "sampler": arm.sampler, "sampler_id": arm.id,
+                "experiment": point.experiment.hash,
+            }  # fmt: skip
+            for first, last in missing(self._store.blocks(point.scene, arm.id), self._seeds):
+                for start in range(first, last + 1, block):
+                    end = min(start + block - 1, last)
+                    films = self._films and start == 1
+                    task = point.task("part", [name], arm=name, first=start, last=end, reference=point.reference, films=films)
+                    yield Job(
+                        f"{point.scene}-{arm.id}-{start}-{end}", task, f"{point.label}, {name}, seeds {start} to {end}",
+                        row=row, folder=point.folder, repeatable=arm.built_in, samples=samples * (end - start + 1),
+                        bytes=12_000 + seed_bytes * (end - start + 1) + 36.0 * point.pixels * counts * films,
+                    )  # fmt: skip
 
 
 def kept_points(
     base: Experiment, out: Path, seeds: int, versions: Mapping[str, str], new: Sequence[Point]
 ) -> list[Point]:
     """The points of earlier calls that are points of this experiment still, without those of `new`."""
-    known = read_json(out / "sweep.json") or {}
     keys = {point.key for point in new}
-    old = [p for p in known.get("points", []) if p["scene"] not in keys]
-    same = []
-    for at in old:
-        found, _ = points_of(base, [at["values"]], seeds, versions)
-        if found and found[0].key == at["scene"]:
-            same += found
-    return same
+    kept = []
+    for old in (read_json(out / "sweep.json") or {}).get("points", []):
+        found = [] if old["scene"] in keys else points_of(base, [old["values"]], seeds, versions)[0]
+        kept += [point for point in found if point.key == old["scene"]]
+    return kept

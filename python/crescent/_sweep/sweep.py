@@ -7,7 +7,6 @@ import json
 import os
 import shlex
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
@@ -19,13 +18,13 @@ from .._sampler import whole
 from .._paths import steps_of
 from ..experiments import Experiment, Measured, load
 from .dataset import COLUMNS, Dataset
-from .engines import DaskEngine, EngineError, InProcess, Job, engine_of, profile_of, usable_cores
+from .engines import DaskEngine, EngineError, InProcess, engine_of, profile_of
 from .grid import Axis, UsageError, axes_of, grid
 from .identity import NUMERICS, digest
-from .plan import Costs, Plan, Point, calibrate, kept_points, points_of
-from .progress import Progress, duration, quantity
+from .plan import Plan, Point, kept_points, points_of, studies_id
+from .progress import Progress, quantity
 from .store import Store, locked, read_json, write_whole
-from .tasks import Result
+from .tasks import Job, Result
 
 Say = Callable[[str], None]
 Over = Mapping[str, Any] | Sequence[str] | str
@@ -39,7 +38,7 @@ class Sweep:
     points: list[dict[str, Any]]
     computed: int  #: tasks computed by this call
     failed: dict[str, str]  #: by task or point, the error
-    cost: dict[str, float] = field(default_factory=dict)  #: of the missing results: tasks, samples, seconds, bytes
+    cost: dict[str, float] = field(default_factory=dict)  #: of the missing results: tasks, samples, bytes
 
     def to_arrow(self) -> Any:
         """The dataset as a pyarrow.Table."""
@@ -192,10 +191,6 @@ class Run:
         }  # fmt: skip
         write_whole(self.options.out / "sweep.json", json.dumps(state, indent=1))
 
-    def _row_of(self, point: Point, arm: str) -> dict[str, Any]:
-        known = point.arms[arm]
-        return {"values": point.values, "point": point.key, "sampler": known.sampler, "sampler_id": known.id}
-
     def sync_dataset(self) -> None:
         """Makes the dataset agree with the store: files that are missing, stale or newly suspect."""
         self.dataset = Dataset(self.options.out, self.axes)
@@ -213,62 +208,39 @@ class Run:
                     file = f"{point.key}-{arm.id}-{path.stem}{'-suspect' if marked else ''}.parquet"
                     wanted.add(file)
                     if file not in there:
-                        self.dataset.write(file, self._row_of(point, name), result, marked)
+                        row = {"values": point.values, "point": point.key, "sampler": arm.sampler, "sampler_id": arm.id}
+                        self.dataset.write(file, row, result, marked)
         for file in there - wanted:
             self.dataset.remove(file)
 
     def take(self, job: Job, result: Result) -> None:
         """Writes the result of a task."""
-        kind = job.about[0]
-        point: Point = job.about[1]
-        if kind == "reference":
-            self.store.add_reference(point.reference, result["reference"])
-        elif kind == "studies":
-            self.store.add_studies(job.id, {"json": result["json"]})
-        else:
-            _, _, arms, first, last = job.about
-            for name in arms:
-                part = result["parts"][name]
-                kept = {
-                    "json": part["json"], "csv": part["csv"], "seconds": part["seconds"], "times": part["times"],
-                    "experiment": point.experiment.hash, "version": NUMERICS, "worker": result["worker"],
-                    "host": result["host"], "isa": result["isa"],
-                }  # fmt: skip
-                arm = point.arms[name].id
-                self.store.add(point.scene, arm, first, last, kept)
-                if self.dataset:
-                    file = f"{point.key}-{arm}-{first}-{last}.parquet"
-                    self.dataset.write(file, self._row_of(point, name), kept, False)
-            for name, data in result["films"].items():
-                write_whole(self.options.out / "points" / point.folder / "films" / name, data)
+        keep(self.store, job, result)
+        if self.dataset and job.task["kind"] == "part":
+            file = f"{job.row['point']}-{job.id.partition('-')[2]}.parquet"
+            self.dataset.write(file, job.row, part_of(job, result), False)
 
     # ---- the bits
 
     def verify_job(self, job: Job, result: Result) -> Job | None:
         """The same task for another worker and instruction set, for a share of the tasks."""
-        if job.about[0] != "part" or not all(job.about[1].arms[name].built_in for name in job.about[2]):
-            return None
         chance = int(hashlib.sha256(b"verify" + job.id.encode()).hexdigest()[:8], 16) / 2**32
-        if chance >= self.options.verify:
+        if not job.repeatable or chance >= self.options.verify:
             return None
         task = {**job.task, "isa": f"not {result['isa']}", "films": False}
-        return Job(f"verify-{job.id}", task, ("verify", job.about, result), needs=job.needs, avoid=result["worker"])
+        label = f"{job.label}: bits"
+        return Job(f"verify-{job.id}", task, label, {"first": result}, avoid=result["worker"])
 
     def compare(self, job: Job, second: Result) -> None:
         """Compares two computations of one task; if their bits differ, marks all results of both workers."""
-        _, about, first = job.about
-        _, point, arms, start, end = about
-        for name in arms:
-            texts = [r["parts"][name]["json"].partition('"provenance"')[0] for r in (first, second)]
-            if texts[0] == texts[1]:
-                continue
+        first = job.row["first"]
+        texts = [result["json"].partition('"provenance"')[0] for result in (first, second)]
+        if texts[0] != texts[1]:
             who = [f"{r['host']} ({r['worker']}, {r['isa']})" for r in (first, second)]
-            place = f"{point.label}, {name}, seeds {start} to {end}"
-            self.failed[f"{place}: bits"] = (
+            self.failed[job.label] = (
                 f"the films of {who[0]} and {who[1]} differ; rows of both workers are marked as suspect"
             )
             self._mark({first["worker"], second["worker"]})
-            return
 
     def _mark(self, workers: set[str]) -> None:
         keys = set()
@@ -280,33 +252,18 @@ class Run:
 
     # ---- the call
 
-    def plan(self) -> Plan:
-        """The missing tasks."""
-        costs = Costs(calibrate(self.points[0], self.store))
-        return Plan(self.points, self.store, self.seeds, costs, self.options.films)
-
-    def place(self, job: Job) -> str:
-        """A task in one line."""
-        kind, point = job.about[:2]
-        if kind == "part":
-            _, _, arms, first, last = job.about
-            return f"{point.label}, {' and '.join(arms)}, seeds {first} to {last}"
-        return f"{point.label}, {kind}"
-
-    def execute(self, plan: Plan, engine: DaskEngine) -> None:
+    def execute(self, plan: Plan, cost: Mapping[str, float], engine: DaskEngine) -> None:
         """Computes the missing results."""
-        cost = plan.cost()
         bar = Progress(int(cost["tasks"]), cost["samples"], self.options.progress)
-        plan.slots = engine.slots
-        later = engine.later
+        plan.threads = max(1, engine.slots // max(1, int(cost["references"])))
         for job, result in engine.run(plan.jobs(), self.store.reference):
-            if job.about[0] == "verify":
-                if "error" in result:
-                    self.failed[f"{self.place(Job('', {}, job.about[1]))}: bits"] = result["error"]
-                else:
-                    self.compare(job, result)
-                continue
             error = result.get("error")
+            if "first" in job.row:
+                if error is None:
+                    self.compare(job, result)
+                else:
+                    self.failed[job.label] = error
+                continue
             if error is None:
                 try:
                     self.take(job, result)
@@ -314,10 +271,10 @@ class Run:
                 except OSError as problem:
                     error = f"cannot write the result: {problem.strerror or problem}"
             if error is not None:
-                self.failed[self.place(job)] = error
+                self.failed[job.label] = error
             elif (again := self.verify_job(job, result)) is not None:
-                later.append(again)
-            bar.add(job.weight, error is not None)
+                engine.later.append(again)
+            bar.add(job.samples, error is not None)
         bar.show(last=True)
 
     def join(self) -> int:
@@ -325,7 +282,7 @@ class Run:
         known = read_json(self.store.root / "joined.json") or {}
         failing = 0
         for point in self.points:
-            studies = self.store.studies(digest(NUMERICS, point.experiment.hash, [a.id for a in point.arms.values()]))
+            studies = self.store.studies(studies_id(point))
             names, parts = [], []
             complete = studies is not None
             for arm in point.arms.values():
@@ -369,48 +326,52 @@ def _digest_of_run(folder: Path) -> str:
         return ""
 
 
-def _estimate(run: Run, plan: Plan) -> list[str]:
+def part_of(job: Job, result: Result) -> dict[str, Any]:
+    """What is stored of the result of a part."""
+    kept = {key: result[key] for key in ("json", "csv", "seconds", "times", "worker", "host", "isa")}
+    return {**kept, "experiment": job.row["experiment"], "version": NUMERICS}
+
+
+def keep(store: Store, job: Job, result: Result) -> None:
+    """Stores the result of a task."""
+    if job.task["kind"] == "reference":
+        store.add_reference(job.id, result["reference"])
+    elif job.task["kind"] == "studies":
+        store.add_studies(job.id, {"json": result["json"]})
+    else:
+        scene, arm, first, last = job.id.split("-")
+        store.add(scene, arm, int(first), int(last), part_of(job, result))
+        for name, data in result["films"].items():
+            write_whole(store.out / "points" / job.folder / "films" / name, data)
+
+
+def _is_there(store: Store, job: Job) -> bool:
+    """Whether the result of a task is stored."""
+    if job.task["kind"] == "reference":
+        return store.has_reference(job.id)
+    if job.task["kind"] == "studies":
+        return store.studies(job.id) is not None
+    scene, arm, first, last = job.id.split("-")
+    return (int(first), int(last)) in store.blocks(scene, arm)
+
+
+def _estimate(run: Run, cost: Mapping[str, float]) -> str:
     """The missing results, in words."""
-    cost = plan.cost()
-    cores = run.options.workers or usable_cores()
-    head = (
-        f"{len(run.points)} points, {run.seeds} seeds, {len(run.points[0].arms)} samplers: {int(cost['tasks'])} tasks"
-    )
+    head = f"{len(run.points)} points, {run.seeds} seeds, {len(run.points[0].arms)} samplers: {int(cost['tasks'])} tasks"
     if not cost["tasks"]:
-        return [f"{head}; every result is there"]
-    time = f"{duration(cost['seconds'])} on one core, {duration(cost['seconds'] / cores)} on {cores}"
-    return [
-        f"{head}, {quantity(cost['samples'])}samples",
-        f"estimated from a measurement on this machine: {time}; {quantity(cost['bytes'])}byte on disk",
-    ]
+        return f"{head}; every result is there"
+    return f"{head}, {quantity(cost['samples'])}samples, {quantity(cost['bytes'])}byte on disk"
 
 
 def _commands(run: Run, plan: Plan) -> Iterator[str]:
     """A shell command for each task, which does nothing if its result is there. References come first."""
     import pickle
 
-    program = f"{shlex.quote(sys.executable)} -m crescent._sweep task"
-    jobs = sorted(plan.jobs(), key=lambda job: job.about[0] != "reference")
-    for job in jobs:
-        kind, point = job.about[:2]
-        place: list[Any] = [kind, point.reference if kind == "reference" else job.id]
-        if kind == "part":
-            arms, first, last = job.about[2:]
-            place = [
-                "part",
-                point.scene,
-                {name: point.arms[name].id for name in arms},
-                first,
-                last,
-                point.experiment.hash,
-            ]
-            reference = point.task("reference", id=point.reference)
-        else:
-            reference = None
+    references = {point.reference: plan.reference(point) for point in run.points}
+    for job in sorted(plan.jobs(), key=lambda job: job.task["kind"] != "reference"):
         path = run.store.root / "tasks" / f"{job.id}.task"
-        films = str(run.options.out / "points" / point.folder / "films")
-        write_whole(path, pickle.dumps({"task": job.task, "place": place, "reference": reference, "films": films}))
-        yield f"{program} {shlex.quote(str(path))}  # {run.place(job)}"
+        write_whole(path, pickle.dumps((job, references.get(job.needs))))
+        yield f"{shlex.quote(sys.executable)} -m crescent._sweep task {shlex.quote(str(path))}  # {job.label}"
 
 
 def run_task(path: Path) -> int:
@@ -418,47 +379,15 @@ def run_task(path: Path) -> int:
     import pickle
 
     store = Store(path.parent.parent.parent)
-    given = pickle.loads(path.read_bytes())
-    task, place = given["task"], given["place"]
+    job, reference = pickle.loads(path.read_bytes())
     with InProcess() as engine:
-
-        def reference() -> bytes | None:
-            name = task.get("reference")
-            if not name:
-                return None
-            if (data := store.reference(name)) is None:
-                made = engine.compute(given["reference"])
-                if "error" in made:
-                    raise EngineError(f"the reference: {made['error']}")
-                data = made["reference"]
-                store.add_reference(name, data)
-            return data
-
-        if place[0] == "part":
-            _, scene, arms, first, last, experiment = place
-            if all((first, last) in store.blocks(scene, arm) for arm in arms.values()):
-                return 0
-        elif place[0] == "reference" and store.reference(place[1]) or place[0] == "studies" and store.studies(place[1]):
-            return 0
-        result = engine.compute(task, reference())
-        if "error" in result:
-            raise EngineError(result["error"])
-        if place[0] == "reference":
-            store.add_reference(place[1], result["reference"])
-        elif place[0] == "studies":
-            store.add_studies(place[1], {"json": result["json"]})
-        else:
-            for name, arm in arms.items():
-                part = result["parts"][name]
-                more = {
-                    "experiment": experiment,
-                    "version": NUMERICS,
-                    "worker": result["worker"],
-                    "host": result["host"],
-                }
-                store.add(scene, arm, first, last, {**part, **more, "isa": result["isa"]})
-            for name, data in result["films"].items():
-                write_whole(Path(given["films"]) / name, data)
+        for part in (reference, job):
+            if part is None or _is_there(store, part):
+                continue
+            result = engine.compute(part.task, store.reference(part.needs) if part.needs else None)
+            if "error" in result:
+                raise EngineError(f"{part.label}: {result['error']}")
+            keep(store, part, result)
     return 0
 
 
@@ -473,39 +402,29 @@ def run_sweep(base: Experiment, options: Options, dry_run: bool = False) -> Swee
 def _run_sweep(base: Experiment, options: Options, dry_run: bool) -> Sweep:
     say = options.say
     run = Run(base, options)
+    plan = Plan(run.points, run.store, run.seeds, options.films)
+    cost = plan.cost()
+    if options.engine != "commands" or dry_run:
+        say(_estimate(run, cost))
     if dry_run:
-        with tempfile.TemporaryDirectory() as folder:
-            run.store.root.mkdir(parents=True, exist_ok=True) if options.out.is_dir() else None
-            calibration_store = run.store if options.out.is_dir() else Store(Path(folder))
-            costs = Costs(calibrate(run.points[0], calibration_store))
-        plan = Plan(run.points, run.store, run.seeds, costs, options.films)
-        for line in _estimate(run, plan):
-            say(line)
         for place, error in run.failed.items():
             say(f"failed: {place}: {error}")
-        return Sweep(options.out, [], 0, run.failed, plan.cost())
+        return Sweep(options.out, [], 0, run.failed, cost)
     say_unhashable(run.points, say)
-    run.store.root.mkdir(parents=True, exist_ok=True)
-    plan = run.plan()
-    cost = plan.cost()
     run.write_state()
     run.sync_dataset()
     if options.engine == "commands":
         for line in _commands(run, plan):
             print(line)
     elif cost["tasks"]:
-        for line in _estimate(run, plan):
-            say(line)
         with DaskEngine(options.engine, options.workers) as engine:
             engine.wait_for_workers()
             if address := engine.dashboard:
                 say(f"dashboard: {address}")
             try:
-                run.execute(plan, engine)
+                run.execute(plan, cost, engine)
             finally:
                 run.write_state()
-    else:
-        say(_estimate(run, plan)[0])
     failing = run.join()
     run.sync_dataset()
     run.write_state()

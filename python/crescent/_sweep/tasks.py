@@ -1,6 +1,6 @@
 """The tasks of a sweep as plain data, and their computation in this process.
 
-A task has a kind: ``reference`` (of one scene), ``part`` (some arms and seeds of one point), ``studies`` (furnaces and
+A task has a kind: ``reference`` (of one scene), ``part`` (an arm and some seeds of one point), ``studies`` (furnaces and
 checks of the article's claims of one point), ``check`` (a sampler or an arm at one point), ``sleep`` (waits, to
 measure the overhead of a task). Its result is plain data too; references are bytes.
 """
@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import json
 import os
 import pickle
 import socket
 import tempfile
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,27 @@ from .identity import NUMERICS
 
 Task = dict[str, Any]
 Result = dict[str, Any]
+
+
+@dataclass
+class Job:
+    """A task, and what its result is stored with."""
+
+    id: str  #: of a part SCENE-ARM-FIRST-LAST
+    task: Task
+    label: str = ""  #: in messages
+    row: dict[str, Any] = field(default_factory=dict)  #: of a part: its swept values and constant columns
+    folder: str = ""  #: of its point, for films
+    repeatable: bool = False  #: whether another worker must compute the same bits
+    samples: float = 0.0
+    bytes: float = 0.0  #: of its result on disk
+    avoid: str = ""  #: the address of a worker that must not compute it
+    tries: int = 0
+
+    @property
+    def needs(self) -> str:
+        """The identity of its references; "" if it needs none."""
+        return str(self.task.get("reference", ""))
 
 
 def host() -> str:
@@ -84,23 +105,15 @@ def _callables(task: Task) -> list[Any]:
 
 
 def _part(task: Task, references: Any) -> Result:
-    """Runs each arm by itself, so that its result does not depend on the others."""
-    e = experiment_of(task)
+    """Runs one arm by itself, so that its result does not depend on the others."""
     isa = _instruction_set(task)
-    callables = {arm[0]: arm for arm in _callables(task)}
-    parts = {}
-    films: dict[str, bytes] = {}
-    for name, arm in task["arms"].items():
-        if not arm["run"]:
-            continue
-        start = time.perf_counter()
-        given = [callables[it] for it in (name, *arm["of"]) if it in callables]
-        run = _crescent.run_part(e, task["first"], task["last"], [name], references, 1, isa, None, given)
-        seconds = time.perf_counter() - start
-        parts[name] = {"json": run.json, "csv": run.csv, "seconds": seconds, "times": [list(row) for row in run.times]}
-        if task.get("films") and task["first"] == 1:
-            films |= _films(run)
-    return {"parts": parts, "films": films, "isa": isa}
+    name = task["arm"]
+    start = time.perf_counter()
+    run = _crescent.run_part(
+        experiment_of(task), task["first"], task["last"], [name], references, 1, isa, None, _callables(task)
+    )
+    part = {"json": run.json, "csv": run.csv, "seconds": time.perf_counter() - start, "times": [list(t) for t in run.times]}
+    return {**part, "films": _films(run) if task["films"] else {}, "isa": isa}
 
 
 def _instruction_set(task: Task) -> str:
@@ -156,37 +169,6 @@ def _sampler_with(code: Mapping[str, Any], values: Mapping[str, Any]) -> tuple[A
     return sampler, settings or None
 
 
-def _rates(task: Task) -> Result:
-    """Measures samples per second of each arm and seconds per pixel of the reference on a small image of the scene."""
-    e = experiment_of(task)
-    pixels = task["pixels"]
-    start = time.perf_counter()
-    references = _crescent.references(e, 1, "", None)
-    reference_s = (time.perf_counter() - start) / pixels
-    callables = {arm[0]: arm for arm in _callables(task)}
-    arms: dict[str, float] = {}
-    errors: dict[str, str] = {}
-    seen = 1.0
-    for name, arm in task["arms"].items():
-        if not arm["run"]:
-            continue
-        last = 1
-        try:
-            while True:
-                start = time.perf_counter()
-                given = [callables[it] for it in (name, *arm["of"]) if it in callables]
-                run = _crescent.run_part(e, 2, 1 + last, [name], references, 1, "", None, given)
-                seconds = time.perf_counter() - start
-                if seconds > 0.25 or last >= 64:
-                    break
-                last *= 4
-            seen = json.loads(run.json)["geometry_pixels"] / pixels
-            arms[name] = seen * pixels * last * arm["most"] / seconds
-        except Exception as error:  # noqa: BLE001: the tasks of this arm report it
-            errors[name] = error_text(error)
-    return {"arms": arms, "reference_s": reference_s, "seen": seen, "errors": errors}
-
-
 def error_text(error: BaseException) -> str:
     """An error in one line."""
     text = " ".join(str(error).split())
@@ -210,8 +192,6 @@ def compute(task: Task, reference: Any = None) -> Result:
         out = {"json": run.json}
     elif kind == "check":
         out = _checked(task)
-    elif kind == "rates":
-        out = _rates(task)
     elif kind == "sleep":
         time.sleep(task["seconds"])
         out = {}
