@@ -19,14 +19,16 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from measured_part import write_between
 
-from crescent._sweep.engines import DaskEngine, Job
+from crescent._sweep.engines import DaskEngine
 from crescent._sweep.identity import NUMERICS
+from crescent._sweep.tasks import Job
 
 
 def stubs(count, seconds):
-    """Jobs that sleep."""
-    for k in range(count):
-        yield Job(f"stub-{k}", {"kind": "sleep", "numerics": NUMERICS, "seconds": seconds})
+    """A function that returns the next of these jobs that sleep."""
+    task = {"kind": "sleep", "numerics": NUMERICS, "seconds": seconds}
+    jobs = (Job(f"stub-{k}", task) for k in range(count))
+    return lambda: next(jobs, None)
 
 
 def resident():
@@ -40,25 +42,25 @@ def resident():
 def timed(engine, count, seconds):
     """Wall-clock seconds of `count` tasks, and processor seconds of this process, which has the client and the
     scheduler of a local cluster; after each worker has had some."""
-    for _, result in engine.run(stubs(8 * engine.slots, 0), lambda name: None):
+    for _, result in engine.run(stubs(8 * engine.threads, 0)):
         assert "error" not in result, result
     start, spent = time.perf_counter(), time.process_time()
-    for _, result in engine.run(stubs(count, seconds), lambda name: None):
+    for _, result in engine.run(stubs(count, seconds)):
         assert "error" not in result, result
     return time.perf_counter() - start, time.process_time() - spent
 
 
 def with_workers(workers, work):
     with DaskEngine("local", workers) as engine:
-        while engine.slots < workers:
-            engine.wait_for_workers()
+        while engine.threads < workers:
+            time.sleep(0.1)
         return work(engine)
 
 
 def memory(engine, count):
     """The client's memory after a tenth of the tasks and at the end, and the seconds."""
     start, done, early = time.perf_counter(), 0, 0.0
-    for _ in engine.run(stubs(count, 0), lambda name: None):
+    for _ in engine.run(stubs(count, 0)):
         done += 1
         if done == count // 10:
             early = resident()

@@ -23,13 +23,13 @@ import numpy as np
 from .. import _crescent, arms as built_in
 from .._sampler import whole
 from ..experiments import Experiment
-from .engines import DaskEngine, engine_of
+from .engines import DaskEngine, engine_of, execute
 from .grid import UsageError, axes_of, grid, hint, label, short
 from .identity import NUMERICS, _of_python, arms_of, digest, scene_id
 from .plan import points_of
 from .progress import Progress
 from .store import Store, locked, read_json, write_whole
-from .tasks import Job
+from .tasks import Job, Result
 from .sweep import Say, _folder, say_unhashable, usable_points
 
 KINDS = ("right", "heavy-tailed", "inconclusive", "wrong", "error")
@@ -273,26 +273,16 @@ def _check_points(
         }  # fmt: skip
         write_whole(folder / "sweep.json", json.dumps(known, indent=1))
 
+    def take(job: Job, result: Result) -> None:
+        nonlocal computed
+        store.add_check(job.id, {**result, "values": job.row, "alpha": share, "version": NUMERICS})
+        computed += 1
+
     write_state()
     if new:
-        with DaskEngine(options.engine, options.workers) as dask:
-            dask.wait_for_workers()
-            if address := dask.dashboard:
-                options.say(f"dashboard: {address}")
-            bar = Progress(len(new), 0, options.progress)
-            jobs = (Job(name, {**check.task, "alpha": share}, label(check.values), check.values) for name, check in new.items())
-            for job, result in dask.run(jobs, lambda name: None):
-                error = result.get("error")
-                if error is None:
-                    try:
-                        store.add_check(job.id, {**result, "values": job.row, "alpha": share, "version": NUMERICS})
-                        computed += 1
-                    except OSError as problem:
-                        error = f"cannot write the result: {problem.strerror or problem}"
-                if error is not None:
-                    failed[job.label] = error
-                bar.add(0, error is not None)
-            bar.show(last=True)
+        jobs = (Job(name, {**check.task, "alpha": share}, label(check.values), check.values) for name, check in new.items())
+        with DaskEngine(options.engine, options.workers, options.say) as engine:
+            execute(engine, lambda: next(jobs, None), take, failed, Progress(len(new), 0, options.progress))
     write_state()
     _write_dataset(folder)
     return CheckSweep(folder, found_checks(folder), computed, failed)

@@ -1,7 +1,7 @@
 """Where tasks run: a Dask cluster on this machine, one that is running, or one of a queueing system.
 
 Dask assigns tasks to workers and repeats those of a worker that was lost. Each thread of a worker has one child process
-(runner.py). The client holds a bounded window of tasks, so its memory does not grow with their number.
+(runner.py). A bounded number of tasks is in flight, so the client's memory does not grow with their number.
 """
 
 from __future__ import annotations
@@ -12,27 +12,28 @@ import itertools
 import logging
 import os
 import signal
-import queue
 import sys
 import threading
 import time
 import tomllib
 import urllib.request
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from .. import _crescent
 from .grid import UsageError, hint
+from .progress import Progress
 from .runner import Runner, TaskStopped
 from .tasks import Job, Result, Task, host
 
 #: Set by Ctrl-C: a KeyboardInterrupt that is raised while Python finalizes an object is lost.
 interrupted = threading.Event()
 _threads = threading.local()
-_LOST_TRIES = 3  # submissions of a task whose reference was lost with its worker
-_BATCH = 64  # results in one request
+_IN_FLIGHT = 16  # tasks for each thread of the workers; with 4 a task costs 1 ms more, in smaller batches of results
+_POLL_S = 0.005
+_TRANSFER_S = 60.0  # of the results of one request
 _RESPONSE_S = 6.0  # longest wait for the scheduler to respond; with it the exit takes at most 10 s
 _NO_WORKER_S = 60.0
 
@@ -68,7 +69,7 @@ def on_worker(task: Task, reference: Any = None) -> Result:
         result: Result = runner.compute(task, reference and reference["reference"], cancelled)
     except TaskStopped:
         result = {"error": "stopped"}
-    return {**result, "worker": str(worker.address), "host": host(), "name": str(worker.name)}
+    return {**result, "worker": str(worker.address), "host": host()}
 
 
 def usable_cores() -> int:
@@ -82,24 +83,11 @@ def usable_cores() -> int:
 
 
 _SCHEDULERS = {
-    "slurm": "SLURMCluster",
-    "pbs": "PBSCluster",
-    "sge": "SGECluster",
-    "lsf": "LSFCluster",
-    "local": "LocalCluster",
-}
+    "slurm": "SLURMCluster", "pbs": "PBSCluster", "sge": "SGECluster", "lsf": "LSFCluster", "local": "LocalCluster",
+}  # fmt: skip
 _PROFILE_KEYS = (
-    "scheduler",
-    "jobs",
-    "cores",
-    "processes",
-    "memory",
-    "queue",
-    "walltime",
-    "account",
-    "extra",
-    "prologue",
-)
+    "scheduler", "jobs", "cores", "processes", "memory", "queue", "walltime", "account", "extra", "prologue",
+)  # fmt: skip
 
 
 def profile_of(name: str) -> dict[str, Any]:
@@ -124,8 +112,8 @@ def profile_of(name: str) -> dict[str, Any]:
     return profile
 
 
-def _queue_cluster(name: str) -> tuple[Any, int]:
-    """A cluster whose workers are jobs of a queueing system, and the number of jobs."""
+def _queue_cluster(name: str) -> Any:
+    """A cluster whose workers are jobs of a queueing system."""
     profile = profile_of(name)
     handler = signal.getsignal(signal.SIGINT)
     try:
@@ -144,7 +132,7 @@ def _queue_cluster(name: str) -> tuple[Any, int]:
     options.setdefault("processes", options["cores"])  # one thread per process
     cluster = (LocalJobs if kind == "LocalCluster" else getattr(dask_jobqueue, kind))(**options)
     cluster.scale(jobs=jobs)
-    return cluster, jobs
+    return cluster
 
 
 @contextlib.contextmanager
@@ -161,25 +149,37 @@ def _without_script() -> Iterator[None]:
         main.update(known)
 
 
-class DaskEngine:
-    """A Dask client with a bounded window of tasks. Use as a context."""
+def _given(value: Any) -> Any:
+    """What Dask repeats if the worker that holds the value is lost."""
+    return value
 
-    def __init__(self, engine: str, workers: int | None = None) -> None:
-        self._engine, self._workers = engine, workers
+
+class DaskEngine:
+    """A Dask client with a bounded number of tasks in flight. Use as a context, which has a worker."""
+
+    def __init__(self, engine: str, workers: int | None = None, say: Callable[[str], None] | None = None) -> None:
+        self._engine, self._count, self._say = engine, workers, say
         self._cluster: Any = None
         self.client: Any = None
-        self._lost = threading.Event()
+        self.workers: dict[str, int] = {}  #: threads by address
+        self._lost = False
+        self._problem = ""  # why the engine cannot go on
         self._closing = False
-        self.slots = 1
-        self._open = contextlib.ExitStack()
-        self._call, self._numbers = uuid.uuid4().hex[:8], itertools.count()
-        self.later: list[Job] = []  #: jobs that the caller adds while it reads results
+        self._contexts = contextlib.ExitStack()
+        self._call = uuid.uuid4().hex[:8]
+        self._numbers = itertools.count()
 
     def __enter__(self) -> DaskEngine:
         try:
             self._start()
+            while not self.workers:
+                self._check()
+                time.sleep(0.05)
+            if self._say and (address := self._dashboard()):
+                self._say(f"dashboard: {address}")
         except BaseException:
-            self._open.close()
+            self.close(quick=True)
+            self._contexts.close()
             raise
         return self
 
@@ -193,63 +193,70 @@ class DaskEngine:
         dask.config.set({
             "distributed.comm.timeouts.connect": "5s",
             "distributed.admin.tick.limit": "60s",
+            "distributed.admin.large-graph-warning-threshold": "1TB",  # references are large
             # Logs for debugging and for the dashboard; at their defaults they hold about 1 kB of each task.
             "distributed.admin.low-level-log-length": 20,
             "distributed.admin.log-length": 200,
             "distributed.scheduler.dashboard.tasks.task-stream-length": 1000,
         })  # fmt: skip
         if self._engine == "local":
-            self._open.enter_context(_without_script())
-            count = self._workers or usable_cores()
+            self._contexts.enter_context(_without_script())
             self._cluster = distributed.LocalCluster(
-                n_workers=count, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
-                memory_limit=0, silence_logs=logging.CRITICAL,
+                n_workers=self._count or usable_cores(), threads_per_worker=1, processes=True,
+                dashboard_address="127.0.0.1:0", memory_limit=0, silence_logs=logging.CRITICAL,
             )  # fmt: skip
         elif self._engine.startswith("slurm:"):
-            self._cluster, _ = _queue_cluster(self._engine.partition(":")[2])
-        at = self._cluster or "tcp://" + self._engine.removeprefix("dask://")
+            self._cluster = _queue_cluster(self._engine.partition(":")[2])
+        address = self._cluster or "tcp://" + self._engine.removeprefix("dask://")
         try:
-            self.client = distributed.Client(at, timeout=5, set_as_default=False)
+            self.client = distributed.Client(address, timeout=5, set_as_default=False)
         except (OSError, TimeoutError, ValueError) as error:
             raise EngineError(f"no Dask scheduler at {self._engine}: {error}") from None
         threading.Thread(target=self._watch, daemon=True).start()
 
     def __exit__(self, kind: type[BaseException] | None, *rest: Any) -> None:
-        with self._open:
+        with self._contexts:
             self.close(quick=kind is not None)
 
     def close(self, quick: bool = False) -> None:
-        """Ends the client, and the cluster if it is this engine's own; `quick`: its workers are ended at once."""
+        """Ends the client, and the cluster if this engine started it; `quick`: its workers are ended at once."""
         self._closing = True
         if quick and self._engine == "local" and self._cluster is not None:
-            self._kill_workers()
+            for nanny in self._cluster.workers.values():
+                with contextlib.suppress(Exception):
+                    os.kill(nanny.process.process.pid, 9)
         for part in (self.client, self._cluster):
-            if part is not None and not self._lost.is_set():
+            if part is not None and not self._lost:
                 with contextlib.suppress(Exception):
                     part.close(timeout=1 if quick else 10)
 
-    def _kill_workers(self) -> None:
-        for nanny in getattr(self._cluster, "workers", {}).values():
-            with contextlib.suppress(Exception):
-                os.kill(nanny.process.process.pid, 9)
-
     def _watch(self) -> None:
-        """Sets `lost` as soon as the scheduler does not respond."""
-        since = time.monotonic()
-        while not self._closing and not self._lost.is_set():
+        """Keeps the list of workers, and notices that the scheduler does not respond or that there are no workers."""
+        responded = seen = time.monotonic()
+        while not self._closing and not self._problem:
             try:
-                comm = self.client.scheduler_comm
-                if comm is not None and not comm.comm.closed():
-                    self.client.sync(self.client.scheduler.versions, callback_timeout=_RESPONSE_S / 2)
-                    since = time.monotonic()
+                self.workers = self.client.sync(self.client.scheduler.ncores, callback_timeout=_RESPONSE_S / 2)
+                responded = time.monotonic()
             except Exception:  # noqa: BLE001: any failure counts as no response
                 pass
-            if time.monotonic() - since > _RESPONSE_S:
-                self._lost.set()
-            time.sleep(1)
+            seen = responded if self.workers else seen
+            if time.monotonic() - responded > _RESPONSE_S:
+                self._set_lost()
+            elif responded - seen > _NO_WORKER_S and not self._engine.startswith("slurm:"):
+                self._problem = f"{self._engine}: no worker for {_NO_WORKER_S:.0f} s"
+            time.sleep(1 if self.workers else 0.1)
 
-    @property
-    def dashboard(self) -> str:
+    def _set_lost(self) -> None:
+        self._lost = True
+        self._problem = f"the Dask scheduler of {self._engine} does not answer"
+
+    def _check(self) -> None:
+        if interrupted.is_set():
+            raise KeyboardInterrupt
+        if self._problem:
+            raise EngineError(self._problem)
+
+    def _dashboard(self) -> str:
         """The address of Dask's dashboard; "" if this scheduler has none, or bokeh is missing there."""
         address = str(self.client.dashboard_link)
         try:
@@ -258,195 +265,113 @@ class DaskEngine:
         except (OSError, ValueError):
             return ""
 
-    def workers(self) -> dict[str, Any]:
-        """The scheduler's information about its workers, by address."""
-        return dict(self.client.scheduler_info(n_workers=-1)["workers"])
+    @property
+    def threads(self) -> int:
+        """The threads of all workers."""
+        return sum(self.workers.values())
 
-    def wait_for_workers(self) -> None:
-        """Waits for the first worker; EngineError if there is none in a minute, except for workers of a queue."""
-        start = time.monotonic()
-        while True:
-            found = self.workers()
-            self.slots = sum(w["nthreads"] for w in found.values())
-            if self.slots:
-                return
-            self._check()
-            if time.monotonic() - start > _NO_WORKER_S and not self._engine.startswith("slurm:"):
-                raise EngineError(f"{self._engine}: no worker for {_NO_WORKER_S:.0f} s")
-            time.sleep(0.1)
-
-    def _disconnected(self) -> bool:
-        """Whether the connection to the scheduler is closed."""
-        comm = self.client.scheduler_comm
-        return self._lost.is_set() or self.client.status != "running" or comm is None or bool(comm.comm.closed())
-
-    def _check(self) -> None:
-        if interrupted.is_set():
-            raise KeyboardInterrupt
-        if self._lost.is_set():
-            raise EngineError(f"the Dask scheduler of {self._engine} does not answer")
-
-    def run(self, jobs: Iterator[Job], references: Callable[[str], bytes | None]) -> Iterator[tuple[Job, Result]]:
-        """Runs jobs and yields them with their results as they end. A job that needs references comes after the job
-        that computes them, whose id is their identity; else `references` returns them."""
-        done: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    def run(
+        self, next_job: Callable[[], Job | None], stored_reference: Callable[[str], bytes | None] = lambda name: None
+    ) -> Iterator[tuple[Job, Result]]:
+        """Runs jobs and yields them with their results as they end. `next_job` returns None if there is no job now; the
+        end is when there is none, and none runs. A job that needs references comes after the job that computes them,
+        whose id is their identity; else `stored_reference` returns them."""
+        finished = _module("distributed").as_completed(loop=self.client.loop)
         running: dict[Any, tuple[Any, Job]] = {}
-        length = 1.0  # of a task in s, a running mean: long ones are submitted late, so that workers end together
-        shared: dict[str, Any] = {}  # references of the current points, as futures
-        waiting = self.later
-        deferred: list[Job] = []  # a job whose references must wait
-        exhausted = False
-        last_worker = time.monotonic()
-
-        def submit(job: Job) -> None:
-            job.tries += 1
-            reference = None
-            if job.needs:
-                if job.needs not in shared:
-                    data = references(job.needs)
-                    if data is not None:
-                        kept = {"reference": data, "id": job.needs}
-                        shared[job.needs] = self.client.scatter([kept], hash=False)[0]
-                reference = shared.get(job.needs)
-            where = None
-            if job.avoid:
-                others = [address for address in self.workers() if address != job.avoid]
-                where = others or None
-            # A new key for each task. Tasks of one group stay in the scheduler's queue until a worker is free.
-            key = (f"{job.needs or job.task['kind']}-{self._call}", next(self._numbers))
-            future = self.client.submit(on_worker, job.task, reference, key=key, pure=False, workers=where, retries=0)
-            if job.task["kind"] == "reference":
-                shared[job.id] = future
-            running[key] = (future, job)
-            future.add_done_callback(done.put)
-
-        def release() -> None:
-            needed = {job.needs for _, job in running.values()} | {job.needs for job in waiting + deferred}
-            needed |= {job.id for _, job in running.values() if job.task["kind"] == "reference"}
-            for name in [name for name in list(shared)[:-2] if name not in needed]:
-                del shared[name]
-
+        references: dict[str, Any] = {}  # of running jobs, and the last two, as futures
         try:
             while True:
-                self._check()
-                most = max(2 * _BATCH, 4 * self.slots) if length < 0.5 else 3 * self.slots + 1
-                while len(running) < most and not (exhausted and not waiting and not deferred):
-                    job = waiting.pop() if waiting else deferred.pop() if deferred else next(jobs, None)
-                    if job is None:
-                        exhausted = True
+                threads = max(self.threads, 1)
+                while len(running) < _IN_FLIGHT * threads and len(references) <= threads + 2:
+                    if (job := next_job()) is None:
                         break
-                    new = job.task["kind"] == "reference" or bool(job.needs) and job.needs not in shared
-                    if new and running and len(shared) > self.slots + 2:  # references fill the memory of workers
-                        deferred.append(job)
-                        break
-                    submit(job)
-                if exhausted and not running and not waiting and not deferred:
+                    future = self._submit(job, references, stored_reference)
+                    running[future.key] = future, job
+                    finished.add(future)
+                if not running:
                     return
-                try:
-                    future = done.get(timeout=0.5)
-                except queue.Empty:
-                    self._check()
-                    found = self.workers()
-                    if found:
-                        last_worker = time.monotonic()
-                        self.slots = sum(w["nthreads"] for w in found.values())
-                    elif time.monotonic() - last_worker > _NO_WORKER_S and not self._engine.startswith("slurm:"):
-                        raise EngineError(f"{self._engine}: no worker for {_NO_WORKER_S:.0f} s") from None
-                    continue
-                futures = [future]
-                while len(futures) < _BATCH:
-                    try:
-                        futures.append(done.get_nowait())
-                    except queue.Empty:
-                        break
-                futures = [future for future in futures if future.key in running]
-                together = self._together([f for f in futures if running[f.key][1].task["kind"] != "reference"])
-                for future in futures:
-                    _, job = running.pop(future.key)
-                    if future.key in together:
-                        result, again = together[future.key], False
-                    else:
-                        result, again = self._result(future, job)
-                    length += (result.get("seconds", length) - length) / 8
-                    if again:
-                        shared.pop(job.needs, None)
-                        waiting.append(job)
-                        continue
-                    yield job, result
-                release()
+                self._check()
+                if not (batch := finished.next_batch(block=False)):
+                    time.sleep(_POLL_S)
+                for future, result in zip(batch, self._results(batch), strict=True):
+                    yield running.pop(future.key)[1], result
+                in_use = {name for _, job in running.values() for name in (job.id, job.reference)}
+                for name in [name for name in list(references)[:-2] if name not in in_use]:
+                    del references[name]
         except BaseException as error:
-            if isinstance(error, Exception) and not isinstance(error, EngineError) and self._disconnected():
-                self._lost.set()
-                raise EngineError(f"the Dask scheduler of {self._engine} does not answer") from None
-            ends = self._engine == "local" and isinstance(error, KeyboardInterrupt)  # the workers, with the cluster
-            with contextlib.suppress(Exception):
-                if not self._lost.is_set() and not ends:
+            if isinstance(error, Exception) and not isinstance(error, EngineError) and self.client.status != "running":
+                self._set_lost()
+                raise EngineError(self._problem) from None
+            workers_end = self._engine == "local" and isinstance(error, KeyboardInterrupt)
+            if not self._lost and not workers_end:
+                with contextlib.suppress(Exception):
                     self.client.cancel([future for future, _ in running.values()], force=True)
             raise
 
-    def _together(self, futures: list[Any]) -> dict[Any, Result]:
-        """The results of finished futures in one request; empty if one of them has none."""
-        if any(future.status != "finished" for future in futures):
-            return {}
-        try:
-            results = self.client.sync(self.client._gather, futures, callback_timeout=60)
-            return {future.key: result for future, result in zip(futures, results, strict=True)}
-        except Exception:  # noqa: BLE001: each is then requested alone, for its own error
-            return {}
+    def _submit(
+        self, job: Job, references: dict[str, Any], stored_reference: Callable[[str], bytes | None]
+    ) -> Any:
+        """The future of a job. Jobs of one reference are a group of Dask, which waits in the scheduler's queue until a
+        worker is free; a worker that is lost is repeated with its tasks and the references that it held."""
+        name = job.reference
+        if name and name not in references and (data := stored_reference(name)) is not None:
+            key = (f"reference-{name}-{self._call}", next(self._numbers))
+            references[name] = self.client.submit(_given, {"reference": data, "id": name}, key=key, pure=False)
+        others = [address for address in self.workers if address != job.avoid] if job.avoid else None
+        kind = job.task["kind"]
+        key = (f"{kind}-{job.id if kind == 'reference' else name}-{self._call}", next(self._numbers))
+        future = self.client.submit(on_worker, job.task, references.get(name), key=key, pure=False, workers=others or None)
+        if kind == "reference":
+            references[job.id] = future
+        return future
 
-    def _result(self, future: Any, job: Job) -> tuple[Result, bool]:
-        """The result of a finished future, and whether the job must be submitted again."""
+    def _results(self, futures: Sequence[Any]) -> list[Result]:
+        """The results of futures that have ended, in one request."""
+        done = {k: future for k, future in enumerate(futures) if future.status == "finished"}
+        values: dict[int, Any] = {}
+        if done:
+            with contextlib.suppress(TimeoutError):
+                values = self.client.sync(self.client._gather, done, errors="skip", callback_timeout=_TRANSFER_S)
+        return [values.get(k) or {"error": self._error(future)} for k, future in enumerate(futures)]
+
+    def _error(self, future: Any) -> str:
+        """Why a future has no result. Only the loss of the scheduler cancels one."""
+        if future.cancelled():
+            self._set_lost()
+            raise EngineError(self._problem)
         if future.status == "finished":
-            try:
-                return dict(future.result(timeout=30)), False
-            except Exception as error:  # noqa: BLE001: its worker was lost before the result arrived
-                problem: BaseException = error
-        else:
-            try:
-                problem = future.exception(timeout=5) or EngineError("lost")
-            except KeyboardInterrupt:
-                raise
-            except BaseException as error:  # noqa: BLE001: a cancelled future raises a CancelledError
-                problem = error
-        self._check()
+            return f"its result did not arrive in {_TRANSFER_S:.0f} s"
+        problem = future.exception(timeout=5)
         if type(problem).__name__ == "KilledWorker":
-            return {
-                "error": f"{getattr(problem, 'allowed_failures', 3) + 1} workers were lost while they computed it"
-            }, False
-        if job.tries < _LOST_TRIES:
-            return {}, True
-        return {"error": f"{type(problem).__name__}: {problem}"}, False
+            return f"{problem.allowed_failures + 1} workers were lost while they computed it"
+        return f"{type(problem).__name__}: {problem}"
 
 
-class InProcess:
-    """One child process without Dask, for tasks of `commands`."""
-
-    def __enter__(self) -> InProcess:
-        self._runner = Runner()
-        return self
-
-    def __exit__(self, *rest: Any) -> None:
-        self._runner.stop()
-
-    def compute(self, task: Task, reference: bytes | None = None) -> Result:
-        """The result of one task."""
-        result = self._runner.compute(task, reference, lambda: False)
-        return {**result, "worker": f"{host()}:{os.getpid()}", "host": host(), "name": ""}
+def execute(
+    engine: DaskEngine, next_job: Callable[[], Job | None], take: Callable[[Job, Result], None], failed: dict[str, str],
+    bar: Progress, stored_reference: Callable[[str], bytes | None] = lambda name: None,
+) -> None:  # fmt: skip
+    """Computes jobs; `take` stores a result, `failed` gets the errors by the labels of the jobs."""
+    for job, result in engine.run(next_job, stored_reference):
+        error = result.get("error")
+        if error is None:
+            try:
+                take(job, result)
+            except OSError as problem:
+                error = f"cannot write the result: {problem.strerror or problem}"
+        if error is not None:
+            failed[job.label] = error
+        bar.add(job.samples, error is not None)
+    bar.show(last=True)
 
 
 def engine_of(text: str) -> str:
     """Validates the text of ``--engine``; UsageError with the nearest word if it is wrong."""
-    kind, colon, rest = text.partition(":")
-    if text in ("local", "commands"):
+    kind, _, rest = text.partition(":")
+    address, _, port = rest.removeprefix("//").rpartition(":")
+    if text in ("local", "commands") or (kind == "slurm" and rest):
         return text
-    if (
-        kind == "dask"
-        and rest.startswith("//")
-        and rest[2:].rpartition(":")[2].isdecimal()
-        and rest[2:].rpartition(":")[0]
-    ):
-        return text
-    if kind == "slurm" and rest:
+    if kind == "dask" and rest.startswith("//") and address and port.isdecimal():
         return text
     near = _crescent.nearest(kind, ["local", "commands", "dask", "slurm"])
     raise UsageError(

@@ -18,13 +18,14 @@ from .._sampler import whole
 from .._paths import steps_of
 from ..experiments import Experiment, Measured, load
 from .dataset import COLUMNS, Dataset
-from .engines import DaskEngine, EngineError, InProcess, engine_of, profile_of
+from .engines import DaskEngine, EngineError, engine_of, execute, profile_of
 from .grid import Axis, UsageError, axes_of, grid
 from .identity import NUMERICS, digest
 from .plan import Plan, Point, kept_points, points_of, studies_id
 from .progress import Progress, quantity
+from .runner import Runner
 from .store import Store, locked, read_json, write_whole
-from .tasks import Job, Result
+from .tasks import Job, Result, host
 
 Say = Callable[[str], None]
 Over = Mapping[str, Any] | Sequence[str] | str
@@ -255,27 +256,24 @@ class Run:
     def execute(self, plan: Plan, cost: Mapping[str, float], engine: DaskEngine) -> None:
         """Computes the missing results."""
         bar = Progress(int(cost["tasks"]), cost["samples"], self.options.progress)
-        plan.threads = max(1, engine.slots // max(1, int(cost["references"])))
-        for job, result in engine.run(plan.jobs(), self.store.reference):
-            error = result.get("error")
+        plan.threads = max(1, engine.threads // max(1, int(cost["references"])))
+        planned = plan.jobs()
+        repetitions: list[Job] = []
+
+        def next_job() -> Job | None:
+            return repetitions.pop() if repetitions else next(planned, None)
+
+        def take(job: Job, result: Result) -> None:
             if "first" in job.row:
-                if error is None:
-                    self.compare(job, result)
-                else:
-                    self.failed[job.label] = error
-                continue
-            if error is None:
-                try:
-                    self.take(job, result)
-                    self.computed += 1
-                except OSError as problem:
-                    error = f"cannot write the result: {problem.strerror or problem}"
-            if error is not None:
-                self.failed[job.label] = error
-            elif (again := self.verify_job(job, result)) is not None:
-                engine.later.append(again)
-            bar.add(job.samples, error is not None)
-        bar.show(last=True)
+                self.compare(job, result)
+                return
+            self.take(job, result)
+            self.computed += 1
+            if (again := self.verify_job(job, result)) is not None:
+                repetitions.append(again)
+                bar.tasks += 1
+
+        execute(engine, next_job, take, self.failed, bar, self.store.reference)
 
     def join(self) -> int:
         """Writes the run of all seeds of each finished point. Returns how many points have failing assertions."""
@@ -370,7 +368,7 @@ def _commands(run: Run, plan: Plan) -> Iterator[str]:
     references = {point.reference: plan.reference(point) for point in run.points}
     for job in sorted(plan.jobs(), key=lambda job: job.task["kind"] != "reference"):
         path = run.store.root / "tasks" / f"{job.id}.task"
-        write_whole(path, pickle.dumps((job, references.get(job.needs))))
+        write_whole(path, pickle.dumps((job, references.get(job.reference))))
         yield f"{shlex.quote(sys.executable)} -m crescent._sweep task {shlex.quote(str(path))}  # {job.label}"
 
 
@@ -380,14 +378,18 @@ def run_task(path: Path) -> int:
 
     store = Store(path.parent.parent.parent)
     job, reference = pickle.loads(path.read_bytes())
-    with InProcess() as engine:
+    runner = Runner()
+    try:
         for part in (reference, job):
             if part is None or _is_there(store, part):
                 continue
-            result = engine.compute(part.task, store.reference(part.needs) if part.needs else None)
+            data = store.reference(part.reference) if part.reference else None
+            result = runner.compute(part.task, data, lambda: False)
             if "error" in result:
                 raise EngineError(f"{part.label}: {result['error']}")
-            keep(store, part, result)
+            keep(store, part, {**result, "worker": f"{host()}:{os.getpid()}", "host": host()})
+    finally:
+        runner.stop()
     return 0
 
 
@@ -417,10 +419,7 @@ def _run_sweep(base: Experiment, options: Options, dry_run: bool) -> Sweep:
         for line in _commands(run, plan):
             print(line)
     elif cost["tasks"]:
-        with DaskEngine(options.engine, options.workers) as engine:
-            engine.wait_for_workers()
-            if address := engine.dashboard:
-                say(f"dashboard: {address}")
+        with DaskEngine(options.engine, options.workers, say) as engine:
             try:
                 run.execute(plan, cost, engine)
             finally:

@@ -44,11 +44,10 @@ class Job:
     samples: float = 0.0
     bytes: float = 0.0  #: of its result on disk
     avoid: str = ""  #: the address of a worker that must not compute it
-    tries: int = 0
 
     @property
-    def needs(self) -> str:
-        """The identity of its references; "" if it needs none."""
+    def reference(self) -> str:
+        """The identity of the references that it needs; "" if it needs none."""
         return str(self.task.get("reference", ""))
 
 
