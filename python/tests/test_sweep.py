@@ -4,6 +4,7 @@ Every process is a real one: local clusters, a scheduler and workers as a user s
 """
 
 import contextlib
+import hashlib
 import json
 import os
 import re
@@ -22,6 +23,7 @@ for needed in ("dask", "distributed", "pyarrow"):
     pytest.importorskip(needed)
 
 import distributed  # noqa: E402
+import pyarrow.parquet as parquet  # noqa: E402
 
 from crescent._sweep.dataset import read  # noqa: E402
 from crescent._sweep.engines import engine_of, profile_of, usable_cores  # noqa: E402
@@ -76,7 +78,16 @@ def until(condition, seconds=60):
 
 
 def results(out):
-    return sorted(Path(out).glob("store/results/*/*/*.json"))
+    return sorted(Path(out).glob("data/*.parquet"))
+
+
+def arms_in(path):
+    return set(parquet.read_table(path, partitioning=None)["arm"].to_pylist())
+
+
+def is_whole(path):
+    """Whether the checksum in the name of a file is that of its bytes."""
+    return path.stem.endswith("-" + hashlib.sha256(path.read_bytes()).hexdigest()[:16])
 
 
 @pytest.fixture
@@ -161,7 +172,7 @@ def test_a_sweep_has_the_bytes_of_runs_and_computes_only_what_is_new(tiny, tmp_p
 
     more = crescent.sweep(tiny, over=over, seeds=5, out=out, workers=2)  # seeds 4 and 5 alone
     new = [path for path in results(out) if path not in before]
-    assert {path.name for path in new} == {"4-5.json"} and more.computed == 8
+    assert {tuple(path.stem.split("-")[2:4]) for path in new} == {("4", "5")} and more.computed == 8
     assert all(path.stat().st_mtime_ns == when for path, when in before.items())
 
     e = crescent.load(tiny, {"ball.s": 8, "key.radius": 0.3, "seeds": 5})
@@ -178,9 +189,9 @@ def test_a_sweep_has_the_bytes_of_runs_and_computes_only_what_is_new(tiny, tmp_p
     tiny.write_text(text)
     known = set(results(out))
     added = crescent.sweep(tiny, over=over, seeds=5, out=out, workers=2)
-    new = [json.loads(path.read_text())["csv"] for path in results(out) if path not in known]
+    new = [path for path in results(out) if path not in known]
     assert not added.failed and len(new) == 4
-    assert all({line.split(",")[0] for line in csv.splitlines()[1:]} == {"uniform"} for csv in new)
+    assert all(arms_in(path) == {"uniform"} for path in new)
 
     e = crescent.load(tiny, {"ball.s": 32, "key.radius": 0.2, "seeds": 5})
     one = crescent.run(e, studies=True)._core.json
@@ -303,10 +314,11 @@ def test_a_sampler_that_fails_leaves_the_others_and_is_finished_later(tmp_path, 
     with_bad_arm(tmp_path, "pass")
     ended = command(*(word if word != "ball.s=8,zz" else "ball.s=8" for word in words))
     assert ended.returncode == 0, ended.stderr
-    fresh = [path for path in results(out) if path not in known]
-    names = {json.loads(path.read_text())["csv"].splitlines()[1].split(",")[0] for path in fresh}
+    names = {arm for path in results(out) if path not in known for arm in arms_in(path)}
     assert names <= {"good", "bad"} and "bad" in names  # both are in the file that changed
-    assert all(path.stat().st_mtime_ns == when for path, when in known.items())
+    others = out / "store" / "results"  # of the sampler before the change
+    kept = {path: path if path.exists() else others / path.name for path in known}
+    assert all(path.stat().st_mtime_ns == known[before] for before, path in kept.items())
 
 
 def test_a_declared_version_identifies_a_sampler(tmp_path):
@@ -467,7 +479,7 @@ def test_a_killed_worker_is_replaced_and_a_killed_scheduler_ends_the_sweep(slow,
     assert process.returncode == 3 and "does not answer" in said, said
     assert time.monotonic() - start < 10
     kept = results(out)
-    assert all(json.loads(path.read_text()) for path in kept)
+    assert all(is_whole(path) for path in kept)
     ended = command(slow, "--over", "ball.s=8,16,32", "--seeds", "7", "--out", out, "--workers", "2")
     assert ended.returncode == 0, ended.stderr
     assert set(kept) <= set(results(out))
@@ -539,6 +551,7 @@ def test_a_full_disk_fails_tasks_and_leaves_whole_files(tiny, tmp_path):
     assert "No space left on device" in said and "Traceback" not in said, said
     for path in (tmp_path / "kept").rglob("*.json"):
         json.loads(path.read_text())
+    assert all(is_whole(path) for path in results(tmp_path / "kept"))
 
 
 def test_the_references_of_a_pair_reach_the_workers(tmp_path):

@@ -1,6 +1,5 @@
 """Checks over a grid: of samplers in files, of built-in ones, and of the arms of an experiment."""
 
-import json
 import subprocess
 import sys
 
@@ -11,6 +10,7 @@ import crescent
 for needed in ("dask", "distributed", "pyarrow"):
     pytest.importorskip(needed)
 
+import pyarrow.parquet as parquet  # noqa: E402
 from samplers import cosine_pdf  # noqa: E402
 from tiny import TINY  # noqa: E402
 
@@ -77,8 +77,10 @@ def test_a_check_over_a_grid_maps_where_a_sampler_is_wrong(tmp_path):
     assert "wrong: 2 of 4" in ended.stdout and "p integrates to 1.0" in ended.stdout, ended.stdout
     again = command("--check", f"{tmp_path}/power.py:Power", "--over", "k=1,2,3", "--over", "factor=1", "--out", out)
     assert "1 to check, 2 there" in again.stderr, again.stderr
-    shares = [json.loads(path.read_text())["alpha"] for path in out.glob("store/checks/*.json")]
+    tables = [parquet.read_table(path, partitioning=None) for path in out.glob("data/*.parquet")]
+    shares = [table["alpha"][0].as_py() for table in tables]
     assert len(shares) == 5 and sum(shares) < 1e-3
+    assert {"k", "factor", "kind", "verdict", "message"} <= set(tables[0].column_names)
     for words, says in (
         (["power.py:Powr", "--over", "k=1"], "did you mean 'Power'"),
         (["power.py:Power", "--over", "kk=1"], "did you mean 'k'"),

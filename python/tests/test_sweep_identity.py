@@ -19,6 +19,7 @@ for needed in ("dask", "distributed", "pyarrow"):
 
 from crescent._sweep.attributes import with_attributes  # noqa: E402
 from crescent._sweep.grid import UsageError  # noqa: E402
+from crescent._sweep.dataset import COLUMNS, Results  # noqa: E402
 from crescent._sweep.identity import arms_of  # noqa: E402
 from crescent._sweep.state import state_of  # noqa: E402
 from crescent._sweep.store import Store, locked, write_whole  # noqa: E402
@@ -164,29 +165,53 @@ def test_points_that_differ_in_an_arm_alone_are_told_apart(tmp_path):
 
 def test_a_damaged_result_is_not_used(tmp_path):
     store = Store(tmp_path)
-    path = store.add("scene", "arm", 1, 2, {"json": "x" * 100, "csv": "y"})
-    store.add_studies("s", {"json": "{}"})
-    store.add_check("c", {"state": "right"})
-    store.add_reference("r", b"reference")
-    assert store.blocks("scene", "arm") == [(1, 2)] and store.studies("s") == "{}" and store.check("c")
-    assert store.has_reference("r") and store.reference("r") == b"reference"
-    for file in (path, *(tmp_path / "store" / name for name in ("studies/s.json", "checks/c.json", "references/r"))):
+    row = dict.fromkeys(COLUMNS, None)
+    path = Results(tmp_path, {}).add("scene-arm-1-2-point", [row], {}, {"json": "x" * 100, "worker": ""})
+    check = Results(tmp_path, {}).add("c", [row], {}, {"state": "right", "worker": ""})
+    store.add("studies", "s", b"{}")
+    store.add("references", "r", b"reference")
+    there = Results(tmp_path, {})
+    assert there.blocks("scene", "arm") == [(1, 2)] and there.text("scene", "arm", 1, 2) == "x" * 100
+    assert there.about(there.find("c"))["state"] == "right" and store.read("studies", "s") == b"{}"
+    assert store.has("references", "r") and store.read("references", "r") == b"reference"
+    for file in (path, check, *(tmp_path / "store" / name for name in ("studies/s", "references/r"))):
         whole = file.read_bytes()
         changed = bytearray(whole)
         changed[len(whole) // 2] ^= 1
         for damaged in (whole[: len(whole) // 2], bytes(changed), b"", b"null"):
             file.write_bytes(damaged)
-            fresh = Store(tmp_path)
-            found = (fresh.blocks("scene", "arm"), fresh.studies("s"), fresh.check("c"), fresh.has_reference("r"))
+            fresh, results = Store(tmp_path), Results(tmp_path, {})
+            blobs = (fresh.has("studies", "s"), fresh.has("references", "r"))
+            found = (results.blocks("scene", "arm"), results.find("c"), *blobs)
             assert sum(map(bool, found)) == 3, (file, damaged)
         file.write_bytes(whole)
+
+
+def test_a_result_that_a_command_wrote_meanwhile_stays(tmp_path):
+    row = dict.fromkeys(COLUMNS, None)
+    about = {"json": "x", "worker": ""}
+    names = [f"scene-arm-{k}-{k}-point" for k in range(4)]
+    first = Results(tmp_path, {})
+    first.add(names[0], [row], {}, about)
+    first.add(names[1], [row], {}, about)
+    first.forget("scene", "arm")  # --no-resume
+    meanwhile = Results(tmp_path, {}, pattern="none")
+    meanwhile.add(names[2], [row], {}, about)
+    meanwhile.add(names[3], [row], {}, about).write_bytes(b"damaged")
+    first.sync({})
+    assert [path.stem[:19] for path in (tmp_path / "data").iterdir()] == [names[2]]
+    second = Results(tmp_path, {})
+    second.sync({})  # of no point of the sweep
+    assert second.blocks("scene", "arm") == [(2, 2)] and not list((tmp_path / "data").iterdir())
+    second.sync({names[2]: {}})
+    assert len(list((tmp_path / "data").iterdir())) == 1 and not list((tmp_path / "store" / "results").iterdir())
 
 
 def test_a_truncated_result_is_computed_again(tmp_path):
     e = crescent.parse(TINY)
     run = functools.partial(crescent.sweep, e, seeds=2, out=tmp_path / "out", workers=1, verify=0)
     first = run().measured().metrics
-    for file in (tmp_path / "out" / "store").rglob("results/*/*/*.json"):
+    for file in (tmp_path / "out" / "data").glob("*.parquet"):
         file.write_bytes(file.read_bytes()[:100])
     again = run()
     assert again.computed > 0

@@ -127,14 +127,14 @@ def sweep(
             say=_silent,
         )  # fmt: skip
         return run_arm_sweep(e, check, pixels or 0, sampler_versions or {}, checking)
-    from .sweep import run_sweep, settled_options
+    from .sweep import Options, run_sweep
 
-    options = settled_options(
-        over=over, zip=zip, seeds=seeds, engine=engine, out=out, films=films, resume=resume,
-        verify=0.01 if verify is None else verify, workers=workers, sampler_versions=sampler_versions,
+    options = Options(
+        over=over, zip=zip, seeds=seeds, engine=engine, out=out, films=films, resume=resume, dry_run=dry_run,
+        verify=0.01 if verify is None else verify, workers=workers, versions=sampler_versions or {},
         progress=progress, say=_silent,
     )  # fmt: skip
-    return run_sweep(e, options, dry_run)
+    return run_sweep(e, options)
 
 
 def sweep_check(

@@ -10,7 +10,6 @@ from __future__ import annotations
 import ast
 import contextlib
 import functools
-import io
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,15 +22,20 @@ import numpy as np
 from .. import _crescent, arms as built_in
 from .._sampler import whole
 from ..experiments import Experiment
+from .dataset import Results
 from .engines import DaskEngine, engine_of, execute
 from .grid import UsageError, axes_of, grid, hint, label, short
 from .identity import NUMERICS, _of_python, arms_of, digest, scene_id
 from .plan import points_of
 from .progress import Progress
-from .store import Store, locked, read_json, write_whole
+from .store import locked, read_json, write_whole
 from .tasks import Job, Result
-from .sweep import Say, _folder, say_unhashable, usable_points
+from .sweep import Say, folder_of, say_unhashable, usable_points
 
+_COLUMNS = {
+    "kind": "string", "case": "string", "verdict": "string", "state": "string", "message": "string", "cause": "string",
+    "alpha": "double", "sampler_id": "string", "version": "string", "worker": "string", "host": "string",
+}  # fmt: skip
 KINDS = ("right", "heavy-tailed", "inconclusive", "wrong", "error")
 
 
@@ -174,7 +178,7 @@ def _run(title: str, options: CheckOptions, checks_at: Callable[[list[dict[str, 
         raise UsageError("--check: expected at least one --over PATH=VALUES")
     if engine_of(options.engine) == "commands":
         raise UsageError("--check: expected --engine local, dask://HOST:PORT or slurm:PROFILE")
-    folder = _folder(options.out)
+    folder = folder_of(options.out)
     checks, failed = checks_at(grid(axes, options.zip))
     with contextlib.nullcontext() if options.dry_run else locked(folder):
         return _check_points(title, {check.id: check for check in checks}, failed, folder, options)
@@ -240,19 +244,12 @@ def _of_arms(
 def _check_points(
     title: str, checks: dict[str, _Check], failed: dict[str, str], folder: Path, options: CheckOptions
 ) -> CheckSweep:
-    store = Store(folder)
     alpha = options.alpha
     state = read_json(folder / "sweep.json") or {"kind": "check", "calls": 0, "points": [], "alpha": alpha}
     if state.get("kind") != "check":
         raise UsageError(f"--out {options.out}: has a sweep of runs; expected another folder for checks")
     if state["alpha"] != alpha:
         raise UsageError(f"--alpha {alpha:g}: the sweep in {folder} has alpha {state['alpha']:g}; expected the same")
-    new = {name: check for name, check in checks.items() if not options.resume or store.check(name) is None}
-    options.say(f"{len(checks)} points: {len(new)} to check, {len(checks) - len(new)} there")
-    if options.dry_run:
-        return CheckSweep(folder, [], 0, failed)
-    share = alpha / 2 ** (state["calls"] + 1) / max(len(new), 1)
-    computed = 0
     samplers = {check.sampler for check in checks.values()}
     paths = set(next(iter(checks.values())).values)
     older = [
@@ -260,63 +257,54 @@ def _check_points(
         if p["id"] not in checks and p["sampler"] in samplers and set(p["values"]) == paths
     ]  # fmt: skip
     points = [*older, *({"id": c.id, "values": c.values, "sampler": c.sampler} for c in checks.values())]
+    axes: dict[str, list[Any]] = {}
+    for point in points:
+        for path, value in point["values"].items():
+            if value not in axes.setdefault(path, []):
+                axes[path].append(value)
+    results = Results(folder, axes, _COLUMNS)
+    new = {name: check for name, check in checks.items() if not options.resume or results.find(name) is None}
+    options.say(f"{len(checks)} points: {len(new)} to check, {len(checks) - len(new)} there")
+    if options.dry_run:
+        return CheckSweep(folder, [], 0, failed)
+    share = alpha / 2 ** (state["calls"] + 1) / max(len(new), 1)
+    computed = 0
 
     def write_state() -> None:
-        found: dict[str, list[Any]] = {}
-        for point in points:
-            for path, value in point["values"].items():
-                if value not in found.setdefault(path, []):
-                    found[path].append(value)
-        known = {
-            "format": "crescent sweep 1", "kind": "check", "title": title, "alpha": alpha, "axes": found,
+        state_now = {
+            "format": "crescent sweep 2", "kind": "check", "title": title, "alpha": alpha, "axes": axes,
             "calls": state["calls"] + bool(new), "points": points, "numerics": NUMERICS, "failed": failed,
         }  # fmt: skip
-        write_whole(folder / "sweep.json", json.dumps(known, indent=1))
+        write_whole(folder / "sweep.json", json.dumps(state_now, indent=1))
 
     def take(job: Job, result: Result) -> None:
         nonlocal computed
-        store.add_check(job.id, {**result, "values": job.row, "alpha": share, "version": NUMERICS})
+        kept = {**result, "alpha": share, "version": NUMERICS}
+        columns = {key: kept[key] for key in ("alpha", "version", "worker", "host")}
+        columns |= {"kind": kind_of(result), "sampler_id": checks[job.id].sampler}
+        results.add(job.id, [{**verdict, **columns} for verdict in result["verdicts"]], job.row, kept)
         computed += 1
 
     write_state()
+    results.sync({point["id"]: point["values"] for point in points if results.find(point["id"])})
     if new:
         jobs = (Job(name, {**check.task, "alpha": share}, label(check.values), check.values) for name, check in new.items())
         with DaskEngine(options.engine, options.workers, options.say) as engine:
             execute(engine, lambda: next(jobs, None), take, failed, Progress(len(new), 0, options.progress))
     write_state()
-    _write_dataset(folder)
     return CheckSweep(folder, found_checks(folder), computed, failed)
 
 
 def found_checks(out: str | PathLike[str]) -> list[dict[str, Any]]:
     """The points that were checked, with their verdicts."""
-    store = Store(Path(out))
-    state = read_json(Path(out) / "sweep.json")
+    state = read_json(Path(out) / "sweep.json") or {"points": [], "axes": {}}
+    results = Results(Path(out), state["axes"], _COLUMNS)
     points = []
-    for point in state["points"] if state else ():
-        if (result := store.check(point["id"])) is not None:
-            points.append({**point, **result, "values": point["values"], "kind": kind_of(result)})
+    for point in state["points"]:
+        if (entry := results.find(point["id"])) is not None:
+            result = results.about(entry)
+            points.append({**point, **result, "kind": kind_of(result)})
     return points
-
-
-def _write_dataset(out: Path) -> None:
-    """data/verdicts.parquet: one row for each verdict."""
-    import pyarrow as pa  # type: ignore[import-untyped,import-not-found,unused-ignore]
-    import pyarrow.parquet as parquet  # type: ignore[import-untyped,import-not-found,unused-ignore]
-
-    points = found_checks(out)
-    rows = [
-        {
-            **p["values"], "kind": p["kind"], **v, "alpha": p["alpha"], "sampler_id": p["sampler"],
-            "version": p["version"], "worker": p["worker"], "host": p["host"],
-        }
-        for p in points
-        for v in p["verdicts"]
-    ]  # fmt: skip
-    if rows:
-        buffer = io.BytesIO()
-        parquet.write_table(pa.Table.from_pylist(rows), buffer, compression="zstd")
-        write_whole(out / "data" / "verdicts.parquet", buffer.getvalue())
 
 
 def _sorted(values: list[Any]) -> list[Any]:

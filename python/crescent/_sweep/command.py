@@ -199,19 +199,19 @@ def _check(given: argparse.Namespace) -> int:
 
 
 def _run(given: argparse.Namespace) -> int:
-    from .sweep import experiment_of, run_sweep, settled_options, with_settings
+    from .sweep import Options, experiment_of, run_sweep, with_settings
 
     if not given.file:
         raise UsageError("expected FILE, an experiment, or --check SAMPLER, or summary DIR")
     _refuse(given, _OF_CHECKS, "is of a check: expected --check too")
     stem = os.path.basename(given.file).removesuffix(".toml")
     out = given.out or f"out/{stem}-sweep"
-    options = settled_options(
+    options = Options(
         over=given.over, zip=given.zip, seeds=given.seeds, engine=given.engine, out=out, films=given.films,
-        resume=given.resume, verify=given.verify or "1%", workers=given.workers, sampler_versions=_versions(given),
-        progress=not given.quiet, say=_say,
+        resume=given.resume, dry_run=given.dry_run, verify=given.verify or "1%", workers=given.workers,
+        versions=_versions(given), progress=not given.quiet, say=_say,
     )  # fmt: skip
-    result = run_sweep(with_settings(experiment_of(given.file), given.set), options, given.dry_run)
+    result = run_sweep(with_settings(experiment_of(given.file), given.set), options)
     if given.dry_run:
         return 3 if result.failed else 0
     if given.engine != "commands":

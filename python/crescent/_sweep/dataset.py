@@ -1,125 +1,223 @@
-"""The results as an Arrow dataset in Parquet: ``data/*.parquet``, one file a result, one row a number.
+"""The results of a sweep in Parquet: a file for each result, a row for each number. docs/clusters.md lists the columns.
 
-docs/clusters.md lists the columns. A file whose name begins with "_" is no part of the dataset for any reader.
+The metadata of a file have what no row has, such as the text of metrics.json, as compressed JSON. A file is named by the
+identity of its result and by the checksum of its bytes, so that one that is truncated or changed is recognised.
 """
 
 from __future__ import annotations
 
+import base64
 import csv
+import hashlib
 import io
 import json
 import os
 import statistics
-from collections.abc import Mapping, Sequence
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from .store import read_json, write_whole
+from .store import write_whole
 
-COLUMNS = (
-    "point", "arm", "sampler", "n", "s", "seed", "metric", "region", "value", "experiment", "sampler_id", "version",
-    "worker", "host", "isa", "suspect",
-)  # fmt: skip
+COLUMNS = {
+    "point": "string", "arm": "string", "sampler": "string", "n": "int64", "s": "double", "seed": "int64",
+    "metric": "string", "region": "string", "value": "double", "experiment": "string", "sampler_id": "string",
+    "version": "string", "worker": "string", "host": "string", "isa": "string", "suspect": "bool",
+}  # fmt: skip
+
+Row = Mapping[str, Any]
 
 
-def _column(values: Sequence[Any]) -> Any:
-    """An Arrow type for the values of a swept key: lists are JSON texts."""
-    import pyarrow as pa  # type: ignore[import-untyped,import-not-found,unused-ignore]
-
+def _type(values: Sequence[Any]) -> str:
+    """The Arrow type for the values of a swept key: lists are JSON texts."""
     kinds = {type(value) for value in values}
     if kinds == {bool}:
-        return pa.bool_()
+        return "bool"
     if kinds <= {int}:
-        return pa.int64()
-    if kinds <= {int, float}:
-        return pa.float64()
-    return pa.string()
+        return "int64"
+    return "double" if kinds <= {int, float} else "string"
 
 
-def _at_equal_time(rows: Sequence[Mapping[str, str]], times: Sequence[Sequence[Any]]) -> list[dict[str, str]]:
+def _at_equal_time(rows: Sequence[Mapping[str, str]], times: Sequence[Sequence[Any]]) -> Iterator[dict[str, str]]:
     """Rows with the seconds of N samples of all pixels on one thread, the median over the seeds of the result, and the
     efficiency at equal time, 1 / (variance times seconds of a pixel)."""
-    out: list[dict[str, str]] = []
     for s in {float(row[2]) for row in times}:
         seconds = statistics.median(row[4] / row[1] for row in times if float(row[2]) == s)
-        a_sample = statistics.median(row[4] / row[3] for row in times if float(row[2]) == s)
+        seconds_of_pixel = statistics.median(row[4] / row[3] for row in times if float(row[2]) == s)
         of_s = [row for row in rows if row["s"] and float(row["s"]) == s]
-        for n, seed in dict.fromkeys((row["n"], row["seed"]) for row in of_s):
-            first = next(row for row in of_s if (row["n"], row["seed"]) == (n, seed))
-            out.append({**first, "metric": "seconds", "region": "", "value": repr(seconds * int(n))})
+        for row in {(row["n"], row["seed"]): row for row in reversed(of_s)}.values():
+            yield {**row, "metric": "seconds", "region": "", "value": repr(seconds * int(row["n"]))}
         for row in of_s:
             if row["metric"] == "var" and row["value"] and float(row["value"]) > 0:
-                value = 1 / (float(row["value"]) * a_sample * int(row["n"]))
-                out.append({**row, "metric": "efficiency_time", "value": repr(value)})
-    return out
+                value = 1 / (float(row["value"]) * seconds_of_pixel * int(row["n"]))
+                yield {**row, "metric": "efficiency_time", "value": repr(value)}
 
 
-class Dataset:
-    """The folder ``data``. `axes`: the values of each swept key over all points, which decide its type."""
+def rows_of_part(table: str, times: Sequence[Sequence[Any]]) -> list[Row]:
+    """The rows of a metrics.csv, and those of its times."""
 
-    def __init__(self, out: Path, axes: Mapping[str, Sequence[Any]]) -> None:
+    def number(text: str) -> float | None:
+        value = float(text) if text else float("nan")
+        return None if value != value else value
+
+    rows = list(csv.DictReader(io.StringIO(table, newline="")))
+    return [
+        {**row, "n": int(row["n"]), "seed": int(row["seed"]), "s": number(row["s"]), "value": number(row["value"])}
+        for row in [*rows, *_at_equal_time(rows, times)]
+    ]
+
+
+class Stored(NamedTuple):
+    """A file with a result."""
+
+    path: Path
+    has_columns: bool  #: whether its columns are those of the dataset
+    suspect: bool
+    worker: str
+
+
+def _identity(name: str) -> str:
+    """What the files of one result share: SCENE-ARM-FIRST-LAST of SCENE-ARM-FIRST-LAST-POINT; of a check all."""
+    return "-".join(name.split("-")[:4])
+
+
+def _group(name: str) -> str:
+    """SCENE-ARM of a name; of a check all."""
+    return "-".join(name.split("-")[:2])
+
+
+class Results:
+    """Results by name: in ``data`` those of the points of the sweep, in ``store/results`` those of other points.
+
+    The name of a part is SCENE-ARM-FIRST-LAST-POINT: an arm at a scene, a block of seeds, the point of the rows. `axes`:
+    the values of each swept key over all points, which decide its type. `pattern`: of the files that are read.
+    """
+
+    def __init__(
+        self, out: Path, axes: Mapping[str, Sequence[Any]], columns: Mapping[str, str] = COLUMNS, pattern: str = "*"
+    ) -> None:
         import pyarrow as pa  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
-        self.folder = out / "data"
-        self._types = {path: _column(values) for path, values in axes.items()}
-        text, real, whole = pa.string(), pa.float64(), pa.int64()
-        own = {"n": whole, "s": real, "seed": whole, "value": real, "suspect": pa.bool_()}
-        self.schema = pa.schema([*self._types.items(), *((name, own.get(name, text)) for name in COLUMNS)])
-        state = {"schema": [[field.name, str(field.type)] for field in self.schema]}
-        if read_json(self.folder / "_schema.json") != state:
-            self.clear()
-            write_whole(self.folder / "_schema.json", json.dumps(state))
+        self._data, self._others = out / "data", out / "store" / "results"
+        self._columns = columns
+        self._axes = {path: f"values.{path}" if path in columns else path for path in axes}
+        types = {**{self._axes[path]: _type(values) for path, values in axes.items()}, **columns}
+        self._schema = pa.schema([(name, pa.type_for_alias(kind)) for name, kind in types.items()])
+        self._groups: dict[str, dict[str, Stored]] = {}
+        self._forgotten: set[Path] = set()
+        for folder in (self._others, self._data):  # of two files of one name that in `data` counts
+            for path in folder.glob(f"{pattern}.parquet"):
+                if (data := _whole_bytes(path)) is not None:
+                    self._set(path.stem.rpartition("-")[0], path, data)
 
-    def clear(self) -> None:
-        """Removes every file: they are regenerated from the results."""
-        for path in self.folder.glob("*.parquet"):
-            path.unlink()
+    def _set(self, name: str, path: Path, data: bytes) -> None:
+        import pyarrow.parquet as parquet  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
-    def names(self) -> set[str]:
-        """The files that are there."""
-        return {path.name for path in self.folder.glob("*.parquet")}
+        schema = parquet.read_schema(io.BytesIO(data))
+        entry = Stored(path, schema.equals(self._schema), b"suspect" in schema.metadata, schema.metadata[b"worker"].decode())
+        self._groups.setdefault(_group(name), {})[name] = entry
 
-    def remove(self, name: str) -> None:
-        """Removes a file."""
-        (self.folder / name).unlink(missing_ok=True)
+    def find(self, name: str) -> Stored | None:
+        """The file of a name."""
+        return self._groups.get(_group(name), {}).get(name)
 
-    def write(self, name: str, point: Mapping[str, Any], result: Mapping[str, Any], suspect: bool) -> None:
-        """Writes the rows of one result; `point`: its swept values under "values", and its constant columns."""
+    def blocks(self, scene: str, arm: str, suspect: bool = False) -> list[tuple[int, int]]:
+        """The blocks of seeds that are there, ascending; `suspect`: also those that are suspect."""
+        found = self._groups.get(f"{scene}-{arm}", {})
+        names = (name.split("-") for name, entry in found.items() if suspect or not entry.suspect)
+        return sorted({(int(first), int(last)) for _, _, first, last, _ in names})
+
+    def text(self, scene: str, arm: str, first: int, last: int) -> str:
+        """The metrics.json of a block that is there."""
+        group = self._groups[f"{scene}-{arm}"].items()
+        block = f"{scene}-{arm}-{first}-{last}"
+        return str(self.about(next(e for name, e in group if _identity(name) == block and not e.suspect))["json"])
+
+    def about(self, entry: Stored) -> dict[str, Any]:
+        """What the metadata of a file have."""
+        import pyarrow.parquet as parquet  # type: ignore[import-untyped,import-not-found,unused-ignore]
+
+        packed = parquet.read_schema(entry.path).metadata[b"crescent"]
+        return dict(json.loads(zlib.decompress(base64.b64decode(packed))))
+
+    def add(self, name: str, rows: Sequence[Row], constants: Row, about: Row, suspect: bool = False) -> Path:
+        """Writes a result in place of an earlier one. `constants`: swept keys and other columns with one value, in place
+        of those in rows; `about`: what is kept besides, with the worker."""
         import pyarrow as pa  # type: ignore[import-untyped,import-not-found,unused-ignore]
         import pyarrow.parquet as parquet  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
-        rows = list(csv.DictReader(io.StringIO(result["csv"], newline="")))
-        rows += _at_equal_time(rows, result.get("times", []))
-        count = len(rows)
-
-        def number(text: str) -> float | None:
-            value = float(text) if text else float("nan")
-            return None if value != value else value
-
-        columns: dict[str, Any] = {}
-        for path, kind in self._types.items():
-            value = point["values"][path]
-            if kind == pa.string() and not isinstance(value, str):
-                value = json.dumps(value)
-            columns[path] = [value] * count
-        columns |= {
-            "arm": [row["arm"] for row in rows],
-            "n": [int(row["n"]) for row in rows],
-            "s": [number(row["s"]) for row in rows],
-            "seed": [int(row["seed"]) for row in rows],
-            "metric": [row["metric"] for row in rows],
-            "region": [row["region"] for row in rows],
-            "value": [number(row["value"]) for row in rows],
-            "suspect": [suspect] * count,
-        }
-        for name_ in ("point", "sampler", "sampler_id"):
-            columns[name_] = [point[name_]] * count
-        for name_ in ("experiment", "version", "worker", "host", "isa"):
-            columns[name_] = [result[name_]] * count
-        table = pa.table([pa.array(columns[f.name], f.type) for f in self.schema], schema=self.schema)
+        constants = {self._axes.get(column, column): value for column, value in constants.items()}
+        if self._columns is COLUMNS:
+            constants["suspect"] = suspect
+        arrays = []
+        for field in self._schema:
+            values = [constants.get(field.name, row.get(field.name)) for row in rows]
+            if field.type == pa.string():
+                values = [v if isinstance(v, str) or v is None else json.dumps(v) for v in values]
+            arrays.append(pa.array(values, field.type))
+        packed = base64.b64encode(zlib.compress(json.dumps(about).encode()))
+        metadata = {"crescent": packed, "worker": about["worker"], **({"suspect": "true"} if suspect else {})}
         buffer = io.BytesIO()
-        parquet.write_table(table, buffer, compression="zstd")
-        write_whole(self.folder / name, buffer.getvalue())
+        with parquet.ParquetWriter(buffer, self._schema, compression="zstd", store_schema=False) as writer:
+            writer.write_table(pa.table(arrays, schema=self._schema))
+            writer.add_key_value_metadata(metadata)
+        data = buffer.getvalue()
+        path = self._data / f"{name}-{_checksum(data)}.parquet"
+        write_whole(path, data)
+        earlier = self.find(name)
+        if earlier is not None and earlier.path != path:
+            earlier.path.unlink(missing_ok=True)
+        self._set(name, path, data)
+        return path
+
+    def _add_again(self, name: str, entry: Stored, constants: Row, suspect: bool) -> None:
+        """Writes the rows of a file once more, with other constants."""
+        import pyarrow.parquet as parquet  # type: ignore[import-untyped,import-not-found,unused-ignore]
+
+        rows = parquet.read_table(entry.path, partitioning=None).to_pylist()
+        self.add(name, rows, constants, self.about(entry), suspect)
+
+    def mark(self, workers: set[str]) -> None:
+        """Marks the results of workers as suspect: the next call computes them again."""
+        entries = [item for group in self._groups.values() for item in group.items() if item[1].worker in workers]
+        for name, entry in entries:
+            self._add_again(name, entry, {}, suspect=True)
+
+    def forget(self, scene: str, arm: str) -> None:
+        """Leaves out the results of an arm at a scene, whose files sync() removes."""
+        self._forgotten |= {entry.path for entry in self._groups.pop(f"{scene}-{arm}", {}).values()}
+
+    def sync(self, wanted: Mapping[str, Row]) -> None:
+        """Makes ``data`` agree with the points of the sweep: `wanted` are the names of their results, with the columns
+        of their points. Files of other points are moved; those that are damaged or forgotten are removed."""
+        for name, constants in wanted.items():
+            entry = self.find(name)
+            same = [e for other, e in self._groups[_group(name)].items() if _identity(other) == _identity(name)]
+            sound = next((e for e in same if not e.suspect), None)
+            if entry is None or entry.path.parent != self._data or not entry.has_columns or (entry.suspect and sound):
+                source = sound or entry or same[0]
+                self._add_again(name, source, constants, source.suspect)
+        for path in (*self._data.glob("*.parquet"), *self._others.glob("*.parquet")):
+            name = path.stem.rpartition("-")[0]
+            entry = self.find(name)
+            if entry is None or entry.path != path:  # a whole one may be new: of a task of --engine commands
+                if entry is not None or path in self._forgotten or _whole_bytes(path) is None:
+                    path.unlink()
+            elif name not in wanted and path.parent == self._data:
+                self._others.mkdir(parents=True, exist_ok=True)
+                moved = path.replace(self._others / path.name)
+                self._groups[_group(name)][name] = entry._replace(path=moved)
+
+
+def _checksum(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:16]
+
+
+def _whole_bytes(path: Path) -> bytes | None:
+    """The bytes of a file; None if they are not those that were written."""
+    data = path.read_bytes()
+    return data if path.stem.rpartition("-")[2] == _checksum(data) else None
 
 
 def read(out: str | os.PathLike[str]) -> Any:
@@ -129,4 +227,4 @@ def read(out: str | os.PathLike[str]) -> Any:
     files = sorted(str(path) for path in (Path(out) / "data").glob("*.parquet"))
     if not files:
         raise ValueError(f"{os.fspath(out)}: no results of a sweep: expected a folder with data/*.parquet")
-    return dataset.dataset(files).to_table()
+    return dataset.dataset(files).to_table().replace_schema_metadata(None)

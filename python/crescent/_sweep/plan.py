@@ -16,6 +16,7 @@ from .._paths import found as found_at
 from .._paths import overrides
 from ..experiments import Experiment
 from .attributes import of_samplers, with_attributes
+from .dataset import Results
 from .grid import label
 from .identity import NOT_OF_THE_SCENE, NUMERICS, Arm, arms_of, digest, reference_id, scene_id
 from .store import Store, read_json
@@ -71,6 +72,11 @@ class Point:
         """The name of its folder below points/."""
         safe = "".join(c if c.isalnum() or c in "=.,-+_" else "_" for c in self.label.replace(" ", ""))
         return safe if len(safe) <= 120 else f"{safe[:100]}-{self.scene}"
+
+    def row(self, name: str) -> dict[str, Any]:
+        """The columns of an arm at this point."""
+        arm = self.arms[name]
+        return {**self.values, "point": self.key, "sampler": arm.sampler, "sampler_id": arm.id}
 
     def task(self, kind: str, arms: Sequence[str] = (), **more: Any) -> dict[str, Any]:
         """A task of this point, with the arms of the combinations among these."""
@@ -137,8 +143,8 @@ def missing(blocks: Sequence[tuple[int, int]], seeds: int) -> list[tuple[int, in
 class Plan:
     """The tasks that are missing, in the order in which they are computed."""
 
-    def __init__(self, points: Sequence[Point], store: Store, seeds: int, films: bool) -> None:
-        self._points, self._store, self._seeds, self._films = points, store, seeds, films
+    def __init__(self, points: Sequence[Point], store: Store, results: Results, seeds: int, films: bool) -> None:
+        self._points, self._store, self._results, self._seeds, self._films = points, store, results, seeds, films
         self.threads = 1  #: of the task of a reference
 
     def cost(self) -> dict[str, float]:
@@ -156,13 +162,13 @@ class Plan:
         planned: set[str] = set()
         for point in self._points:
             parts = [job for job in self._parts(point) if job.id not in planned]
-            if parts and point.reference not in planned and not self._store.has_reference(point.reference):
+            if parts and point.reference not in planned and not self._store.has("references", point.reference):
                 planned.add(point.reference)
                 yield self.reference(point)
             yield from parts
             planned.update(job.id for job in parts)
             name = studies_id(point)
-            if name not in planned and self._store.studies(name) is None:
+            if name not in planned and not self._store.has("studies", name):
                 planned.add(name)
                 yield Job(name, point.task("studies", list(point.arms)), f"{point.label}, studies")
 
@@ -179,11 +185,8 @@ class Plan:
             block = max(1, round((SAMPLES_PER_TASK if arm.built_in else SAMPLES_PER_TASK_OF_OTHERS) / samples))
             counts = len(point.tree["arms"][name]["n"])
             seed_bytes = counts * (1_400.0 + 900 * len(point.tree.get("regions", {})))
-            row = {
-                "values": point.values, "point": point.key, "sampler": arm.sampler, "sampler_id": arm.id,
-                "experiment": point.experiment.hash,
-            }  # fmt: skip
-            for first, last in missing(self._store.blocks(point.scene, arm.id), self._seeds):
+            row = {**point.row(name), "experiment": point.experiment.hash}
+            for first, last in missing(self._results.blocks(point.scene, arm.id), self._seeds):
                 for start in range(first, last + 1, block):
                     end = min(start + block - 1, last)
                     films = self._films and start == 1

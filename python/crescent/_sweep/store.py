@@ -1,11 +1,12 @@
-"""The folder of a sweep: results by their identity, and the files derived from them.
+"""The folder of a sweep.
 
-    store/results/SCENE/ARM/FIRST-LAST.json   one arm, a block of seeds: metrics.json as text, and who computed it
-    store/references/ID                       references of a scene
-    store/studies/HASH.json                   furnaces and checks of one experiment
-    store/checks/ID.json                      verdicts at one point
-    data/*.parquet                            the dataset, a file for each result
-    points/LABEL/                             metrics.json, metrics.csv of a finished point; films/ on request
+    data/SCENE-ARM-FIRST-LAST-POINT-CHECKSUM.parquet   one arm, a block of seeds (dataset.py)
+    data/ID-CHECKSUM.parquet                           verdicts at one point
+    store/results/                                     such files of other points
+    store/references/ID                                references of a scene
+    store/studies/ID                                   furnaces and checks of one experiment, as a metrics.json
+    store/tasks/ID.task                                tasks of --engine commands
+    points/LABEL/                                      metrics.json, metrics.csv of a finished point; films/ on request
 
 Every file is written under another name and renamed, so it is complete or does not exist.
 """
@@ -86,21 +87,6 @@ def _sum(data: bytes) -> bytes:
     return hashlib.sha256(data).digest()
 
 
-def _checked_text(value: dict[str, Any]) -> str:
-    """A result as JSON, with the checksum of its other values."""
-    text = json.dumps({key: value[key] for key in value if key != "checksum"}, sort_keys=True)
-    return json.dumps({**value, "checksum": _sum(text.encode()).hex()})
-
-
-def _checked_json(path: Path) -> dict[str, Any] | None:
-    """The value of _checked_text(); None if the file is missing, incomplete or was changed."""
-    value = read_json(path)
-    if not isinstance(value, dict):
-        return None
-    text = json.dumps({key: value[key] for key in value if key != "checksum"}, sort_keys=True)
-    return value if value.get("checksum") == _sum(text.encode()).hex() else None
-
-
 def read_json(path: Path) -> Any:
     """The value of a JSON file; None if there is none that can be read."""
     try:
@@ -110,125 +96,34 @@ def read_json(path: Path) -> Any:
 
 
 class Store:
-    """Results by identity."""
+    """References and studies by identity, each after its checksum."""
 
     def __init__(self, out: Path) -> None:
         self.out = out
         self.root = out / "store"
-        self._suspect: set[str] = set(read_json(self.root / "suspect.json") or [])
-        self._good: dict[Path, tuple[int, int]] = {}  # files whose checksum was right, by time and size
+        self._whole: dict[Path, tuple[int, int]] = {}  # files whose checksum was right, by time and size
 
-    # ---- results of arms
-
-    def _folder(self, scene: str, arm: str) -> Path:
-        return self.root / "results" / scene / arm
-
-    def blocks(self, scene: str, arm: str) -> list[tuple[int, int]]:
-        """The blocks of seeds that exist, ascending, without suspect ones and incomplete or changed files."""
-        out = []
-        folder = self._folder(scene, arm)
-        for name in os.listdir(folder) if folder.is_dir() else ():
-            found = re.fullmatch(r"(\d+)-(\d+)\.json", name)
-            if not found or self.key(scene, arm, name[:-5]) in self._suspect:
-                continue
-            if self._is_good(folder / name):
-                out.append((int(found[1]), int(found[2])))
-        return sorted(out)
-
-    def _is_good(self, path: Path) -> bool:
-        """Whether a result is as it was written; the file is read again if it has changed."""
+    def read(self, kind: str, name: str) -> bytes | None:
+        """What is stored; None if it is missing, incomplete or changed."""
         try:
-            about = path.stat()
-        except OSError:
-            return False
-        seen = (about.st_mtime_ns, about.st_size)
-        if self._good.get(path) != seen and _checked_json(path) is None:
-            return False
-        self._good[path] = seen
-        return True
-
-    @staticmethod
-    def key(scene: str, arm: str, block: str) -> str:
-        """The name of a result."""
-        return f"{scene}/{arm}/{block}"
-
-    def add(self, scene: str, arm: str, first: int, last: int, result: dict[str, Any]) -> Path:
-        """Writes a result."""
-        path = self._folder(scene, arm) / f"{first}-{last}.json"
-        write_whole(path, _checked_text(result))
-        self._unsuspect(self.key(scene, arm, f"{first}-{last}"))
-        return path
-
-    def result(self, scene: str, arm: str, first: int, last: int) -> dict[str, Any] | None:
-        """A result; None if it does not exist, or is incomplete or changed."""
-        return _checked_json(self._folder(scene, arm) / f"{first}-{last}.json")
-
-    def all_results(self) -> Iterator[tuple[str, str, int, int]]:
-        """Every result: scene, arm, first and last seed; suspect ones too."""
-        for path in sorted((self.root / "results").glob("*/*/*-*.json")):
-            if found := re.fullmatch(r"(\d+)-(\d+)", path.stem):
-                yield path.parent.parent.name, path.parent.name, int(found[1]), int(found[2])
-
-    # ---- suspects
-
-    def suspect(self) -> set[str]:
-        """The names of results for which two workers computed different bits."""
-        return set(self._suspect)
-
-    def mark(self, keys: set[str]) -> None:
-        """Marks results as suspect: the next call computes them again."""
-        self._suspect |= keys
-        write_whole(self.root / "suspect.json", json.dumps(sorted(self._suspect)))
-
-    def _unsuspect(self, key: str) -> None:
-        if key in self._suspect:
-            self._suspect.discard(key)
-            write_whole(self.root / "suspect.json", json.dumps(sorted(self._suspect)))
-
-    # ---- references, studies, checks
-
-    def reference_path(self, name: str) -> Path:
-        """The path of the references with this identity."""
-        return self.root / "references" / name
-
-    def reference(self, name: str) -> bytes | None:
-        """The references with this identity; None if they are missing, incomplete or changed."""
-        try:
-            data = self.reference_path(name).read_bytes()
+            data = (self.root / kind / name).read_bytes()
         except OSError:
             return None
         return data[32:] if _sum(data[32:]) == data[:32] else None
 
-    def has_reference(self, name: str) -> bool:
-        """Whether there are references with this identity."""
-        path = self.reference_path(name)
+    def has(self, kind: str, name: str) -> bool:
+        """Whether there is such a file as it was written; it is read again if it has changed."""
+        path = self.root / kind / name
         try:
-            about = path.stat()
+            found = path.stat()
         except OSError:
             return False
-        seen = (about.st_mtime_ns, about.st_size)
-        if self._good.get(path) != seen and self.reference(name) is None:
+        seen = (found.st_mtime_ns, found.st_size)
+        if self._whole.get(path) != seen and self.read(kind, name) is None:
             return False
-        self._good[path] = seen
+        self._whole[path] = seen
         return True
 
-    def add_reference(self, name: str, data: bytes) -> None:
-        """Stores references, after their checksum."""
-        write_whole(self.reference_path(name), _sum(data) + data)
-
-    def studies(self, name: str) -> str | None:
-        """The studies of an experiment, as the text of a metrics.json."""
-        found = _checked_json(self.root / "studies" / f"{name}.json")
-        return found["json"] if found else None
-
-    def add_studies(self, name: str, result: dict[str, Any]) -> None:
-        """Stores studies."""
-        write_whole(self.root / "studies" / f"{name}.json", _checked_text(result))
-
-    def check(self, name: str) -> dict[str, Any] | None:
-        """The verdicts with this identity."""
-        return _checked_json(self.root / "checks" / f"{name}.json")
-
-    def add_check(self, name: str, result: dict[str, Any]) -> None:
-        """Stores verdicts."""
-        write_whole(self.root / "checks" / f"{name}.json", _checked_text(result))
+    def add(self, kind: str, name: str, data: bytes) -> None:
+        """Stores data of the kinds "references" and "studies"."""
+        write_whole(self.root / kind / name, _sum(data) + data)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -17,7 +18,7 @@ from .. import _crescent
 from .._sampler import whole
 from .._paths import steps_of
 from ..experiments import Experiment, Measured, load
-from .dataset import COLUMNS, Dataset
+from .dataset import COLUMNS, Results, read, rows_of_part
 from .engines import DaskEngine, EngineError, engine_of, execute, profile_of
 from .grid import Axis, UsageError, axes_of, grid
 from .identity import NUMERICS, digest
@@ -43,8 +44,6 @@ class Sweep:
 
     def to_arrow(self) -> Any:
         """The dataset as a pyarrow.Table."""
-        from .dataset import read
-
         return read(self.out)
 
     def to_pandas(self) -> Any:
@@ -69,25 +68,7 @@ class Sweep:
         return f"<Sweep {self.out}: {len(self.points)} points, {self.computed} tasks computed{failed}>"
 
 
-@dataclass
-class Options:
-    """The arguments of a call."""
-
-    over: Any
-    zip: bool
-    seeds: int | None
-    engine: str
-    out: Path
-    films: bool
-    resume: bool
-    verify: float
-    workers: int | None
-    versions: dict[str, str]
-    progress: bool
-    say: Say
-
-
-def fraction(given: float | str) -> float:
+def share_of(given: float | str) -> float:
     """A share of tasks: "1%", "0.01" or 0.01."""
     text = str(given).strip()
     try:
@@ -99,7 +80,7 @@ def fraction(given: float | str) -> float:
     return value
 
 
-def _folder(out: str | PathLike[str]) -> Path:
+def folder_of(out: str | PathLike[str]) -> Path:
     """The folder of a sweep: a new or empty one, or one with a sweep."""
     path = Path(os.path.abspath(out))
     if path.is_file():
@@ -107,6 +88,26 @@ def _folder(out: str | PathLike[str]) -> Path:
     if path.is_dir() and any(path.iterdir()) and not (path / "store").is_dir():
         raise UsageError(f"--out {out}: has other files; expected a new folder, or one of an earlier sweep")
     return path
+
+
+class Options:
+    """The arguments of a call, which are checked here."""
+
+    def __init__(
+        self, *, over: Any, zip: bool, seeds: Any, engine: str, out: str | PathLike[str], films: bool, resume: bool,
+        dry_run: bool, verify: float | str, workers: Any, versions: Mapping[str, str], progress: bool, say: Say,
+    ) -> None:  # fmt: skip
+        expected = "expected a whole number, 1 to 4096"
+        self.seeds = None if seeds is None else whole("seeds", seeds, 1, 4096, expected)
+        self.workers = None if workers is None else whole("workers", workers, 1, 4096, expected)
+        self.engine = engine_of(engine)
+        if workers is not None and engine != "local":
+            raise UsageError(f"workers is {workers}: is of the engine 'local', and the engine is {engine!r}")
+        if engine.startswith("slurm:"):
+            profile_of(engine.partition(":")[2])
+        self.out, self.verify, self.versions = folder_of(out), share_of(verify), dict(versions)
+        self.over, self.zip, self.films, self.resume, self.dry_run = over, zip, films, resume, dry_run
+        self.progress, self.say = progress, say
 
 
 _NO_AXES = {
@@ -152,27 +153,22 @@ class Run:
         self.seeds = base["seeds"] if options.seeds is None else options.seeds
         values = grid(axes, options.zip)
         self.points, self.failed = usable_points(*points_of(base, values, self.seeds, options.versions))
-        if not options.resume:
-            self._forget()
         older = kept_points(base, options.out, self.seeds, options.versions, self.points)
         self.all_points = [*older, *self.points]
-        self.axes = {axis.path: list(axis.values) for axis in axes}
+        self.axes: dict[str, list[Any]] = {axis.path: [] for axis in axes}
         for path in (read_json(options.out / "sweep.json") or {}).get("axes", {}) if older else ():
             self.axes.setdefault(path, [])
-        for point in self.all_points:
+        for point in (*self.points, *older):
             for path in self.axes:
                 if path not in point.values:
                     point.values[path] = point.experiment[path]
                 if point.values[path] not in self.axes[path]:
                     self.axes[path].append(point.values[path])
-        self.computed = 0
-        self.dataset: Dataset | None = None
-
-    def _forget(self) -> None:
-        for point in self.points:
+        self.results = Results(options.out, self.axes)
+        for point in self.points if not options.resume else ():
             for arm in point.arms.values():
-                for first, last in self.store.blocks(point.scene, arm.id):
-                    (self.store.root / "results" / point.scene / arm.id / f"{first}-{last}.json").unlink()
+                self.results.forget(point.scene, arm.id)
+        self.computed = 0
 
     # ---- files
 
@@ -186,40 +182,20 @@ class Run:
             for p in self.all_points
         ]  # fmt: skip
         state = {
-            "format": "crescent sweep 1", "file": self.base._core.file, "title": self.base["title"],
+            "format": "crescent sweep 2", "file": self.base._core.file, "title": self.base["title"],
             "seeds": self.seeds,
             "axes": self.axes, "points": points, "numerics": NUMERICS, "failed": self.failed,
         }  # fmt: skip
         write_whole(self.options.out / "sweep.json", json.dumps(state, indent=1))
 
-    def sync_dataset(self) -> None:
-        """Makes the dataset agree with the store: files that are missing, stale or newly suspect."""
-        self.dataset = Dataset(self.options.out, self.axes)
-        there, wanted = self.dataset.names(), set()
-        suspect = self.store.suspect()
+    def sync(self) -> None:
+        """Gives every point the rows of its results, also of those that it shares with other points."""
+        wanted = {}
         for point in self.all_points:
             for name, arm in point.arms.items():
-                folder = self.store.root / "results" / point.scene / arm.id
-                for path in sorted(folder.glob("*-*.json")) if folder.is_dir() else ():
-                    first, last = (int(part) for part in path.stem.split("-"))
-                    result = self.store.result(point.scene, arm.id, first, last)
-                    if result is None:
-                        continue
-                    marked = self.store.key(point.scene, arm.id, path.stem) in suspect
-                    file = f"{point.key}-{arm.id}-{path.stem}{'-suspect' if marked else ''}.parquet"
-                    wanted.add(file)
-                    if file not in there:
-                        row = {"values": point.values, "point": point.key, "sampler": arm.sampler, "sampler_id": arm.id}
-                        self.dataset.write(file, row, result, marked)
-        for file in there - wanted:
-            self.dataset.remove(file)
-
-    def take(self, job: Job, result: Result) -> None:
-        """Writes the result of a task."""
-        keep(self.store, job, result)
-        if self.dataset and job.task["kind"] == "part":
-            file = f"{job.row['point']}-{job.id.partition('-')[2]}.parquet"
-            self.dataset.write(file, job.row, part_of(job, result), False)
+                for first, last in self.results.blocks(point.scene, arm.id, suspect=True):
+                    wanted[f"{point.scene}-{arm.id}-{first}-{last}-{point.key}"] = point.row(name)
+        self.results.sync(wanted)
 
     # ---- the bits
 
@@ -241,15 +217,7 @@ class Run:
             self.failed[job.label] = (
                 f"the films of {who[0]} and {who[1]} differ; rows of both workers are marked as suspect"
             )
-            self._mark({first["worker"], second["worker"]})
-
-    def _mark(self, workers: set[str]) -> None:
-        keys = set()
-        for scene, arm, first, last in self.store.all_results():
-            found = self.store.result(scene, arm, first, last)
-            if found and found["worker"] in workers:
-                keys.add(self.store.key(scene, arm, f"{first}-{last}"))
-        self.store.mark(keys)
+            self.results.mark({first["worker"], second["worker"]})
 
     # ---- the call
 
@@ -267,49 +235,40 @@ class Run:
             if "first" in job.row:
                 self.compare(job, result)
                 return
-            self.take(job, result)
+            keep(self.store, self.results, job, result)
             self.computed += 1
             if (again := self.verify_job(job, result)) is not None:
                 repetitions.append(again)
                 bar.tasks += 1
 
-        execute(engine, next_job, take, self.failed, bar, self.store.reference)
+        execute(engine, next_job, take, self.failed, bar, lambda name: self.store.read("references", name))
 
     def join(self) -> int:
         """Writes the run of all seeds of each finished point. Returns how many points have failing assertions."""
-        known = read_json(self.store.root / "joined.json") or {}
+        joined = read_json(self.store.root / "joined.json") or {}
         failing = 0
         for point in self.points:
-            studies = self.store.studies(studies_id(point))
-            names, parts = [], []
-            complete = studies is not None
-            for arm in point.arms.values():
-                covered = 0
-                for first, last in self.store.blocks(point.scene, arm.id):
-                    if first > self.seeds:
-                        continue
-                    complete = complete and first == covered + 1 and last <= self.seeds
-                    covered = last
-                    names.append(f"{arm.id}/{first}-{last}")
-                complete = complete and covered == self.seeds
+            blocks = [
+                (arm.id, *block) for arm in point.arms.values()
+                for block in self.results.blocks(point.scene, arm.id) if block[0] <= self.seeds
+            ]  # fmt: skip
+            seeds = [(arm, seed) for arm, first, last in blocks for seed in range(first, last + 1)]
+            studies = self.store.read("studies", studies_id(point))
+            if studies is None or seeds != [(a.id, k) for a in point.arms.values() for k in range(1, self.seeds + 1)]:
+                continue
             folder = self.options.out / "points" / point.folder
-            identity = digest(point.experiment.hash, self.seeds, names)
-            if studies is None or not complete:
+            identity = digest(point.experiment.hash, self.seeds, blocks)
+            if joined.get(point.folder, [""])[0] == identity and joined[point.folder][2:] == [_digest_of_run(folder)]:
+                failing += joined[point.folder][1]
                 continue
-            if known.get(point.folder, [""])[0] == identity and known[point.folder][2:] == [_digest_of_run(folder)]:
-                failing += known[point.folder][1]
-                continue
-            for arm in point.arms.values():
-                for first, last in self.store.blocks(point.scene, arm.id):
-                    found = self.store.result(point.scene, arm.id, first, last) if first <= self.seeds else None
-                    parts += [found["json"]] if found else []
+            parts = [self.results.text(point.scene, *block) for block in blocks]
             core = _crescent.parse(point.experiment.text, point.experiment._core.file, point.changes)
-            run = _crescent.assemble(core, 1, self.seeds, parts, studies)
+            run = _crescent.assemble(core, 1, self.seeds, parts, studies.decode())
             for name, text in zip(RUN_FILES, (run.json, run.csv, run.junit), strict=True):
                 write_whole(folder / name, text)
-            known[point.folder] = [identity, int(not run.holds), _digest_of_run(folder)]
+            joined[point.folder] = [identity, int(not run.holds), _digest_of_run(folder)]
             failing += not run.holds
-        write_whole(self.store.root / "joined.json", json.dumps(known))
+        write_whole(self.store.root / "joined.json", json.dumps(joined))
         return failing
 
 
@@ -324,33 +283,29 @@ def _digest_of_run(folder: Path) -> str:
         return ""
 
 
-def part_of(job: Job, result: Result) -> dict[str, Any]:
-    """What is stored of the result of a part."""
-    kept = {key: result[key] for key in ("json", "csv", "seconds", "times", "worker", "host", "isa")}
-    return {**kept, "experiment": job.row["experiment"], "version": NUMERICS}
-
-
-def keep(store: Store, job: Job, result: Result) -> None:
+def keep(store: Store, results: Results, job: Job, result: Result) -> None:
     """Stores the result of a task."""
-    if job.task["kind"] == "reference":
-        store.add_reference(job.id, result["reference"])
-    elif job.task["kind"] == "studies":
-        store.add_studies(job.id, {"json": result["json"]})
+    kind = job.task["kind"]
+    if kind == "reference":
+        store.add("references", job.id, result["reference"])
+    elif kind == "studies":
+        store.add("studies", job.id, result["json"].encode())
     else:
-        scene, arm, first, last = job.id.split("-")
-        store.add(scene, arm, int(first), int(last), part_of(job, result))
+        provenance = {"version": NUMERICS, **{key: result[key] for key in ("worker", "host", "isa")}}
+        rows = rows_of_part(result["csv"], result["times"])
+        name = f"{job.id}-{job.row['point']}"
+        results.add(name, rows, {**job.row, **provenance}, {"json": result["json"], **provenance})
         for name, data in result["films"].items():
             write_whole(store.out / "points" / job.folder / "films" / name, data)
 
 
-def _is_there(store: Store, job: Job) -> bool:
+def _is_there(store: Store, results: Results, job: Job) -> bool:
     """Whether the result of a task is stored."""
-    if job.task["kind"] == "reference":
-        return store.has_reference(job.id)
-    if job.task["kind"] == "studies":
-        return store.studies(job.id) is not None
-    scene, arm, first, last = job.id.split("-")
-    return (int(first), int(last)) in store.blocks(scene, arm)
+    kind = job.task["kind"]
+    if kind == "part":
+        scene, arm, first, last = job.id.split("-")
+        return (int(first), int(last)) in results.blocks(scene, arm)
+    return store.has("references" if kind == "reference" else "studies", job.id)
 
 
 def _estimate(run: Run, cost: Mapping[str, float]) -> str:
@@ -378,43 +333,45 @@ def run_task(path: Path) -> int:
 
     store = Store(path.parent.parent.parent)
     job, reference = pickle.loads(path.read_bytes())
+    axes = (read_json(store.out / "sweep.json") or {}).get("axes", {})
+    results = Results(store.out, axes, pattern=f"{job.id}-*")
+    if _is_there(store, results, job):
+        return 0
     runner = Runner()
     try:
         for part in (reference, job):
-            if part is None or _is_there(store, part):
+            if part is None or _is_there(store, results, part):
                 continue
-            data = store.reference(part.reference) if part.reference else None
+            data = store.read("references", part.reference) if part.reference else None
             result = runner.compute(part.task, data, lambda: False)
             if "error" in result:
                 raise EngineError(f"{part.label}: {result['error']}")
-            keep(store, part, {**result, "worker": f"{host()}:{os.getpid()}", "host": host()})
+            keep(store, results, part, {**result, "worker": f"{host()}:{os.getpid()}", "host": host()})
     finally:
         runner.stop()
     return 0
 
 
-def run_sweep(base: Experiment, options: Options, dry_run: bool = False) -> Sweep:
+def run_sweep(base: Experiment, options: Options) -> Sweep:
     """Runs a sweep; see :func:`crescent.sweep`."""
-    if dry_run:
-        return _run_sweep(base, options, dry_run)
-    with locked(options.out):
-        return _run_sweep(base, options, dry_run)
+    with contextlib.nullcontext() if options.dry_run else locked(options.out):
+        return _run_sweep(base, options)
 
 
-def _run_sweep(base: Experiment, options: Options, dry_run: bool) -> Sweep:
+def _run_sweep(base: Experiment, options: Options) -> Sweep:
     say = options.say
     run = Run(base, options)
-    plan = Plan(run.points, run.store, run.seeds, options.films)
+    plan = Plan(run.points, run.store, run.results, run.seeds, options.films)
     cost = plan.cost()
-    if options.engine != "commands" or dry_run:
+    if options.engine != "commands" or options.dry_run:
         say(_estimate(run, cost))
-    if dry_run:
+    if options.dry_run:
         for place, error in run.failed.items():
             say(f"failed: {place}: {error}")
         return Sweep(options.out, [], 0, run.failed, cost)
     say_unhashable(run.points, say)
     run.write_state()
-    run.sync_dataset()
+    run.sync()
     if options.engine == "commands":
         for line in _commands(run, plan):
             print(line)
@@ -425,31 +382,12 @@ def _run_sweep(base: Experiment, options: Options, dry_run: bool) -> Sweep:
             finally:
                 run.write_state()
     failing = run.join()
-    run.sync_dataset()
+    run.sync()
     run.write_state()
     if failing:
         say(f"assertions of the experiment fail at {failing} of {len(run.points)} points (points/*/junit.xml)")
     state = read_json(options.out / "sweep.json") or {}
     return Sweep(options.out, state.get("points", []), run.computed, run.failed, cost)
-
-
-def settled_options(
-    *, over: Any, zip: bool, seeds: Any, engine: str, out: Any, films: bool, resume: bool, verify: Any, workers: Any,
-    sampler_versions: Mapping[str, str] | None, progress: bool, say: Say,
-) -> Options:  # fmt: skip
-    """Checks the arguments of a call."""
-    if seeds is not None:
-        seeds = whole("seeds", seeds, 1, 4096, "expected a whole number, 1 to 4096")
-    if workers is not None:
-        workers = whole("workers", workers, 1, 4096, "expected a whole number, 1 to 4096")
-        if engine_of(engine) != "local":
-            raise UsageError(f"workers is {workers}: is of the engine 'local', and the engine is {engine!r}")
-    if engine_of(engine).startswith("slurm:"):
-        profile_of(engine.partition(":")[2])
-    return Options(
-        over, zip, seeds, engine_of(engine), _folder(out), films, resume, fraction(verify), workers,
-        dict(sampler_versions or {}), progress, say,
-    )  # fmt: skip
 
 
 def experiment_of(given: Experiment | str | PathLike[str]) -> Experiment:
