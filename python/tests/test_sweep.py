@@ -242,6 +242,9 @@ def test_zip_pairs_values_and_a_wrong_call_ends_with_2(tiny, tmp_path):
     ended = command(tiny, *over, "--zip", "--seeds", "1", "--out", tmp_path / "out", "--workers", "1")
     assert ended.returncode == 0, ended.stderr
     assert len(json.loads((tmp_path / "out" / "sweep.json").read_text())["points"]) == 2
+    before = results(tmp_path / "out")
+    ended = command(tiny, *over, "--zip", "--seeds", "1", "--out", tmp_path / "out", "--no-resume", "--dry-run")
+    assert "2 samplers: 4 tasks" in ended.stderr and results(tmp_path / "out") == before, ended.stderr
     for words, says in (
         ([tiny, "--over", "bal.s=1"], "did you mean 'ball'"),
         ([tiny, "--ovr", "ball.s=1"], "did you mean '--over'"),
@@ -483,6 +486,21 @@ def test_a_killed_worker_is_replaced_and_a_killed_scheduler_ends_the_sweep(slow,
     ended = command(slow, "--over", "ball.s=8,16,32", "--seeds", "7", "--out", out, "--workers", "2")
     assert ended.returncode == 0, ended.stderr
     assert set(kept) <= set(results(out))
+
+
+def test_stored_references_survive_the_loss_of_a_worker(slow, tmp_path, cluster):
+    out = tmp_path / "out"
+    over = ["--over", "ball.s=8,16", "--out", out]
+    assert command(slow, *over, "--seeds", "1", "--workers", "2").returncode == 0
+    _, address = cluster()
+    workers = [cluster(f"tcp://{address}", "--name", f"w{k}")[0] for k in range(2)]
+    words = [slow, *over, "--seeds", "24", "--engine", f"dask://{address}"]
+    process = subprocess.Popen([*COMMAND, *map(str, words)], stderr=subprocess.PIPE, text=True)
+    count = len(results(out))
+    until(lambda: len(results(out)) > count, 200)
+    workers[0].kill()
+    _, said = process.communicate(timeout=240)
+    assert process.returncode == 0, said
 
 
 FLIP = """

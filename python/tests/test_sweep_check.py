@@ -11,6 +11,7 @@ for needed in ("dask", "distributed", "pyarrow"):
     pytest.importorskip(needed)
 
 import pyarrow.parquet as parquet  # noqa: E402
+from crescent._sweep.dataset import read  # noqa: E402
 from samplers import cosine_pdf  # noqa: E402
 from tiny import TINY  # noqa: E402
 
@@ -91,6 +92,16 @@ def test_a_check_over_a_grid_maps_where_a_sampler_is_wrong(tmp_path):
         assert ended.returncode == 2 and says in ended.stderr, ended.stderr
 
 
+def test_a_parameter_with_the_name_of_a_column_is_in_the_dataset(tmp_path):
+    power = POWER.replace("k=1.0, factor=", "alpha=1.0, factor=").replace("= k, factor", "= alpha, factor")
+    (tmp_path / "power.py").write_text(power)
+    over = {"alpha": [1.0, 2.0]}
+    swept = crescent.sweep_check(f"{tmp_path}/power.py:Power", over=over, out=tmp_path / "out", workers=1)
+    assert kinds(swept, "alpha") == {(1.0,): "right", (2.0,): "right"}
+    rows = read(tmp_path / "out").to_pylist()
+    assert {row["values.alpha"] for row in rows} == {1.0, 2.0} and {row["alpha"] for row in rows} == {2.5e-4}
+
+
 def test_a_sampler_that_is_there_takes_attributes_and_nothing_is_dropped(tmp_path):
     (tmp_path / "made.py").write_text(MADE)
     swept = crescent.sweep_check(
@@ -167,6 +178,7 @@ def test_what_has_no_effect_is_refused(tmp_path):
         (["tiny.toml", "--check", "--over", "key.radus=0.3"], "did you mean 'radius'"),
         (["tiny.toml", "--check", "--over", "n=4,16"], "does not depend on it"),
         (["tiny.toml", *over, "--alpha", "0.1"], "expected --check too"),
+        (["tiny.toml", "--check", *over, "--engine", "dask://h:1", "--workers", "2"], "is of the engine 'local'"),
         (["--check", "phong", "--over", "s=8", "--pixels", "4"], "expected FILE.toml --check"),
     ):
         ended = command(*words, cwd=tmp_path)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from ..experiments import Experiment
 
@@ -113,28 +113,23 @@ def sweep(
     from .sweep import experiment_of
 
     of_runs = {"seeds": seeds, "films": films or None, "verify": verify}
-    of_checks = {"pixels": pixels, "alpha": alpha, "full": full, "seed": seed}
+    of_checks: dict[str, Any] = {"pixels": pixels, "alpha": alpha, "full": full, "seed": seed}
     if given := [key for key, value in (of_runs if check else of_checks).items() if value is not None]:
         use = "runs, and check= is given" if check else "checks: expected check=ARM too"
         raise TypeError(f"{given[0]} is for {use}")
     e = experiment_of(experiment)
+    shared: dict[str, Any] = {
+        "over": over, "zip": zip, "engine": engine, "out": out, "workers": workers, "resume": resume, "dry_run": dry_run,
+        "progress": progress,
+    }  # fmt: skip
     if check is not False:
         from .check_sweep import CheckOptions, run_arm_sweep
 
-        checking = CheckOptions(
-            over=over, zip=zip, engine=engine, out=out, alpha=1e-3 if alpha is None else alpha, full=bool(full),
-            seed=1 if seed is None else seed, workers=workers, resume=resume, progress=progress, dry_run=dry_run,
-            say=_silent,
-        )  # fmt: skip
-        return run_arm_sweep(e, check, pixels or 0, sampler_versions or {}, checking)
+        shared |= {key: value for key, value in of_checks.items() if key != "pixels" and value is not None}
+        return run_arm_sweep(e, check, pixels or 0, sampler_versions or {}, CheckOptions(**shared))
     from .sweep import Options, run_sweep
 
-    options = Options(
-        over=over, zip=zip, seeds=seeds, engine=engine, out=out, films=films, resume=resume, dry_run=dry_run,
-        verify=0.01 if verify is None else verify, workers=workers, versions=sampler_versions or {},
-        progress=progress, say=_silent,
-    )  # fmt: skip
-    return run_sweep(e, options)
+    return run_sweep(e, Options(**shared, seeds=seeds, films=films, verify=verify, versions=sampler_versions or {}))
 
 
 def sweep_check(
@@ -164,10 +159,6 @@ def sweep_check(
 
     options = CheckOptions(
         over=over, zip=zip, engine=engine, out=out, alpha=alpha, full=full, seed=seed, workers=workers, resume=resume,
-        progress=progress, dry_run=dry_run, say=_silent,
+        progress=progress, dry_run=dry_run,
     )  # fmt: skip
     return run_check_sweep(sampler, options)
-
-
-def _silent(text: str) -> None:
-    """Prints nothing."""

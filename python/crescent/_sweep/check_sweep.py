@@ -12,7 +12,7 @@ import contextlib
 import functools
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -23,14 +23,14 @@ from .. import _crescent, arms as built_in
 from .._sampler import whole
 from ..experiments import Experiment
 from .dataset import Results
-from .engines import DaskEngine, engine_of, execute
+from .engines import DaskEngine, execute
 from .grid import UsageError, axes_of, grid, hint, label, short
 from .identity import NUMERICS, _of_python, arms_of, digest, scene_id
 from .plan import points_of
 from .progress import Progress
 from .store import locked, read_json, write_whole
 from .tasks import Job, Result
-from .sweep import Say, folder_of, say_unhashable, usable_points
+from .sweep import Call, say_unhashable, usable_points
 
 _COLUMNS = {
     "kind": "string", "case": "string", "verdict": "string", "state": "string", "message": "string", "cause": "string",
@@ -94,7 +94,7 @@ def _identify(sampler: str, paths: Sequence[str]) -> tuple[Any, Any]:
     name, colon, inside = sampler.rpartition(":") if not sampler.endswith(".py") else (sampler, "", "")
     path = Path(name)
     if not path.is_file():
-        near = _crescent.nearest(path.name, [at.name for at in path.parent.glob("*.py")])
+        near = _crescent.nearest(path.name, [file.name for file in path.parent.glob("*.py")])
         raise UsageError(
             f"--check {name}: no such file" + (f"; did you mean '{path.with_name(near)}'?" if near else "")
         )
@@ -124,35 +124,23 @@ def _identify(sampler: str, paths: Sequence[str]) -> tuple[Any, Any]:
     return _of_python(str(path.resolve()) + colon + inside)
 
 
-@dataclass
-class CheckOptions:
-    """The arguments of a call."""
+@dataclass(kw_only=True)
+class CheckOptions(Call):
+    """The arguments of a call that checks."""
 
-    over: Any
-    zip: bool
-    engine: str
-    out: str | PathLike[str]
-    alpha: float
-    full: bool
-    seed: int
-    workers: int | None
-    resume: bool
-    progress: bool
-    dry_run: bool
-    say: Say
+    alpha: float = 1e-3
+    full: bool = False
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0 < self.alpha < 1:
+            raise UsageError(f"--alpha {self.alpha:g}: expected a probability between 0 and 1")
+        if self.engine == "commands":
+            raise UsageError("--check: expected --engine local, dask://HOST:PORT or slurm:PROFILE")
 
 
-@dataclass(frozen=True)
-class _Check:
-    """One point to be checked."""
-
-    id: str
-    values: dict[str, Any]
-    sampler: str  #: the identity of the sampler, which the points of a sweep share
-    task: dict[str, Any]  #: without its share of alpha
-
-
-Checks = tuple[list[_Check], dict[str, str]]  #: and by point the errors of those that are not valid
+Checks = tuple[list[Job], dict[str, str]]  #: and by point the errors of those that are not valid
 
 
 def run_check_sweep(sampler: str, options: CheckOptions) -> CheckSweep:
@@ -171,40 +159,34 @@ def run_arm_sweep(
 
 
 def _run(title: str, options: CheckOptions, checks_at: Callable[[list[dict[str, Any]]], Checks]) -> CheckSweep:
-    if not 0 < options.alpha < 1:
-        raise UsageError(f"--alpha {options.alpha:g}: expected a probability between 0 and 1")
     axes = axes_of(options.over)
     if not axes:
         raise UsageError("--check: expected at least one --over PATH=VALUES")
-    if engine_of(options.engine) == "commands":
-        raise UsageError("--check: expected --engine local, dask://HOST:PORT or slurm:PROFILE")
-    folder = folder_of(options.out)
     checks, failed = checks_at(grid(axes, options.zip))
-    with contextlib.nullcontext() if options.dry_run else locked(folder):
-        return _check_points(title, {check.id: check for check in checks}, failed, folder, options)
+    with contextlib.nullcontext() if options.dry_run else locked(options.folder):
+        return _check_points(title, {check.id: check for check in checks}, failed, options)
 
 
 def _of_sampler(sampler: str, options: CheckOptions, values: list[dict[str, Any]]) -> Checks:
     identity, code = _identify(sampler, list(values[0]))
     task = {
         "kind": "check", "numerics": NUMERICS, "sampler": sampler, "code": code, "seed": options.seed,
-        "full": options.full, "code_id": digest(code) if code else "",
+        "full": options.full, "code_id": digest(code) if code else "", "sampler_id": digest(identity),
     }  # fmt: skip
     return [
-        _Check(digest(NUMERICS, identity, at, options.seed, options.full), at, digest(identity), {**task, "values": at})
-        for at in values
+        Job(digest(NUMERICS, identity, v, options.seed, options.full), {**task, "values": v}, label(v), v) for v in values
     ], {}
 
 
 def _names_of_arms(base: Experiment, given: bool | str | Sequence[str]) -> list[str]:
     """The arms to check: all, or these, which may be built-in samplers too."""
-    there = list(base._with_arms()._tree()["arms"])
-    names = there if given is True else [given] if isinstance(given, str) else list(given or ())
-    known = list(dict.fromkeys([*there, *built_in.arm_names()]))
+    arms = list(base._with_arms()._tree()["arms"])
+    names = arms if given is True else [given] if isinstance(given, str) else list(given or ())
+    choices = list(dict.fromkeys([*arms, *built_in.arm_names()]))
     for name in names:
-        if name not in known:
-            near = _crescent.nearest(str(name), known)
-            expected = f"expected one of {', '.join(known)}" + hint(near)
+        if name not in choices:
+            near = _crescent.nearest(str(name), choices)
+            expected = f"expected one of {', '.join(choices)}" + hint(near)
             raise UsageError(f"--check {name}: no arm or sampler '{name}': {expected}")
     if not names:
         raise UsageError("--check: expected at least one arm")
@@ -226,44 +208,37 @@ def _of_arms(
     for point in points:
         for name in names:
             arm = point.arms[name].id if name in point.arms else ["built in", name]
-            at = {"arm": name, **point.values}
-            of_base = arms[name].id if name in arms else ["built in", name]
+            arm_of_base = arms[name].id if name in arms else ["built in", name]
             task = point.task(
-                "check", [name] if name in point.arms else [],
-                arm=name, pixels=pixels, seed=options.seed, full=options.full,
+                "check", [name] if name in point.arms else [], arm=name, pixels=pixels, seed=options.seed,
+                full=options.full, sampler_id=digest(scene, arm_of_base, pixels),
             )  # fmt: skip
-            out.append(
-                _Check(
-                    digest(NUMERICS, point.key, arm, pixels, options.seed, options.full), at,
-                    digest(scene, of_base, pixels), task,
-                )
-            )  # fmt: skip
+            row = {"arm": name, **point.values}
+            out.append(Job(digest(NUMERICS, point.key, arm, pixels, options.seed, options.full), task, label(row), row))
     return out, failed
 
 
-def _check_points(
-    title: str, checks: dict[str, _Check], failed: dict[str, str], folder: Path, options: CheckOptions
-) -> CheckSweep:
-    alpha = options.alpha
+def _check_points(title: str, checks: dict[str, Job], failed: dict[str, str], options: CheckOptions) -> CheckSweep:
+    folder, alpha = options.folder, options.alpha
     state = read_json(folder / "sweep.json") or {"kind": "check", "calls": 0, "points": [], "alpha": alpha}
     if state.get("kind") != "check":
         raise UsageError(f"--out {options.out}: has a sweep of runs; expected another folder for checks")
     if state["alpha"] != alpha:
         raise UsageError(f"--alpha {alpha:g}: the sweep in {folder} has alpha {state['alpha']:g}; expected the same")
-    samplers = {check.sampler for check in checks.values()}
-    paths = set(next(iter(checks.values())).values)
-    older = [
-        p for p in state["points"]
-        if p["id"] not in checks and p["sampler"] in samplers and set(p["values"]) == paths
+    samplers = {check.task["sampler_id"] for check in checks.values()}
+    paths = set(next(iter(checks.values())).row)
+    points = [
+        point for point in state["points"]
+        if point["id"] not in checks and point["sampler"] in samplers and set(point["values"]) == paths
     ]  # fmt: skip
-    points = [*older, *({"id": c.id, "values": c.values, "sampler": c.sampler} for c in checks.values())]
+    points += [{"id": c.id, "values": c.row, "sampler": c.task["sampler_id"]} for c in checks.values()]
     axes: dict[str, list[Any]] = {}
     for point in points:
         for path, value in point["values"].items():
             if value not in axes.setdefault(path, []):
                 axes[path].append(value)
     results = Results(folder, axes, _COLUMNS)
-    new = {name: check for name, check in checks.items() if not options.resume or results.find(name) is None}
+    new = [check for name, check in checks.items() if not options.resume or results.find(name) is None]
     options.say(f"{len(checks)} points: {len(new)} to check, {len(checks) - len(new)} there")
     if options.dry_run:
         return CheckSweep(folder, [], 0, failed)
@@ -281,14 +256,14 @@ def _check_points(
         nonlocal computed
         kept = {**result, "alpha": share, "version": NUMERICS}
         columns = {key: kept[key] for key in ("alpha", "version", "worker", "host")}
-        columns |= {"kind": kind_of(result), "sampler_id": checks[job.id].sampler}
+        columns |= {"kind": kind_of(result), "sampler_id": job.task["sampler_id"]}
         results.add(job.id, [{**verdict, **columns} for verdict in result["verdicts"]], job.row, kept)
         computed += 1
 
     write_state()
     results.sync({point["id"]: point["values"] for point in points if results.find(point["id"])})
     if new:
-        jobs = (Job(name, {**check.task, "alpha": share}, label(check.values), check.values) for name, check in new.items())
+        jobs = (replace(check, task={**check.task, "alpha": share}) for check in new)
         with DaskEngine(options.engine, options.workers, options.say) as engine:
             execute(engine, lambda: next(jobs, None), take, failed, Progress(len(new), 0, options.progress))
     write_state()
@@ -319,8 +294,8 @@ def map_of_kinds(points: list[dict[str, Any]], axes: Mapping[str, list[Any]]) ->
     up: list[Any] = _sorted(axes[paths[1]]) if len(paths) > 1 else [""]
     out = np.full((len(up), len(across)), -1)
     for point in points:
-        at = up.index(point["values"][paths[1]]) if len(paths) > 1 else 0, across.index(point["values"][paths[0]])
-        out[at] = max(out[at], KINDS.index(point["kind"]))
+        cell = up.index(point["values"][paths[1]]) if len(paths) > 1 else 0, across.index(point["values"][paths[0]])
+        out[cell] = max(out[cell], KINDS.index(point["kind"]))
     return paths, across, up, out
 
 
@@ -333,21 +308,21 @@ def summary_of_checks(out: str | PathLike[str]) -> str:
         paths, across, up, kinds = map_of_kinds(points, state["axes"])
         letters = {-1: " ", **{k: name[0].upper() if name != "right" else "." for k, name in enumerate(KINDS)}}
         width = max(len(short(v)) for v in across)
-        left = max((len(short(v)) for v in up), default=0)
+        margin = max((len(short(v)) for v in up), default=0)
         for y in reversed(range(len(up))):
             row = "  ".join(letters[int(kinds[y, x])].rjust(width) for x in range(len(across)))
-            lines.append(f"{short(up[y]).rjust(left)}  {row}")
-        lines.append(f"{' ' * left}  " + "  ".join(short(v).rjust(width) for v in across))
+            lines.append(f"{short(up[y]).rjust(margin)}  {row}")
+        lines.append(f"{' ' * margin}  " + "  ".join(short(v).rjust(width) for v in across))
         lines.append(f"across: {paths[0]}" + (f"; up: {paths[1]}" if len(paths) > 1 else ""))
         lines.append(". right, H heavy-tailed, I inconclusive, W wrong, E error")
     for kind in KINDS:
-        of = [p for p in points if p["kind"] == kind]
-        if not of:
+        of_kind = [p for p in points if p["kind"] == kind]
+        if not of_kind:
             continue
-        lines.append(f"{kind}: {len(of)} of {len(points)}")
-        verdict = _first(of[0], kind)
+        lines.append(f"{kind}: {len(of_kind)} of {len(points)}")
+        verdict = _first(of_kind[0], kind)
         if verdict is not None:
-            lines.append(f"  {label(of[0]['values'])}, {verdict['case']}, {verdict['verdict']}: {verdict['message']}")
+            lines.append(f"  {label(of_kind[0]['values'])}, {verdict['case']}, {verdict['verdict']}: {verdict['message']}")
     lines += [f"failed: {place}: {error}" for place, error in state.get("failed", {}).items()]
     return "\n".join(lines)
 

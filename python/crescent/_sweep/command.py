@@ -160,6 +160,12 @@ def _versions(given: argparse.Namespace) -> dict[str, str]:
     return versions
 
 
+def _shared(given: argparse.Namespace, over: Sequence[str], out: str) -> dict[str, Any]:
+    """The arguments of runs and checks."""
+    same = {name: getattr(given, name) for name in ("zip", "engine", "workers", "resume", "dry_run")}
+    return {**same, "over": over, "out": out, "progress": not given.quiet, "say": _say}
+
+
 def _check(given: argparse.Namespace) -> int:
     from .check_sweep import CheckOptions, run_arm_sweep, run_check_sweep
     from .sweep import experiment_of, with_settings
@@ -177,10 +183,8 @@ def _check(given: argparse.Namespace) -> int:
     out = given.out or f"out/{name}-check"
     over = given.over if given.file else [*given.over, *map(_one_value, given.set)]
     options = CheckOptions(
-        over=over, zip=given.zip, engine=given.engine, out=out, alpha=given.alpha or 1e-3, full=given.full,
-        seed=given.seed or 1, workers=given.workers, resume=given.resume, progress=not given.quiet,
-        dry_run=given.dry_run, say=_say,
-    )  # fmt: skip
+        **_shared(given, over, out), alpha=given.alpha or 1e-3, full=given.full, seed=given.seed or 1
+    )
     if given.file:
         e = with_settings(experiment_of(given.file), given.set)
         result = run_arm_sweep(e, given.check, given.pixels or 0, _versions(given), options)
@@ -207,9 +211,8 @@ def _run(given: argparse.Namespace) -> int:
     stem = os.path.basename(given.file).removesuffix(".toml")
     out = given.out or f"out/{stem}-sweep"
     options = Options(
-        over=given.over, zip=given.zip, seeds=given.seeds, engine=given.engine, out=out, films=given.films,
-        resume=given.resume, dry_run=given.dry_run, verify=given.verify or "1%", workers=given.workers,
-        versions=_versions(given), progress=not given.quiet, say=_say,
+        **_shared(given, given.over, out), seeds=given.seeds, films=given.films, verify=given.verify,
+        versions=_versions(given),
     )  # fmt: skip
     result = run_sweep(with_settings(experiment_of(given.file), given.set), options)
     if given.dry_run:

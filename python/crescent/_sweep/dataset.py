@@ -105,6 +105,7 @@ class Results:
         types = {**{self._axes[path]: _type(values) for path, values in axes.items()}, **columns}
         self._schema = pa.schema([(name, pa.type_for_alias(kind)) for name, kind in types.items()])
         self._groups: dict[str, dict[str, Stored]] = {}
+        self._blocks: dict[tuple[str, bool], list[tuple[int, int]]] = {}
         self._forgotten: set[Path] = set()
         for folder in (self._others, self._data):  # of two files of one name that in `data` counts
             for path in folder.glob(f"{pattern}.parquet"):
@@ -117,6 +118,14 @@ class Results:
         schema = parquet.read_schema(io.BytesIO(data))
         entry = Stored(path, schema.equals(self._schema), b"suspect" in schema.metadata, schema.metadata[b"worker"].decode())
         self._groups.setdefault(_group(name), {})[name] = entry
+        self._forget_blocks(_group(name))
+
+    def _forget_blocks(self, group: str) -> None:
+        self._blocks.pop((group, False), None)
+        self._blocks.pop((group, True), None)
+
+    def _items(self) -> list[tuple[str, Stored]]:
+        return [item for group in self._groups.values() for item in group.items()]
 
     def find(self, name: str) -> Stored | None:
         """The file of a name."""
@@ -124,9 +133,12 @@ class Results:
 
     def blocks(self, scene: str, arm: str, suspect: bool = False) -> list[tuple[int, int]]:
         """The blocks of seeds that are there, ascending; `suspect`: also those that are suspect."""
-        found = self._groups.get(f"{scene}-{arm}", {})
-        names = (name.split("-") for name, entry in found.items() if suspect or not entry.suspect)
-        return sorted({(int(first), int(last)) for _, _, first, last, _ in names})
+        group = f"{scene}-{arm}"
+        if (group, suspect) not in self._blocks:  # many points share the arms that are not swept
+            entries = self._groups.get(group, {}).items()
+            names = (name.split("-") for name, entry in entries if suspect or not entry.suspect)
+            self._blocks[group, suspect] = sorted({(int(first), int(last)) for _, _, first, last, _ in names})
+        return self._blocks[group, suspect]
 
     def text(self, scene: str, arm: str, first: int, last: int) -> str:
         """The metrics.json of a block that is there."""
@@ -180,20 +192,24 @@ class Results:
 
     def mark(self, workers: set[str]) -> None:
         """Marks the results of workers as suspect: the next call computes them again."""
-        entries = [item for group in self._groups.values() for item in group.items() if item[1].worker in workers]
-        for name, entry in entries:
-            self._add_again(name, entry, {}, suspect=True)
+        for name, entry in self._items():
+            if entry.worker in workers:
+                self._add_again(name, entry, {}, suspect=True)
 
     def forget(self, scene: str, arm: str) -> None:
         """Leaves out the results of an arm at a scene, whose files sync() removes."""
+        self._forget_blocks(f"{scene}-{arm}")
         self._forgotten |= {entry.path for entry in self._groups.pop(f"{scene}-{arm}", {}).values()}
 
     def sync(self, wanted: Mapping[str, Row]) -> None:
         """Makes ``data`` agree with the points of the sweep: `wanted` are the names of their results, with the columns
         of their points. Files of other points are moved; those that are damaged or forgotten are removed."""
+        same_results: dict[str, list[Stored]] = {}
+        for other, stored in self._items():
+            same_results.setdefault(_identity(other), []).append(stored)
         for name, constants in wanted.items():
             entry = self.find(name)
-            same = [e for other, e in self._groups[_group(name)].items() if _identity(other) == _identity(name)]
+            same = same_results[_identity(name)]
             sound = next((e for e in same if not e.suspect), None)
             if entry is None or entry.path.parent != self._data or not entry.has_columns or (entry.suspect and sound):
                 source = sound or entry or same[0]

@@ -140,13 +140,13 @@ def _without_script() -> Iterator[None]:
     """Keeps new processes from running the user's script once more, whose call of a sweep would start others: tasks
     bring along all that they need."""
     main = vars(sys.modules["__main__"])
-    known: dict[str, Any] = {name: main[name] for name in ("__file__", "__spec__") if name in main}
+    before: dict[str, Any] = {name: main[name] for name in ("__file__", "__spec__") if name in main}
     main.pop("__file__", None)
     main["__spec__"] = None
     try:
         yield
     finally:
-        main.update(known)
+        main.update(before)
 
 
 def _given(value: Any) -> Any:

@@ -44,6 +44,11 @@ class Point:
         """Every value of the experiment."""
         return self.experiment._tree()
 
+    @functools.cached_property
+    def hash(self) -> str:
+        """The hash of its experiment, which reads the files of samplers."""
+        return self.experiment.hash
+
     @property
     def pixels(self) -> int:
         """The pixels of a film."""
@@ -105,7 +110,7 @@ def families_of(tree: Mapping[str, Any], path: str) -> str:
 
 def studies_id(point: Point) -> str:
     """The identity of the studies of a point."""
-    return digest(NUMERICS, point.experiment.hash, [arm.id for arm in point.arms.values()])
+    return digest(NUMERICS, point.hash, [arm.id for arm in point.arms.values()])
 
 
 def points_of(
@@ -113,8 +118,8 @@ def points_of(
 ) -> tuple[list[Point], dict[str, str]]:
     """The points of these values, and the errors of those that are not valid."""
     call = uuid.uuid4().hex
-    good: list[Point] = []
-    bad: dict[str, str] = {}
+    points: list[Point] = []
+    errors: dict[str, str] = {}
     for point_values in values:
         try:
             attributes = of_samplers(point_values)
@@ -123,10 +128,10 @@ def points_of(
             with_arms = e._with_arms()
             arms = arms_of(e, versions, call)
             identities = scene_id(with_arms), reference_id(with_arms)
-            good.append(Point(dict(point_values), with_arms, overrides(keys), *identities, arms))
+            points.append(Point(dict(point_values), with_arms, overrides(keys), *identities, arms))
         except (ValueError, TypeError, OSError) as error:
-            bad[label(point_values)] = error_text(error) if not isinstance(error, OSError) else str(error)
-    return good, bad
+            errors[label(point_values)] = error_text(error) if not isinstance(error, OSError) else str(error)
+    return points, errors
 
 
 def missing(blocks: Sequence[tuple[int, int]], seeds: int) -> list[tuple[int, int]]:
@@ -184,17 +189,20 @@ class Plan:
             samples = point.samples(name)
             block = max(1, round((SAMPLES_PER_TASK if arm.built_in else SAMPLES_PER_TASK_OF_OTHERS) / samples))
             counts = len(point.tree["arms"][name]["n"])
-            seed_bytes = counts * (1_400.0 + 900 * len(point.tree.get("regions", {})))
-            row = {**point.row(name), "experiment": point.experiment.hash}
+            seed_bytes = counts * (1_800.0 + 1_100 * len(point.tree.get("regions", {})))  # in data and points
+            row = {**point.row(name), "experiment": point.hash}
             for first, last in missing(self._results.blocks(point.scene, arm.id), self._seeds):
                 for start in range(first, last + 1, block):
                     end = min(start + block - 1, last)
                     films = self._films and start == 1
-                    task = point.task("part", [name], arm=name, first=start, last=end, reference=point.reference, films=films)
+                    count = end - start + 1
+                    task = point.task(
+                        "part", [name], arm=name, first=start, last=end, reference=point.reference, films=films
+                    )
                     yield Job(
                         f"{point.scene}-{arm.id}-{start}-{end}", task, f"{point.label}, {name}, seeds {start} to {end}",
-                        row=row, folder=point.folder, repeatable=arm.built_in, samples=samples * (end - start + 1),
-                        bytes=12_000 + seed_bytes * (end - start + 1) + 36.0 * point.pixels * counts * films,
+                        row=row, folder=point.folder, repeatable=arm.built_in, samples=samples * count,
+                        bytes=12_000 + seed_bytes * count + 36.0 * point.pixels * counts * films,
                     )  # fmt: skip
 
 
@@ -203,8 +211,8 @@ def kept_points(
 ) -> list[Point]:
     """The points of earlier calls that are points of this experiment still, without those of `new`."""
     keys = {point.key for point in new}
-    kept = []
+    older: list[Point] = []
     for old in (read_json(out / "sweep.json") or {}).get("points", []):
         found = [] if old["scene"] in keys else points_of(base, [old["values"]], seeds, versions)[0]
-        kept += [point for point in found if point.key == old["scene"]]
-    return kept
+        older += [point for point in found if point.key == old["scene"]]
+    return older

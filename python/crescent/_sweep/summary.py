@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -20,10 +21,10 @@ Rows = list[dict[str, Any]]
 
 def state_of(out: str | PathLike[str]) -> dict[str, Any]:
     """The contents of sweep.json."""
-    found = read_json(Path(out) / "sweep.json")
-    if not found:
+    state = read_json(Path(out) / "sweep.json")
+    if not state:
         raise UsageError(f"{out}: no sweep: expected a folder that `crescent sweep --out` made")
-    return dict(found)
+    return dict(state)
 
 
 class Numbers:
@@ -31,7 +32,9 @@ class Numbers:
 
     def __init__(self, out: str | PathLike[str]) -> None:
         self.state = state_of(out)
-        table = read(out)
+        names = ("point", "arm", "n", "s", "metric", "region", "value", "suspect")
+        table = read(out).select(names)
+        columns = {name: table[name].to_pylist() for name in names}
         self.axes: dict[str, list[Any]] = {
             path: sorted(values, key=lambda v: (isinstance(v, str), v)) if all(
                 isinstance(v, (int, float, str)) for v in values
@@ -41,41 +44,31 @@ class Numbers:
         self.values: dict[tuple[str, str, int, str, str], list[float]] = {}
         self.metrics: dict[str, list[str]] = {}
         self.suspect = 0
-        own = {point["scene"]: table for point in self.state["points"]}
-        columns = {
-            name: table[name].to_pylist() for name in ("point", "arm", "n", "s", "metric", "region", "value", "suspect")
-        }
+        points = {point["scene"] for point in self.state["points"]}
         main = self._main_exponents(columns)
-        for at, arm, n, s, metric, region, value, marked in zip(*columns.values(), strict=True):
+        for point, arm, n, s, metric, region, value, marked in zip(*columns.values(), strict=True):
             self.suspect += bool(marked)
-            if marked or at not in own or value is None or s != main.get((at, arm)):
+            if marked or point not in points or value is None or s != main[point, arm]:
                 continue
-            self.values.setdefault((at, arm, n, metric, region), []).append(value)
-            self.metrics.setdefault(metric, [])
-            if region not in self.metrics[metric]:
-                self.metrics[metric].append(region)
+            self.values.setdefault((point, arm, n, metric, region), []).append(value)
+            regions = self.metrics.setdefault(metric, [])
+            if region not in regions:
+                regions.append(region)
 
     @staticmethod
     def _main_exponents(columns: dict[str, list[Any]]) -> dict[tuple[str, str], float]:
         """The exponent with most rows of each point and arm: others are those of the exponent control."""
-        count: dict[tuple[str, str], dict[float, int]] = {}
-        for at, arm, s in zip(columns["point"], columns["arm"], columns["s"], strict=True):
-            of = count.setdefault((at, arm), {})
-            of[s] = of.get(s, 0) + 1
-        return {key: max(of, key=lambda s: of[s]) for key, of in count.items()}
+        rows: dict[tuple[str, str], Counter[float]] = {}
+        for point, arm, s in zip(columns["point"], columns["arm"], columns["s"], strict=True):
+            rows.setdefault((point, arm), Counter())[s] += 1
+        return {key: counter.most_common(1)[0][0] for key, counter in rows.items()}
 
     def chosen(self, given: str) -> tuple[str, str]:
         """The metric and region of "rmse.H", "rmse" or "": by default the first metric in its first region."""
         if not self.metrics:
             raise UsageError("the sweep has no results yet")
         if not given:
-            metric = (
-                "rmse"
-                if "rmse" in self.metrics
-                else "rmse_frame"
-                if "rmse_frame" in self.metrics
-                else next(iter(self.metrics))
-            )
+            metric = next((name for name in ("rmse", "rmse_frame") if name in self.metrics), next(iter(self.metrics)))
             return metric, self.metrics[metric][0]
         metric, _, region = given.partition(".")
         words = [f"{m}.{r}" if r else m for m, regions in self.metrics.items() for r in regions]

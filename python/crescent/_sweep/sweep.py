@@ -28,7 +28,6 @@ from .runner import Runner
 from .store import Store, locked, read_json, write_whole
 from .tasks import Job, Result, host
 
-Say = Callable[[str], None]
 Over = Mapping[str, Any] | Sequence[str] | str
 
 
@@ -40,7 +39,7 @@ class Sweep:
     points: list[dict[str, Any]]
     computed: int  #: tasks computed by this call
     failed: dict[str, str]  #: by task or point, the error
-    cost: dict[str, float] = field(default_factory=dict)  #: of the missing results: tasks, samples, bytes
+    cost: dict[str, float] = field(default_factory=dict)  #: of the missing results: tasks, references, samples, bytes
 
     def to_arrow(self) -> Any:
         """The dataset as a pyarrow.Table."""
@@ -90,24 +89,44 @@ def folder_of(out: str | PathLike[str]) -> Path:
     return path
 
 
-class Options:
-    """The arguments of a call, which are checked here."""
+@dataclass(kw_only=True)
+class Call:
+    """The arguments of a call that runs or checks, which are checked here."""
 
-    def __init__(
-        self, *, over: Any, zip: bool, seeds: Any, engine: str, out: str | PathLike[str], films: bool, resume: bool,
-        dry_run: bool, verify: float | str, workers: Any, versions: Mapping[str, str], progress: bool, say: Say,
-    ) -> None:  # fmt: skip
-        expected = "expected a whole number, 1 to 4096"
-        self.seeds = None if seeds is None else whole("seeds", seeds, 1, 4096, expected)
-        self.workers = None if workers is None else whole("workers", workers, 1, 4096, expected)
-        self.engine = engine_of(engine)
-        if workers is not None and engine != "local":
-            raise UsageError(f"workers is {workers}: is of the engine 'local', and the engine is {engine!r}")
-        if engine.startswith("slurm:"):
-            profile_of(engine.partition(":")[2])
-        self.out, self.verify, self.versions = folder_of(out), share_of(verify), dict(versions)
-        self.over, self.zip, self.films, self.resume, self.dry_run = over, zip, films, resume, dry_run
-        self.progress, self.say = progress, say
+    over: Any
+    zip: bool
+    engine: str
+    out: str | PathLike[str]
+    workers: int | None
+    resume: bool
+    dry_run: bool
+    progress: bool
+    say: Callable[[str], None] = lambda text: None
+
+    def __post_init__(self) -> None:
+        if self.workers is not None:
+            self.workers = whole("workers", self.workers, 1, 4096, "expected a whole number, 1 to 4096")
+            if engine_of(self.engine) != "local":
+                raise UsageError(f"workers is {self.workers}: is of the engine 'local', and the engine is {self.engine!r}")
+        if engine_of(self.engine).startswith("slurm:"):
+            profile_of(self.engine.partition(":")[2])
+        self.folder = folder_of(self.out)
+
+
+@dataclass(kw_only=True)
+class Options(Call):
+    """The arguments of a call that runs."""
+
+    seeds: int | None
+    films: bool
+    verify: float | str | None
+    versions: Mapping[str, str]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.seeds is not None:
+            self.seeds = whole("seeds", self.seeds, 1, 4096, "expected a whole number, 1 to 4096")
+        self.share = share_of("1%" if self.verify is None else self.verify)
 
 
 _NO_AXES = {
@@ -136,7 +155,7 @@ def usable_points(points: list[Point], failed: dict[str, str]) -> tuple[list[Poi
     return points, failed
 
 
-def say_unhashable(points: Sequence[Point], say: Say) -> None:
+def say_unhashable(points: Sequence[Point], say: Callable[[str], None]) -> None:
     """Says which samplers cannot be hashed."""
     for name, kinds in {n: arm.unhashable for p in points for n, arm in p.arms.items() if arm.unhashable}.items():
         say(f"{name}: {', '.join(kinds)} cannot be hashed: its results are never reused (--sampler-version {name}=V)")
@@ -147,16 +166,16 @@ class Run:
 
     def __init__(self, base: Experiment, options: Options) -> None:
         self.options, self.base = options, base
-        self.store = Store(options.out)
+        self.store = Store(options.folder)
         axes = axes_of(options.over)
         _check_axes(axes)
         self.seeds = base["seeds"] if options.seeds is None else options.seeds
         values = grid(axes, options.zip)
         self.points, self.failed = usable_points(*points_of(base, values, self.seeds, options.versions))
-        older = kept_points(base, options.out, self.seeds, options.versions, self.points)
+        older = kept_points(base, options.folder, self.seeds, options.versions, self.points)
         self.all_points = [*older, *self.points]
         self.axes: dict[str, list[Any]] = {axis.path: [] for axis in axes}
-        for path in (read_json(options.out / "sweep.json") or {}).get("axes", {}) if older else ():
+        for path in (read_json(options.folder / "sweep.json") or {}).get("axes", {}) if older else ():
             self.axes.setdefault(path, [])
         for point in (*self.points, *older):
             for path in self.axes:
@@ -164,7 +183,7 @@ class Run:
                     point.values[path] = point.experiment[path]
                 if point.values[path] not in self.axes[path]:
                     self.axes[path].append(point.values[path])
-        self.results = Results(options.out, self.axes)
+        self.results = Results(options.folder, self.axes)
         for point in self.points if not options.resume else ():
             for arm in point.arms.values():
                 self.results.forget(point.scene, arm.id)
@@ -176,7 +195,7 @@ class Run:
         """sweep.json: the points and axes, for later calls and for the summary."""
         points = [
             {
-                "values": p.values, "scene": p.key, "folder": p.folder, "experiment": p.experiment.hash,
+                "values": p.values, "scene": p.key, "folder": p.folder, "experiment": p.hash,
                 "arms": {name: arm.id for name, arm in p.arms.items()},
             }
             for p in self.all_points
@@ -186,7 +205,7 @@ class Run:
             "seeds": self.seeds,
             "axes": self.axes, "points": points, "numerics": NUMERICS, "failed": self.failed,
         }  # fmt: skip
-        write_whole(self.options.out / "sweep.json", json.dumps(state, indent=1))
+        write_whole(self.options.folder / "sweep.json", json.dumps(state, indent=1))
 
     def sync(self) -> None:
         """Gives every point the rows of its results, also of those that it shares with other points."""
@@ -202,7 +221,7 @@ class Run:
     def verify_job(self, job: Job, result: Result) -> Job | None:
         """The same task for another worker and instruction set, for a share of the tasks."""
         chance = int(hashlib.sha256(b"verify" + job.id.encode()).hexdigest()[:8], 16) / 2**32
-        if not job.repeatable or chance >= self.options.verify:
+        if not job.repeatable or chance >= self.options.share:
             return None
         task = {**job.task, "isa": f"not {result['isa']}", "films": False}
         label = f"{job.label}: bits"
@@ -256,8 +275,8 @@ class Run:
             studies = self.store.read("studies", studies_id(point))
             if studies is None or seeds != [(a.id, k) for a in point.arms.values() for k in range(1, self.seeds + 1)]:
                 continue
-            folder = self.options.out / "points" / point.folder
-            identity = digest(point.experiment.hash, self.seeds, blocks)
+            folder = self.options.folder / "points" / point.folder
+            identity = digest(point.hash, self.seeds, blocks)
             if joined.get(point.folder, [""])[0] == identity and joined[point.folder][2:] == [_digest_of_run(folder)]:
                 failing += joined[point.folder][1]
                 continue
@@ -354,7 +373,7 @@ def run_task(path: Path) -> int:
 
 def run_sweep(base: Experiment, options: Options) -> Sweep:
     """Runs a sweep; see :func:`crescent.sweep`."""
-    with contextlib.nullcontext() if options.dry_run else locked(options.out):
+    with contextlib.nullcontext() if options.dry_run else locked(options.folder):
         return _run_sweep(base, options)
 
 
@@ -368,7 +387,7 @@ def _run_sweep(base: Experiment, options: Options) -> Sweep:
     if options.dry_run:
         for place, error in run.failed.items():
             say(f"failed: {place}: {error}")
-        return Sweep(options.out, [], 0, run.failed, cost)
+        return Sweep(options.folder, [], 0, run.failed, cost)
     say_unhashable(run.points, say)
     run.write_state()
     run.sync()
@@ -386,8 +405,8 @@ def _run_sweep(base: Experiment, options: Options) -> Sweep:
     run.write_state()
     if failing:
         say(f"assertions of the experiment fail at {failing} of {len(run.points)} points (points/*/junit.xml)")
-    state = read_json(options.out / "sweep.json") or {}
-    return Sweep(options.out, state.get("points", []), run.computed, run.failed, cost)
+    state = read_json(options.folder / "sweep.json") or {}
+    return Sweep(options.folder, state.get("points", []), run.computed, run.failed, cost)
 
 
 def experiment_of(given: Experiment | str | PathLike[str]) -> Experiment:

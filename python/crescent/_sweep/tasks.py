@@ -86,8 +86,8 @@ def experiment_of(task: Task) -> Any:
     changes = list(task["changes"])
     for name, arm in task.get("arms", {}).items():
         if arm["kind"] == "plugin":
-            at = _code_folder(arm["code"]["files"]) / arm["code"]["at"]
-            changes.append(f'arms."{name}".plugin="{at}"')
+            file = _code_folder(arm["code"]["files"]) / arm["code"]["at"]
+            changes.append(f'arms."{name}".plugin="{file}"')
     return _crescent.parse(task["text"], task["file"], changes)
 
 
@@ -98,8 +98,8 @@ def _callables(task: Task) -> list[Any]:
         if arm["kind"] in ("python", "callable"):
             out.append(callable_arm(name, _sampler(arm["code"]) if arm["code"] else sampler_at(arm["sampler"])))
         elif arm["kind"] == "weights_python":
-            at = _code_folder(arm["code"]["files"]) / arm["code"]["at"] if arm["code"] else arm["sampler"]
-            out.extend(callable_arms({}, {name: {"weights_python": str(at)}}))
+            file = _code_folder(arm["code"]["files"]) / arm["code"]["at"] if arm["code"] else arm["sampler"]
+            out.extend(callable_arms({}, {name: {"weights_python": str(file)}}))
     return out
 
 
@@ -117,9 +117,9 @@ def _part(task: Task, references: Any) -> Result:
 
 def _instruction_set(task: Task) -> str:
     """The best instruction set of this machine; for "not NAME" the best other one."""
-    there = _crescent.instruction_sets()
+    sets = _crescent.instruction_sets()
     unwanted = task.get("isa", "").removeprefix("not ")
-    return next((name for name in reversed(there) if name != unwanted), there[-1])
+    return next((name for name in reversed(sets) if name != unwanted), sets[-1])
 
 
 def _films(run: Any) -> dict[str, bytes]:
@@ -131,19 +131,20 @@ def _films(run: Any) -> dict[str, bytes]:
 
 def _checked(task: Task) -> Result:
     """Checks one sampler with the values of one point, or one arm of an experiment there."""
-    known = {"alpha": task["alpha"], "seed": task["seed"], "full": task["full"], "threads": 1}
+    settings_of_check = {"alpha": task["alpha"], "seed": task["seed"], "full": task["full"], "threads": 1}
     if "arm" in task:
         cases = _crescent.cases_of_experiment(
             experiment_of(task), task["arm"], task["pixels"], task["full"], _callables(task), [], "check"
         )
-        result = run_checks(cases, f"crescent.check({task['file']!r}, sampler={task['arm']!r})", **known)
+        result = run_checks(cases, f"crescent.check({task['file']!r}, sampler={task['arm']!r})", **settings_of_check)
     else:
         sampler, settings = task["sampler"], task["values"]
         if task["code"]:
             sampler, settings = _sampler_with(task["code"], task["values"])
-        result = check(sampler, settings=settings, **known)
+        result = check(sampler, settings=settings, **settings_of_check)
     rows = [
-        {"case": v.case, "verdict": v.name, "state": v.state, "message": v.message, "cause": v.cause} for v in result.verdicts
+        {"case": v.case, "verdict": v.name, "state": v.state, "message": v.message, "cause": v.cause}
+        for v in result.verdicts
     ]
     return {"state": result.state, "tests": result.tests, "verdicts": rows, "json": result.json()}
 
