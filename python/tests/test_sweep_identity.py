@@ -305,6 +305,28 @@ def test_attributes_of_samplers_are_swept(tmp_path):
             crescent.sweep(e, over={path: [1.0]}, out=tmp_path / "other", workers=1)
 
 
+CELL = """
+import crescent
+import numpy as np
+
+def draw(wo, u):
+    r, phi, z = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1], np.sqrt(1 - u[:, 0])
+    return np.stack([r * np.cos(phi), r * np.sin(phi), z], -1), z / np.pi
+
+e = crescent.load("e.toml")
+e.samplers["mine"] = draw
+for _ in range(2):
+    print(crescent.sweep(e, over={"ball.s": [8]}, seeds=1, out="out", workers=1, verify=0).computed)
+"""
+
+
+def test_a_sampler_of_a_cell_has_no_file_and_is_swept(tmp_path):
+    (tmp_path / "e.toml").write_text(TINY)
+    (tmp_path / "kernel.py").write_text(f"exec(compile({CELL!r}, '<cell>', 'exec'))")  # in __main__, as a notebook's
+    ended = subprocess.run([sys.executable, "kernel.py"], cwd=tmp_path, capture_output=True, text=True, timeout=240)
+    assert ended.stdout.split() == ["5", "0"], ended.stderr  # references, three arms, studies
+
+
 @dataclasses.dataclass(frozen=True)
 class Frozen:
     k: float = 1.0

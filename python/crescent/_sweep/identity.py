@@ -146,7 +146,7 @@ def _of_python(where: str) -> tuple[Any, Code | None]:
 
 def _hashes_of_module(name: str) -> dict[str, str]:
     """The hashes of the Python files of a top-level module; of one that is not installed, of what it imports too."""
-    spec = importlib.util.find_spec(name)
+    spec = importlib.util.find_spec(name) if name != "__main__" else None  # of a notebook, which has none
     origin = spec.origin if spec else None
     if not origin or not origin.endswith(".py"):
         return {}
