@@ -249,11 +249,11 @@ def _wgsl_include(rest: str, place: str, folders: list[Path], macros: dict[str, 
     raise BadInput(f"{place}: no file '{name}' in {', '.join(map(str, folders))}: -I DIR names a folder")
 
 
-def _users_lines(request: Request) -> tuple[list[str], list[Line]]:
+def _users_lines(request: Request) -> tuple[list[Line], list[Line]]:
     """Lines that must come first, such as extensions; and the preludes and the file."""
     notation, language = NOTATIONS[request.language], request.language
     texts = [*read_preludes(request), (str(request.path), request.text)]
-    first: list[str] = []
+    first: list[Line] = []
     out: list[Line] = []
     macros = dict(request.define)
     everything = "\n".join(without_comments(text) for _, text in texts)
@@ -270,7 +270,7 @@ def _users_lines(request: Request) -> tuple[list[str], list[Line]]:
             leading = re.compile(r"\s*#\s*extension\b" if language == "glsl" else r"(?!)")
         for line in lines:
             if leading.match(line.text):
-                first.append(line.text)
+                first.append(line)
                 line = Line("", line.label, line.number)
             elif language == "glsl" and re.match(
                 r"\s*#\s*version\b|\s*#\s*pragma\s+(?!once)|precision\s+\w+\s+\w+\s*;", line.text
@@ -589,7 +589,7 @@ def program(request: Request, operation: str, channels: int, weights: int) -> Pr
         lines += [Line("#version 460")]
         extensions = ["GL_GOOGLE_cpp_style_line_directive", "GL_GOOGLE_include_directive"]
         lines += [Line(f"#extension {name} : require") for name in extensions]
-    lines += [Line(text) for text in first]
+    lines += first
     if request.language != "wgsl":
         lines += [Line(f"#define {name} {value}") for name, value in request.define]
     lines += [Line(text) for text in _random_functions(request)]

@@ -67,6 +67,14 @@ def test_every_line_of_the_file_keeps_its_number(file: str) -> None:
     assert [line.text.strip() for line in users] == ["let r = sqrt(u.x);"]
 
 
+def test_an_extension_comes_first_and_keeps_its_number(tmp_path: Path) -> None:
+    path = tmp_path / "own.glsl"
+    path.write_text("// crescent: sample = wi = wo\n\n#extension GL_OWN : require\nfloat x;\n")
+    text = program(read_request([str(path)]), "sample", 1, 0).with_places()
+    assert f'#line 3 "{path}"\n#extension GL_OWN : require\n' in text
+    assert text.index("GL_OWN") < text.index("float x;")
+
+
 def made(file: str, **words: object) -> crescent.Sampler:
     try:
         return crescent.shader(file, **{"set": {"alpha": 0.3}, **words})  # type: ignore[arg-type]
