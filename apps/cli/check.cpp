@@ -232,6 +232,22 @@ std::array<double, 3> expected_values(const CheckFlags& flags, int channels) {
 
 namespace {
 
+/// The sampler of --against by the form of its name: a Python file, a shader, a plugin, else a program.
+std::shared_ptr<const SamplerAdapter> start_other(const CheckFlags& flags, const ProgressMonitor& monitor) {
+    const std::string& name = flags.against;
+    const PipeLimits limits = limits_of(flags, monitor);
+    if (name.find(' ') == std::string::npos) {
+        if (names_python_sampler(name)) return start_python_sampler(name, limits);
+        if (names_shader(name)) return start_shader(name, {}, limits);
+        if (name.ends_with(".so")) return open_plugin(name, limits);
+    }
+    try {
+        return start_pipe(name, limits);
+    } catch (const InputError&) {  // start_pipe calls it --exec
+        throw InputError({"--against " + name, 0, 0}, "neither a built-in arm nor a command of the shell");
+    }
+}
+
 /// An estimator of a number against its expected value, or against another estimator.
 CheckResult check_of_number(
     const CheckFlags& flags, const std::shared_ptr<const SamplerAdapter>& estimator, Progress& monitor) {
@@ -242,9 +258,7 @@ CheckResult check_of_number(
     check::ExpectedMean expected;
     if (!flags.estimates.empty()) expected.value = expected_values(flags, estimator->traits().channels);
     else {
-        const PipeLimits limits = limits_of(flags, monitor);
-        expected.estimator = names_python_sampler(flags.against) ? start_python_sampler(flags.against, limits)
-                                                                 : start_pipe(flags.against, limits);
+        expected.estimator = start_other(flags, monitor);
         if (!expected.estimator->traits().number ||
             expected.estimator->traits().channels != estimator->traits().channels)
             throw InputError({"--against " + flags.against, 0, 0}, "draws no values of as many channels");
@@ -638,17 +652,7 @@ std::vector<CheckCase> others_of(
             throw InputError({"--against " + flags.against, 0, 0},
                 "is a file of samples, which has no p and f elsewhere: give it as --samples FILE, and --against an arm "
                 "or a program");
-    if (names_python_sampler(flags.against) && flags.against.find(' ') == std::string::npos)
-        return sampler_against(start_python_sampler(flags.against, limits_of(flags, monitor)), a);
-    if (names_shader(flags.against) && flags.against.find(' ') == std::string::npos)
-        return sampler_against(start_shader(flags.against, {}, limits_of(flags, monitor)), a);
-    std::shared_ptr<const SamplerAdapter> other;
-    try {
-        other = start_pipe(flags.against, limits_of(flags, monitor));
-    } catch (const InputError&) {  // start_pipe calls it --exec
-        throw InputError({"--against " + flags.against, 0, 0}, "neither a built-in arm nor a command of the shell");
-    }
-    return sampler_against(other, a);
+    return sampler_against(start_other(flags, monitor), a);
 }
 
 }  // namespace

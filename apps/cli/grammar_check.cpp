@@ -32,8 +32,9 @@ std::string verdicts_in_order() {
 /// --against.
 CLI::Option* comparison(CLI::App& c, CheckFlags& f) {
     auto* against = c.add_option("--against", f.against,
-        "compare the sampler with a built-in one or a program: same distribution, same f, variance ratio");
-    against->type_name("ARM|FILE.py:NAME|'PROGRAM'")->check(not_empty);
+        "compare the sampler with a built-in one, a shader, a plugin (FILE.so) or a program: same distribution, same "
+        "f, variance ratio");
+    against->type_name("ARM|FILE|FILE.py:NAME|'PROGRAM'")->check(not_empty);
     return against;
 }
 

@@ -12,6 +12,8 @@ expect 0 "${CC:-cc}" -O2 -o cosine "$CRESCENT_SOURCE/examples/pipe_samplers/cosi
         '[furnaces.mine]' 'arm = "mine"' 'shape = "ball"' 'n = 4096' '[furnaces.built_in]' 'arm = "cosine"' \
         'shape = "ball"' 'n = 4096'
 } >mine.toml
+expect 0 "$CRESCENT" check --quiet cosine --wo 45 --against ./libcosine.so --expect same
+expect 3 "$CRESCENT" check --quiet cosine --wo 45 --against ./libnowhere.so
 expect 0 "$CRESCENT" run mine.toml --out out --quiet
 expect 0 python3 - <<'PY'
 import json, math
