@@ -53,7 +53,7 @@ expect 1 "$CRESCENT" compare --arm a="seed-*/$film" --arm b="bright-*/$film" --l
 if "$CRESCENT" import --help >/dev/null 2>&1 && [ -x "$(dirname "$CRESCENT")/crescent-import" ]; then
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >triangle.obj
     expect 0 "$CRESCENT" import triangle.obj --out triangle.mesh
-    grep -q ' 1 triangles' printed || die "one triangle: $(cat printed)"
+    grep -q ' 1 triangle,' printed || die "one triangle: $(cat printed)"
 fi
 if command -v ffmpeg >/dev/null; then
     expect 0 "$CRESCENT" film "$here/film.toml" --size 360p --from 0:08 --to 0:09 --out film --quiet

@@ -294,7 +294,10 @@ class DaskEngine:
                 if not (batch := finished.next_batch(block=False)):
                     time.sleep(_POLL_S)
                 for future, result in zip(batch, self._results(batch), strict=True):
-                    yield running.pop(future.key)[1], result
+                    if result is None:
+                        finished.add(future)
+                    else:
+                        yield running.pop(future.key)[1], result
                 in_use = {name for _, job in running.values() for name in (job.id, job.reference)}
                 for name in [name for name in list(references)[:-2] if name not in in_use]:
                     del references[name]
@@ -325,26 +328,32 @@ class DaskEngine:
             references[job.id] = future
         return future
 
-    def _results(self, futures: Sequence[Any]) -> list[Result]:
-        """The results of futures that have ended, in one request."""
+    def _results(self, futures: Sequence[Any]) -> list[Result | None]:
+        """The results of futures that have ended, in one request; None of one that was lost with its worker since: Dask
+        computes it again."""
         done = {k: future for k, future in enumerate(futures) if future.status == "finished"}
         values: dict[int, Any] = {}
-        if done:
-            with contextlib.suppress(TimeoutError):
+        is_late = False
+        try:
+            if done:
                 values = self.client.sync(self.client._gather, done, errors="skip", callback_timeout=_TRANSFER_S)
-        return [values.get(k) or {"error": self._error(future)} for k, future in enumerate(futures)]
+        except TimeoutError:
+            is_late = True
+        return [values.get(k) or self._failure(future, is_late) for k, future in enumerate(futures)]
 
-    def _error(self, future: Any) -> str:
+    def _failure(self, future: Any, is_late: bool) -> Result | None:
         """Why a future has no result. Only the loss of the scheduler cancels one."""
         if future.cancelled():
             self._set_lost()
             raise EngineError(self._problem)
-        if future.status == "finished":
-            return f"its result did not arrive in {_TRANSFER_S:.0f} s"
+        if future.status == "finished" and is_late:
+            return {"error": f"its result did not arrive in {_TRANSFER_S:.0f} s"}
+        if future.status != "error":
+            return None
         problem = future.exception(timeout=5)
         if type(problem).__name__ == "KilledWorker":
-            return f"{problem.allowed_failures + 1} workers were lost while they computed it"
-        return f"{type(problem).__name__}: {problem}"
+            return {"error": f"{problem.allowed_failures + 1} workers were lost while they computed it"}
+        return {"error": f"{type(problem).__name__}: {problem}"}
 
 
 def execute(
