@@ -3,9 +3,7 @@
 // Draco: draco.h. EXT_meshopt_compression: meshopt.h.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <optional>
 #include <set>
@@ -14,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "draco.h"
+#include "little_endian.h"
 #include "meshopt.h"
 #include "model.h"
 
@@ -97,13 +96,6 @@ std::optional<std::string> base64_decoded(std::string_view text) {
     return out;
 }
 
-std::uint32_t number_at(std::string_view bytes, std::size_t begin) {
-    std::uint32_t out = 0;
-    for (std::size_t k = 0; k < 4; ++k)
-        out |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[begin + k])) << (8 * k);
-    return out;
-}
-
 /// The parts of a .glb file: JSON, and a buffer.
 struct Container {
     std::string_view json;
@@ -115,11 +107,13 @@ Container container_of(std::string_view file) {
     constexpr std::string_view magic = "glTF";
     constexpr std::uint32_t json_chunk = 0x4E4F534A, buffer_chunk = 0x004E4942;
     if (!file.starts_with(magic)) return {file, std::nullopt};
-    if (file.size() < 12 || number_at(file, 4) != 2) throw ModelError("expected version 2 of GLB");
+    if (file.size() < 12 || little_endian<std::uint32_t>(file.data() + 4) != 2)
+        throw ModelError("expected version 2 of GLB");
     Container out;
     std::size_t place = 12;
     while (place + 8 <= file.size()) {
-        const std::uint32_t size = number_at(file, place), kind = number_at(file, place + 4);
+        const auto size = little_endian<std::uint32_t>(file.data() + place),
+                   kind = little_endian<std::uint32_t>(file.data() + place + 4);
         if (size > file.size() - place - 8)
             throw ModelError(fmt::format("byte {}: a part of {} bytes, beyond the end of the file", place, size));
         const std::string_view bytes = file.substr(place + 8, size);
@@ -158,23 +152,25 @@ std::size_t bytes_of_type(std::size_t type, const std::string& place) {
 }
 
 double value_at(const char* bytes, std::size_t type, bool normalized) {
-    std::uint32_t bits = 0;
-    const std::size_t size = type <= type_u8 ? 1 : type <= type_u16 ? 2 : 4;
-    for (std::size_t k = 0; k < size; ++k)
-        bits |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[k])) << (8 * k);
     switch (type) {
         case type_i8: {
-            const double v = static_cast<std::int8_t>(bits);
+            const double v = little_endian<std::int8_t>(bytes);
             return normalized ? std::max(v / 127, -1.0) : v;
         }
-        case type_u8: return normalized ? bits / 255.0 : bits;
+        case type_u8: {
+            const double v = little_endian<std::uint8_t>(bytes);
+            return normalized ? v / 255 : v;
+        }
         case type_i16: {
-            const double v = static_cast<std::int16_t>(bits);
+            const double v = little_endian<std::int16_t>(bytes);
             return normalized ? std::max(v / 32767, -1.0) : v;
         }
-        case type_u16: return normalized ? bits / 65535.0 : bits;
-        case type_f32: return static_cast<double>(std::bit_cast<float>(bits));
-        default: return bits;
+        case type_u16: {
+            const double v = little_endian<std::uint16_t>(bytes);
+            return normalized ? v / 65535 : v;
+        }
+        case type_f32: return static_cast<double>(little_endian<float>(bytes));
+        default: return little_endian<std::uint32_t>(bytes);
     }
 }
 
@@ -203,16 +199,13 @@ public:
         look_at_extensions();
         for (std::size_t k = 0; k < size_of("materials"); ++k) add_material(k);
         place_scene();
-        const auto left_out = [&](std::size_t count, const char* what) {
-            if (count > 0) model.left_out.push_back(counted(count, what));
-        };
-        left_out(container_.other_parts, "part[s] of the file of an unknown kind");
-        left_out(container_.rest, "byte[s] after the last part of the file");
-        left_out(points_and_lines_, "primitive[s] of points or lines, or without positions");
-        left_out(size_of("skins"), "skin[s]");
-        left_out(size_of("animations"), "animation[s]");
-        left_out(targets_, "primitive[s] with morph targets");
-        for (const auto& [what, count] : dropped_) left_out(count, what.c_str());
+        model.leave_out(container_.other_parts, "part[s] of the file of an unknown kind");
+        model.leave_out(container_.rest, "byte[s] after the last part of the file");
+        model.leave_out(points_and_lines_, "primitive[s] of points or lines, or without positions");
+        model.leave_out(size_of("skins"), "skin[s]");
+        model.leave_out(size_of("animations"), "animation[s]");
+        model.leave_out(targets_, "primitive[s] with morph targets");
+        for (const auto& [what, count] : dropped_) model.leave_out(count, what);
         for (const auto& [name, count] : attributes_)
             model.left_out.push_back(fmt::format("the attribute {} of {}", name, counted(count, "primitive[s]")));
     }

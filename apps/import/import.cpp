@@ -259,7 +259,7 @@ void list_numbers_out_of_range(Model& model) {
                                            m.emission.x, m.emission.y, m.emission.z, m.metal, m.alpha},
                 is_out);
         });
-        if (count > 0) model.left_out.push_back(counted(static_cast<std::size_t>(count), what));
+        model.leave_out(static_cast<std::size_t>(count), what);
     };
     list([](float x) { return !(x >= 0); }, "material[s] with numbers below 0: [it has|they have] 0 in their place");
     list([](float x) { return x > largest_number; },
@@ -269,15 +269,13 @@ void list_numbers_out_of_range(Model& model) {
 void list_unused_materials(Model& model) {
     std::vector<bool> is_used(model.materials.size());
     for (const Part& part : model.parts) is_used[part.material] = true;
-    if (const auto count = std::ranges::count(is_used, false); count > 0)
-        model.left_out.push_back(counted(static_cast<std::size_t>(count), "material[s] that no part has"));
+    model.leave_out(static_cast<std::size_t>(std::ranges::count(is_used, false)), "material[s] that no part has");
 }
 
 void list_parts_without_uv(Model& model) {
     const auto count = std::ranges::count_if(model.parts, [&](const Part& part) { return lacks_uv(model, part); });
-    if (count > 0)
-        model.left_out.push_back(counted(static_cast<std::size_t>(count),
-            "part[s] without texture coordinates, of a material with images: [it has|they have] its colours alone"));
+    model.leave_out(static_cast<std::size_t>(count),
+        "part[s] without texture coordinates, of a material with images: [it has|they have] its colours alone");
 }
 
 OrderedJson write_pictures(const Model& model, const OrderedJson& materials, std::size_t& end) {

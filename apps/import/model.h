@@ -94,6 +94,11 @@ struct Model {
     std::optional<ModelCamera> camera;
     std::vector<std::string> left_out;  // what the file has besides, "12 edges"
     std::vector<std::string> assumed;   // where the file does not say what is meant
+
+    /// Lists so many things as left out; `what` as counted() takes it. Nothing for 0.
+    void leave_out(std::size_t count, std::string_view what) {
+        if (count > 0) left_out.push_back(counted(count, what));
+    }
 };
 
 inline Vec3f narrow(Vec3d v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }

@@ -43,8 +43,7 @@ constexpr std::array image_options = {Option{"-o", 3}, Option{"-s", 3}, Option{"
 
 /// Takes the options of an image off; what is left is the name of its file.
 void read_image(std::string_view rest, MtlMaterial& to, Kinds& left_out) {
-    to.scale = {1, 1};
-    to.offset = {0, 0};
+    to.uv = {};
     for (;;) {
         std::string_view after = rest;
         const std::string name = lower_case(take_word(after));
@@ -62,7 +61,7 @@ void read_image(std::string_view rest, MtlMaterial& to, Kinds& left_out) {
             numbers.push_back(*number);
             rest = behind;
         }
-        Vec2<double>* const placed = name == "-s" ? &to.scale : name == "-o" ? &to.offset : nullptr;
+        Vec2<double>* const placed = name == "-s" ? &to.uv.scale : name == "-o" ? &to.uv.offset : nullptr;
         if (placed && !numbers.empty()) {
             placed->x = numbers[0];
             if (numbers.size() > 1) placed->y = numbers[1];

@@ -9,10 +9,15 @@
 
 namespace crescent::importer {
 
+/// Where an image is on a part: uv' = scale uv + offset.
+struct UvPlacement {
+    Vec2<double> scale{1, 1}, offset{0, 0};
+};
+
 struct MtlMaterial {
     Material material;
-    std::string image = {};                  // that multiplies the colour, as it is written; "": none
-    Vec2<double> scale{1, 1}, offset{0, 0};  // of its texture coordinates: uv' = scale uv + offset
+    std::string image = {};  // that multiplies the colour, as it is written; "": none
+    UvPlacement uv{};        // of the image
 };
 
 struct Mtl {

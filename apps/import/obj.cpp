@@ -117,7 +117,7 @@ private:
             }
             if (!one.image.empty()) add_image(one, found->path.parent_path());
             model.materials.push_back(std::move(one.material));
-            uv_uses_.push_back({one.scale, one.offset});
+            uv_placements_.push_back(one.uv);
         }
         return true;
     }
@@ -156,7 +156,7 @@ private:
         const std::size_t index = model.materials.size();
         material_of_name_.emplace(name, index);
         model.materials.push_back({std::string(name)});
-        uv_uses_.emplace_back();
+        uv_placements_.emplace_back();
         return index;
     }
 
@@ -280,27 +280,24 @@ private:
         if (corner[2] > 0) part.normals.push_back(normals_[corner[2] - 1]);
         else if (!part.normals.empty()) part.normals.emplace_back();
         if (corner[1] > 0) {
-            const UvUse& use = uv_uses_[part.material];
+            const UvPlacement& placed = uv_placements_[part.material];
             const Vec2<float> uv = uv_[corner[1] - 1];
-            part.uv.push_back({static_cast<float>(use.scale.x * static_cast<double>(uv.x) + use.offset.x),
-                static_cast<float>(use.scale.y * static_cast<double>(uv.y) + use.offset.y)});
+            part.uv.push_back({static_cast<float>(placed.scale.x * static_cast<double>(uv.x) + placed.offset.x),
+                static_cast<float>(placed.scale.y * static_cast<double>(uv.y) + placed.offset.y)});
         }
         return index->second;
     }
 
     void list_what_is_left_out() {
-        const auto add = [&](std::size_t count, std::string_view what) {
-            if (count > 0) model.left_out.push_back(counted(count, what));
-        };
-        add(curves_, "curve[s] or surface[s]");
-        add(points_and_lines_, "point[s] or line[s]");
-        add(weights_, "weight[s] of vertices");
-        add(colours_, "colour[s] of vertices");
-        add(further_numbers_, "vert[ex|ices] with more numbers than are read");
-        add(half_textured_, "face[s] with texture coordinates at some corners alone: the coordinates");
-        add(unsmoothed_, "face[s] of smoothing groups without normals: the smoothing (--smooth DEG)");
-        add(taken_names_, "material[s] with a name that another one has");
-        add(before_materials_, "statement[s] of libraries before their first material");
+        model.leave_out(curves_, "curve[s] or surface[s]");
+        model.leave_out(points_and_lines_, "point[s] or line[s]");
+        model.leave_out(weights_, "weight[s] of vertices");
+        model.leave_out(colours_, "colour[s] of vertices");
+        model.leave_out(further_numbers_, "vert[ex|ices] with more numbers than are read");
+        model.leave_out(half_textured_, "face[s] with texture coordinates at some corners alone: the coordinates");
+        model.leave_out(unsmoothed_, "face[s] of smoothing groups without normals: the smoothing (--smooth DEG)");
+        model.leave_out(taken_names_, "material[s] with a name that another one has");
+        model.leave_out(before_materials_, "statement[s] of libraries before their first material");
         if (const std::size_t count = unknown_materials_.size(); count > 0)
             model.left_out.push_back(fmt::format("{}, which no library has: grey in place of {}",
                 counted(count, "material[s]"), some_of(unknown_materials_)));
@@ -314,11 +311,6 @@ private:
             model.left_out.push_back(fmt::format("the option '{}' of {}", key, counted(count, "image[s]")));
     }
 
-    /// uv' = scale uv + offset.
-    struct UvUse {
-        Vec2<double> scale{1, 1}, offset{0, 0};
-    };
-
     std::filesystem::path folder_;
     ReadingScope scope_;
     std::string text_;
@@ -327,7 +319,7 @@ private:
     std::vector<Vec2<float>> uv_;
     std::vector<Vec3f> normals_;
     std::map<std::string, std::size_t, std::less<>> material_of_name_;
-    std::vector<UvUse> uv_uses_;  // of each material
+    std::vector<UvPlacement> uv_placements_;  // of each material
     std::map<std::string, std::size_t> picture_of_file_;
     // Of the second pass.
     std::array<std::size_t, 3> counts_{};  // above the present line

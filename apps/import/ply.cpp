@@ -187,10 +187,9 @@ public:
         }
         for (std::size_t k = 0; k < polygons_.size(); ++k) add_polygon(polygons_[k], k);
         for (std::size_t k = 0; k < strips_.size(); ++k) add_strip(strips_[k], k);
-        if (header_.images > 0) model.left_out.push_back(counted(header_.images, "image[s] of a comment TextureFile"));
-        if (in_.rest() > 0) model.left_out.push_back(counted(in_.rest(), "byte[s] after the last element"));
-        if (points_and_lines_ > 0)
-            model.left_out.push_back(counted(points_and_lines_, "face[s] of fewer than three corners"));
+        model.leave_out(header_.images, "image[s] of a comment TextureFile");
+        model.leave_out(in_.rest(), "byte[s] after the last element");
+        model.leave_out(points_and_lines_, "face[s] of fewer than three corners");
     }
 
 private:

@@ -2,13 +2,12 @@
 // bytes and 50 for each triangle; its first word may be `solid` too. Normals are those of the triangles, and are not
 // read.
 #include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 
 #include <fmt/format.h>
 
 #include "lines.h"
+#include "little_endian.h"
 #include "model.h"
 #include "polygon.h"
 
@@ -17,13 +16,6 @@ namespace crescent::importer {
 namespace {
 
 constexpr std::size_t header_bytes = 80, triangle_bytes = 50;
-
-template <class T> T little_endian(const char* bytes) {
-    char own[sizeof(T)];
-    std::memcpy(own, bytes, sizeof(T));
-    if constexpr (std::endian::native == std::endian::big) std::reverse(own, own + sizeof(T));
-    return std::bit_cast<T>(own);
-}
 
 void add_polygon(const std::vector<Vec3d>& corners, Part& to) {
     const auto first = static_cast<std::uint32_t>(to.positions.size());
@@ -58,9 +50,8 @@ Model read_binary(std::string_view file) {
         out.parts[0].triangles.push_back(triangle);
         attributes += little_endian<std::uint16_t>(bytes + 48) != 0;
     }
-    if (attributes > 0) out.left_out.push_back(counted(attributes, "attribute[s] or colour[s] of triangles"));
-    if (const std::size_t rest = file.size() - count * triangle_bytes; rest > 0)
-        out.left_out.push_back(counted(rest, "byte[s] after the last triangle"));
+    out.leave_out(attributes, "attribute[s] or colour[s] of triangles");
+    out.leave_out(file.size() - count * triangle_bytes, "byte[s] after the last triangle");
     return out;
 }
 
