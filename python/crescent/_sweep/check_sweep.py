@@ -267,19 +267,19 @@ def _check_points(title: str, checks: dict[str, Job], failed: dict[str, str], op
         with DaskEngine(options.engine, options.workers, options.say) as engine:
             execute(engine, lambda: next(jobs, None), take, failed, Progress(len(new), 0, options.progress))
     write_state()
-    return CheckSweep(folder, found_checks(folder), computed, failed)
+    return CheckSweep(folder, _checked(points, results), computed, failed)
 
 
 def found_checks(out: str | PathLike[str]) -> list[dict[str, Any]]:
-    """The points that were checked, with their verdicts."""
+    """The points of a folder that were checked, with their verdicts."""
     state = read_json(Path(out) / "sweep.json") or {"points": [], "axes": {}}
-    results = Results(Path(out), state["axes"], _COLUMNS)
-    points = []
-    for point in state["points"]:
-        if (entry := results.find(point["id"])) is not None:
-            result = results.about(entry)
-            points.append({**point, **result, "kind": kind_of(result)})
-    return points
+    return _checked(state["points"], Results(Path(out), state["axes"], _COLUMNS))
+
+
+def _checked(points: Sequence[Mapping[str, Any]], results: Results) -> list[dict[str, Any]]:
+    entries = ((point, results.find(point["id"])) for point in points)
+    found = [(point, results.about(entry)) for point, entry in entries if entry is not None]
+    return [{**point, **result, "kind": kind_of(result)} for point, result in found]
 
 
 def _sorted(values: list[Any]) -> list[Any]:
