@@ -33,9 +33,9 @@ TEST(ModelExperiment, IsReadByTheParser) {
 
 /// The ends of points in a square image from -1 to 1.
 struct Frame {
-    double left = INFINITY, right = -INFINITY, low = INFINITY, high = -INFINITY;
+    double x_low = INFINITY, x_high = -INFINITY, y_low = INFINITY, y_high = -INFINITY;
     bool is_in_front = true;
-    double largest() const { return std::max({-left, right, -low, high}); }
+    double largest() const { return std::max({-x_low, x_high, -y_low, y_high}); }
 };
 Frame frame_of(const Camera& camera, const std::vector<Vec3f>& points) {
     const auto unit = [](Vec3d v) { return (1 / std::sqrt(dot(v, v))) * v; };
@@ -48,10 +48,10 @@ Frame frame_of(const Camera& camera, const std::vector<Vec3f>& points) {
         const double depth = dot(to, forward);
         const double x = dot(to, across) / (tangent * depth), y = dot(to, up) / (tangent * depth);
         out.is_in_front = out.is_in_front && depth > 0;
-        out.left = std::min(out.left, x);
-        out.right = std::max(out.right, x);
-        out.low = std::min(out.low, y);
-        out.high = std::max(out.high, y);
+        out.x_low = std::min(out.x_low, x);
+        out.x_high = std::max(out.x_high, x);
+        out.y_low = std::min(out.y_low, y);
+        out.y_high = std::max(out.y_high, y);
     }
     return out;
 }
@@ -162,14 +162,15 @@ TEST(ModelExperiment, FillsTheImageWithAModelOfAnyAspect) {
                 for (const double aspect : {0.5, 4.0 / 3, 2.0}) {
                     const Mesh mesh = box_of(size, yaw, pitch);
                     Frame frame = frame_of(camera_for(ModelPoints(mesh), aspect), mesh.positions);
-                    frame.left /= aspect;
-                    frame.right /= aspect;
+                    frame.x_low /= aspect;
+                    frame.x_high /= aspect;
                     const testing::Message what = testing::Message()
                         << size.x << " x " << size.y << " x " << size.z << ", turned by " << yaw << ", " << pitch;
                     EXPECT_NEAR(frame.largest(), 1 / 1.05, 2e-3) << what;
-                    EXPECT_NEAR(frame.left + frame.right, 0, 4e-3) << what;
-                    EXPECT_NEAR(frame.low + frame.high, 0, 4e-3) << what;
-                    EXPECT_NEAR(std::max(frame.right - frame.left, frame.high - frame.low), 2 / 1.05, 4e-3) << what;
+                    EXPECT_NEAR(frame.x_low + frame.x_high, 0, 4e-3) << what;
+                    EXPECT_NEAR(frame.y_low + frame.y_high, 0, 4e-3) << what;
+                    EXPECT_NEAR(std::max(frame.x_high - frame.x_low, frame.y_high - frame.y_low), 2 / 1.05, 4e-3)
+                        << what;
                 }
 }
 
