@@ -1,5 +1,5 @@
 // Every constant of the engine that can change a verdict, with its derivation, or with its cost if it is a choice.
-// Constants that change only the amount of work are in estimate/budget.h.
+// Those of causes are in explain/constants.h. Constants that change only the amount of work are in estimate/budget.h.
 #pragma once
 
 namespace crescent::check {

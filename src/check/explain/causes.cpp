@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <functional>
 
-#include "check/constants.h"
+#include "check/explain/constants.h"
 #include "check/decide/small_tests.h"
 #include "output/format.h"
 
@@ -16,16 +16,8 @@ namespace crescent::check {
 namespace {
 
 constexpr std::size_t most_places = 2, most_checks = 4;
-constexpr double least_lead = 8;  // lead in nats over all draws at which a cause is preferred: e^-8
 constexpr std::uint32_t draws_of_many = 4096, draws_of_few = 1024;
 constexpr std::uint32_t draws_of_points = 16384;  // few hypotheses are tried over other domains than directions
-/// Shares of the divergence that are sufficient if no cause explains all of it: for a frame, because a table that is
-/// read in another order may not be known exactly; for a fitted number, because replicates are more precise than the
-/// fit.
-constexpr double enough_for_frame = 0.4, enough_for_fit = 0.9;
-/// Standard errors by which a number must differ from that of a right sampler for its cause to be named, and by which
-/// the likelihood must exceed that of p for a partial cause.
-constexpr double clear_errors = 8;
 
 /// A candidate, and a function that describes it as a cause.
 struct Candidate {
@@ -41,7 +33,7 @@ std::optional<Candidate> constant_candidate(std::span<const Place> places) {
     bool any = false;
     for (const Place& place : places) {
         ratios.push_back(mass_ratio(*place.at));
-        any = any || std::fabs(ratios.back().ratio - 1) > std::max(detection_floor, clear_errors * ratios.back().error);
+        any = any || std::fabs(ratios.back().ratio - 1) > std::max(detection_floor, clear_number * ratios.back().error);
     }
     if (!any) return {};
     Candidate out;
@@ -69,12 +61,12 @@ std::optional<Candidate> constant_candidate(std::span<const Place> places) {
                 return places[static_cast<std::size_t>(it - ratios.begin())].where();
             };
             cause.text = fmt::format("p is a constant times what is drawn at each w_o, from {}{} to {}{}.",
-                with_error(low->ratio, 1.96 * low->error), place_of(low), with_error(high->ratio, 1.96 * high->error),
-                place_of(high));
+                with_error(low->ratio, half_width_95 * low->error), place_of(low),
+                with_error(high->ratio, half_width_95 * high->error), place_of(high));
             return cause;
         }
         const std::string name = number_name(mean, known_to, places[0].traits);
-        cause.text = fmt::format("p is a constant {}{} times what is drawn.", with_error(mean, 1.96 * error),
+        cause.text = fmt::format("p is a constant {}{} times what is drawn.", with_error(mean, half_width_95 * error),
             name.empty() || name == fmt::format("{:g}", std::round(mean)) ? "" : " = " + name);
         return cause;
     };
@@ -85,10 +77,10 @@ std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std:
     const double exponent = f.exponent;
     std::string out;
     if (f.name == "a constant across the surface") {
-        const double factor = math::exp(-f.fitted), half = 1.96 * f.error * factor;
+        const double factor = math::exp(-f.fitted), half = half_width_95 * f.error * factor;
         out = fmt::format("Across the surface p is {} times what is drawn{}.", with_error(factor, half),
-            h.constants.empty() || std::fabs(h.constants[0] - 1) < 0.01 ? ", and right on the side of w_o"
-                                                                        : ", relative to the side of w_o");
+            h.constants.empty() || std::fabs(h.constants[0] - 1) < near_one ? ", and right on the side of w_o"
+                                                                            : ", relative to the side of w_o");
         out +=
             " A constant across the surface explains it: the probability with which a lobe is chosen (the "
             "chooser's) or a factor of that lobe.";
@@ -101,23 +93,23 @@ std::string factor_sentence(const FactorHypothesis& f, const Hypothesis& h, std:
         greatest = std::max(greatest, c);
     }
     std::string times;
-    if (greatest < 1.02 * least && std::fabs(least - 1) > 0.01) {
-        const std::string name = number_name(least, 0.01, places[0].traits);
+    if (greatest < (1 + 2 * near_one) * least && std::fabs(least - 1) > near_one) {
+        const std::string name = number_name(least, near_one, places[0].traits);
         const bool is_same = name.empty() || name == fmt::format("{:g}", std::round(least));
         times = fmt::format(" and a constant {:.4g}{}", least, is_same ? "" : " = " + name);
-    } else if (greatest > 1.02 * least) times = " and a constant at each w_o";
+    } else if (greatest > (1 + 2 * near_one) * least) times = " and a constant at each w_o";
     std::string meaning = f.name == "cosine at the light" ? plane_words(-exponent) : "";
     if (meaning.empty())
         meaning = fmt::format("{}{} {} in p", f.name, power, exponent > 0 ? "is missing" : "is once too often");
     return fmt::format("Draws follow p {} {}{}{} (fitted exponent {}): {}.", exponent > 0 ? "times" : "over", f.name,
-        power, times, with_error(f.fitted, 1.96 * f.error), meaning);
+        power, times, with_error(f.fitted, half_width_95 * f.error), meaning);
 }
 
 Candidate candidate_of(FactorHypothesis f, std::span<const Place> places) {
     Candidate out;
     out.hypothesis = f.hypothesis;
     const bool no_constant =
-        std::ranges::all_of(f.hypothesis.constants, [](double c) { return std::fabs(c - 1) < 0.01; });
+        std::ranges::all_of(f.hypothesis.constants, [](double c) { return std::fabs(c - 1) < near_one; });
     out.preference = (std::fabs(f.exponent) == 1) + no_constant;
     out.make_cause = [f, places](const Hypothesis& h) {
         return Cause{.factor = f.name, .exponent = f.exponent, .error = f.error, .text = factor_sentence(f, h, places)};
@@ -134,7 +126,7 @@ Candidate candidate_of_power(FactorHypothesis f) {
             .text = fmt::format(
                 "Draws follow p^({}), normalised: they are {} concentrated than p. An exponent or a roughness "
                 "differs between sample and pdf.",
-                with_error(1 + f.exponent, 1.96 * f.error), f.exponent > 0 ? "more" : "less")};
+                with_error(1 + f.exponent, half_width_95 * f.error), f.exponent > 0 ? "more" : "less")};
     };
     return out;
 }
@@ -160,7 +152,7 @@ Candidate candidate_of(const Hypothesis& frame, bool of_points) {
         return Cause{.factor = name,
             .exponent = 0,
             .error = 0,
-            .text = h.explained < 0.9
+            .text = h.explained < explains_all
                 ? fmt::format(
                       "{:.0f} % of the difference is explained by {} between draws and p.", 100 * h.explained, name)
                 : fmt::format("Draws follow p with {}.{}", name + h.same,
@@ -187,12 +179,12 @@ Candidate candidate_of(const FoundTurn& turn, std::span<const Place> places, boo
             cause.text = fmt::format(
                 "Draws are those of p turned about z by {} rad{}: a shift of a table's columns, or "
                 "of the azimuth.",
-                with_error(t.by.z, 1.96 * t.error),
+                with_error(t.by.z, half_width_95 * t.error),
                 std::fabs(t.by.z) > 0 ? fmt::format(" = 2 pi / {:.1f}", two_pi / std::fabs(t.by.z)) : "");
         else
             cause.text = fmt::format("Draws are those of p turned by {} rad about ({:.3f}, {:.3f}, {:.3f}){}.",
-                with_error(angle, 1.96 * t.error), axis.x, axis.y, axis.z, places[largest].where());
-        if (h.explained < 0.9)
+                with_error(angle, half_width_95 * t.error), axis.x, axis.y, axis.z, places[largest].where());
+        if (h.explained < explains_all)
             cause.text += fmt::format(" That explains {:.0f} % of the difference.", 100 * h.explained);
         return cause;
     };
@@ -209,7 +201,7 @@ Candidate candidate_of(const FittedMove& move) {
             .text = fmt::format(
                 "Draws are those of p with {} multiplied by {}{}: a rate, a mean free path or another scale "
                 "differs between sample and pdf.",
-                move.of, with_error(move.value, 1.96 * move.error), h.same)};
+                move.of, with_error(move.value, half_width_95 * move.error), h.same)};
     };
     return out;
 }
@@ -222,7 +214,7 @@ Candidate candidate_of(const EntryShares& found) {
         std::string text;
         for (std::size_t k = 0; k < std::min(shares.size(), most_said); ++k)
             text += fmt::format("{}entry {} with {}, p says {:.3g}", k > 0 ? "; " : "", k,
-                with_error(shares[k].drawn, 1.96 * shares[k].error), shares[k].claimed);
+                with_error(shares[k].drawn, half_width_95 * shares[k].error), shares[k].claimed);
         return Cause{.factor = "shares of entries",
             .exponent = shares[0].drawn,
             .error = shares[0].error,
@@ -242,8 +234,9 @@ Candidate candidate_of_frame(const FoundTurn& turn) {
         std::string text = fmt::format(
             "Draws are those of p in a frame turned about n by {} rad: the tangent of sample is "
             "not that of pdf.",
-            with_error(t.by.z, 1.96 * t.error));
-        if (h.explained < 0.9) text += fmt::format(" That explains {:.0f} % of the difference.", 100 * h.explained);
+            with_error(t.by.z, half_width_95 * t.error));
+        if (h.explained < explains_all)
+            text += fmt::format(" That explains {:.0f} % of the difference.", 100 * h.explained);
         return Cause{.factor = "turned about n", .exponent = t.by.z, .error = t.error, .text = std::move(text)};
     };
     return out;
@@ -264,7 +257,7 @@ Candidates plain_candidates(std::span<const Place> places, std::span<const Leak>
     Candidates out;
     add_if(out, constant_candidate(places));
     for (FactorHypothesis& f : factor_hypotheses(places))
-        if (std::fabs(f.fitted) > clear_errors * f.error) out.push_back(candidate_of(std::move(f), places));
+        if (std::fabs(f.fitted) > clear_number * f.error) out.push_back(candidate_of(std::move(f), places));
     for (const Hypothesis& h : frame_hypotheses(places))
         out.push_back(candidate_of(h, places[0].traits.domain != nullptr));
     for (const Leak& leak : leaks)
@@ -288,7 +281,7 @@ Candidates fitted_candidates(std::span<const Place> places, std::span<const Leak
         out.push_back(candidate_of_frame(*turn));
     if (const auto turn = directions ? turn_hypothesis(places) : std::nullopt; turn && turn->is_clear())
         out.push_back(candidate_of(*turn, places, false));
-    if (auto power = power_hypothesis(places); power && std::fabs(power->exponent) > clear_errors * power->error)
+    if (auto power = power_hypothesis(places); power && std::fabs(power->exponent) > clear_number * power->error)
         out.push_back(candidate_of_power(std::move(*power)));
     for (const Leak& leak : leaks) out.push_back(candidate_of(leak, places));
     sort_by_gain(out);
@@ -303,7 +296,7 @@ std::optional<Cause> passing(Candidates& candidates, std::span<const Place> plac
         if (found) {
             const double less = found->hypothesis.gain - c.hypothesis.gain;
             const double by_chance = least_lead / std::min(found->hypothesis.draws, c.hypothesis.draws);
-            if (less > std::max({3 * found->hypothesis.error, 3 * c.hypothesis.error, by_chance})) break;
+            if (less > std::max(lead_errors * std::max(found->hypothesis.error, c.hypothesis.error), by_chance)) break;
             if (are_equivalent(found->hypothesis, c.hypothesis, places)) {
                 const bool preferred = c.preference > found->preference;
                 const std::string other = preferred ? found->hypothesis.name : c.hypothesis.name;
@@ -333,7 +326,7 @@ std::optional<Cause> in_part(Candidates& candidates, std::span<const Place> plac
     for (Candidate& c : candidates) {
         if (c.in_part > 1 || !c.clear) continue;
         score(c.hypothesis, places);
-        if (c.hypothesis.gain > clear_errors * c.hypothesis.error && c.hypothesis.explained > c.in_part &&
+        if (c.hypothesis.gain > clear_number * c.hypothesis.error && c.hypothesis.explained > c.in_part &&
             (!best || c.hypothesis.gain > best->hypothesis.gain))
             best = &c;
     }
@@ -411,7 +404,8 @@ bool unusable_draws_explain(std::span<const Place> places) {
         const MassRatio m = mass_ratio(*place.at);
         const double unexplained = m.claimed - m.drawn - (unusable - at_zero);
         any = any || unusable + at_zero > detection_floor;
-        if (std::fabs(unexplained) > 0.2 * (unusable + at_zero) + 4 * m.error * m.drawn + detection_floor) return false;
+        if (std::fabs(unexplained) > of_unusable * (unusable + at_zero) + 4 * m.error * m.drawn + detection_floor)
+            return false;
     }
     return any;
 }

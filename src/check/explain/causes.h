@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "check/decide/check_sampler.h"
+#include "check/explain/constants.h"
 #include "check/explain/hypothesis.h"
 #include "check/sources/check_case.h"
 
@@ -100,9 +101,8 @@ struct FoundTurn {
     std::vector<Turn> turns;  // by place
     /// Whether each angle exceeds its error by far.
     bool is_clear() const {
-        constexpr double errors = 5;
         return std::ranges::all_of(
-            turns, [](const Turn& t) { return dot(t.by, t.by) > errors * errors * t.error * t.error; });
+            turns, [](const Turn& t) { return dot(t.by, t.by) > sqr(clear_move) * t.error * t.error; });
     }
 };
 std::optional<FoundTurn> turn_hypothesis(std::span<const Place> places);
@@ -122,10 +122,7 @@ struct FittedMove {
     Hypothesis hypothesis;
     std::string factor, of;
     double value = 0, error = 0, neutral = 0;
-    bool is_clear() const {
-        constexpr double errors = 5;
-        return std::fabs(value - neutral) > errors * error;
-    }
+    bool is_clear() const { return std::fabs(value - neutral) > clear_move * error; }
 };
 std::vector<FittedMove> domain_moves(std::span<const Place> places);
 /// Draws are those of p with other shares of the entries of a set, in a product with other parts.

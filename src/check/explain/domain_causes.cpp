@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "check/explain/causes.h"
+#include "check/explain/constants.h"
 #include "math/functions.h"
 
 namespace crescent::check {
@@ -213,7 +214,6 @@ namespace {
 std::optional<NamedMove> exchanged_entries(const Place& place) {
     const DomainChart& chart = *place.traits.domain;
     constexpr std::uint32_t most_entries = 4096;  // each is evaluated
-    constexpr double clear_deviations = 6;
     const std::uint32_t entries = chart.domain().parts()[0].count;
     if (chart.domain().parts().size() != 1 || entries < 2 || entries > most_entries) return {};
     std::vector<Vec3d> w;
@@ -229,7 +229,7 @@ std::optional<NamedMove> exchanged_entries(const Place& place) {
     for (std::uint32_t k = 0; k < entries; ++k)
         deviation[k] = (drawn[k] - place.of * p[k]) / std::sqrt(place.of * p[k] + 1);
     const auto [low, high] = std::ranges::minmax_element(deviation);
-    if (*low > -clear_deviations || *high < clear_deviations) return {};
+    if (*low > -clear_entries || *high < clear_entries) return {};
     const double a = static_cast<double>(std::min(low, high) - deviation.begin()),
                  b = static_cast<double>(std::max(low, high) - deviation.begin());
     return NamedMove{fmt::format("entries {} and {} exchanged", a, b), [a, b](std::span<double> x) {

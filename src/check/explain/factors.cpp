@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "check/constants.h"
+#include "check/explain/constants.h"
 #include "samplers/domains/sphere_chart.h"
 #include "math/functions.h"
 #include "math/simd/frame.h"
@@ -132,11 +132,6 @@ std::string number_name(double value, double known_to, const Traits& traits) {
 
 namespace {
 
-/// A ratio agrees if its error, besides its own uncertainty, is below `agreement` and below a tenth of the typical
-/// distance of the ratios from 1: many factors fit ratios that are nearly constant.
-constexpr double part_that_agrees = 0.1, to_half = 0.05;
-constexpr std::size_t fewest_ratios = 40;
-
 double median(std::vector<double> v) {
     const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
     std::nth_element(v.begin(), middle, v.end());
@@ -210,8 +205,8 @@ std::optional<RatioCause> explain_ratios(std::span<const KnownRatio> ratios, std
         RatioCause with = agreeing(logs, x, simple, close, ratios);
         if (with.explained < share_in_agreement) continue;
         with.name = f.name;
-        several = best.explained >= share_in_agreement && with.explained > best.explained - 0.02;
-        if (with.explained > best.explained + 0.02 || best.explained < share_in_agreement) best = with;
+        several = best.explained >= share_in_agreement && with.explained > best.explained - better_share;
+        if (with.explained > best.explained + better_share || best.explained < share_in_agreement) best = with;
     }
     return best.explained >= share_in_agreement && !several ? std::optional(best) : std::nullopt;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/explain/constants.h"
 #include "math/simd/frame.h"
 
 namespace crescent::check {
@@ -200,7 +201,7 @@ template <class L> double whole_columns(double angle, const L& likelihood) {
     double best = angle, greatest = likelihood(angle, false);
     for (int k = -neighbours; k <= neighbours; ++k) {
         const double to = std::copysign(two_pi / std::max(n + k, 2.0), angle);
-        if (std::fabs(to - angle) > 0.1 * std::fabs(angle)) continue;
+        if (std::fabs(to - angle) > to_column * std::fabs(angle)) continue;
         if (const double l = likelihood(to, false); l >= greatest) {
             best = to;
             greatest = l;
@@ -327,8 +328,8 @@ std::optional<FoundTurn> frame_turn_hypothesis(std::span<const Place> places) {
     // Two axes of one surface are the same after half a turn: of equal likelihoods the smaller angle is named.
     const double opposite = angle > two_pi / 2 ? angle - two_pi / 2 : angle + two_pi / 2;
     const auto from_zero = [](double a) { return std::min(a, two_pi - a); };
-    constexpr double equal = 1e-3;
-    if (from_zero(opposite) < from_zero(angle) && sum(fine, opposite) > sum(fine, angle) - equal) angle = opposite;
+    if (from_zero(opposite) < from_zero(angle) && sum(fine, opposite) > sum(fine, angle) - equal_likelihoods)
+        angle = opposite;
     if (angle > two_pi / 2) angle -= two_pi;
     FoundTurn out;
     for (const Likelihood& l : fine) out.turns.push_back({{0, 0, angle}, l.error_of({0, 0, angle}, step / 8, true)});

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/explain/constants.h"
 #include "check/sources/check_case.h"
 
 namespace crescent::check {
 
 namespace {
-
-constexpr double least_log = 14;  // nats below the median of p: value for a draw where the density is 0
 
 /// The sampler with the supposed density in place of its own. `h` must outlive it.
 DecoratedSampler supposed(std::shared_ptr<const SamplerAdapter> sampler, const Hypothesis& h, double constant) {
@@ -37,11 +36,6 @@ bool of_density(Family f) { return info(f).verdict == "density" || info(f).verdi
 bool density_is_wrong(const CheckAt& c) {
     return std::ranges::any_of(c.findings, [](const Finding& f) { return of_density(f.first.family); });
 }
-
-/// A cause explains the difference if nothing remains of it: it is not sufficient that no family is below alpha1, which
-/// the fewer draws of this check might not reach; no family may be below this level. One right sampler in a hundred has
-/// such a family.
-constexpr double remaining_level = 1e-2;
 
 bool difference_remains(const CheckAt& c) {
     return density_is_wrong(c) ||
@@ -96,7 +90,7 @@ MassRatio mass_ratio(const CheckAt& c) {
 
 double Place::log_of(double density) const {
     return std::max(
-        std::isfinite(density) && density > 0 ? math::log(density) : -1e300, at->plan->median_log_p - least_log);
+        std::isfinite(density) && density > 0 ? math::log(density) : -1e300, at->plan->median_log_p - no_density);
 }
 
 double Place::mean_log(std::span<const double> density) const {
@@ -151,7 +145,6 @@ void score(Hypothesis& h, std::span<const Place> places) {
 }
 
 bool is_below_map(const Hypothesis& h, std::span<const Place> places) {
-    constexpr double most_below = 0.1;
     double below = 0, points = 0;
     for (std::size_t k = 0; k < places.size(); ++k) {
         std::vector<Pair> pairs;
@@ -164,11 +157,10 @@ bool is_below_map(const Hypothesis& h, std::span<const Place> places) {
             below += density + std::fabs(density - m.p) / 2 + 2 * m.error * m.drawn < m.drawn;
         }
     }
-    return below > most_below * points;
+    return below > most_below_map * points;
 }
 
 bool are_equivalent(const Hypothesis& a, const Hypothesis& b, std::span<const Place> places) {
-    constexpr double same_density = 1e-3, most_of_draws = 0.9;
     double same = 0, draws = 0;
     for (std::size_t k = 0; k < places.size(); ++k) {
         std::vector<Pair> pairs;
@@ -179,7 +171,7 @@ bool are_equivalent(const Hypothesis& a, const Hypothesis& b, std::span<const Pl
         for (std::size_t i = 0; i < pairs.size(); ++i, ++draws)
             same += std::fabs(p[i] * a.constant(k) - q[i] * b.constant(k)) <= same_density * p[i] * a.constant(k);
     }
-    return same >= most_of_draws * draws;
+    return same >= same_at * draws;
 }
 
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <numeric>
 
-#include "check/constants.h"
+#include "check/explain/constants.h"
 #include "check/explain/hypothesis.h"
 #include "math/statistics.h"
 #include "output/format.h"
@@ -15,9 +15,6 @@
 namespace crescent::check {
 
 namespace {
-
-constexpr std::size_t fewest = 24;
-constexpr double same_normal = 1e-4;  // 1 - cos of 0.8 degrees: fitted normals are known to a tenth of that
 
 using RatioModel = std::function<double(Vec3d wo, Vec3d wi)>;  // ratio of the draws to p
 
@@ -92,7 +89,7 @@ std::optional<Cause> shadowing_cause(std::span<const KnownRatio> ratios, std::sp
         if (!agree(s, ratios)) continue;
         Hypothesis h = times(s, "G1");
         if (!passes(h, places, 1)) continue;
-        const bool round = std::fabs(s.alpha_x / s.alpha_y - 1) < 0.01;
+        const bool round = std::fabs(s.alpha_x / s.alpha_y - 1) < near_one;
         const std::string alpha = round ? fmt::format("alpha {:.3g}", (s.alpha_x + s.alpha_y) / 2)
                                         : fmt::format("alpha {:.3g} and {:.3g}", s.alpha_x, s.alpha_y);
         return Cause{.factor = "G1",
@@ -201,7 +198,7 @@ std::optional<Cause> cause_of_known_form(std::span<const KnownRatio> ratios, std
             usable.push_back(r);
             different += std::fabs(r.value - 1) > 0.05;
         }
-    if (usable.size() < fewest || different < static_cast<double>(usable.size()) / 2) return {};
+    if (usable.size() < fewest_of_form || different < static_cast<double>(usable.size()) / 2) return {};
     if (std::optional<Cause> c = plane_cause(usable, places)) return c;
     return shadowing_cause(usable, places);
 }

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "check/constants.h"
+#include "check/explain/constants.h"
 #include "math/statistics.h"
 #include "output/format.h"
 
@@ -18,17 +18,8 @@ namespace {
 
 constexpr std::size_t settings_of_others = 12, scanned = 65, most_lobes = 8;
 constexpr int halvings = 22;
-constexpr double jump_angle = 0.02;   // rad: a root or a logarithm changes less over 2^-22
-constexpr double one_end = 1e-4;      // in units of the number
-constexpr double steep_rim = 0x1p-7;  // a steep change at 0 or at 1 is not a jump
-constexpr double least_draws = 400;   // so that the 5 % error of a cell biases x by 0.3 % at most
 constexpr std::uint32_t draws_for_lobes = 1u << 16, few_draws_for_lobes = 1u << 14;
 constexpr std::uint32_t more_draws = 4, most_draws_for_lobes = 1u << 18;  // times as many, where a fit may become clear
-constexpr double fits_at = 1e-3;                                          // p-value of the remaining misfit
-constexpr double known_share = 0.02;                                      // of x, relative
-constexpr double known_probability = 0.05;                                // half an interval
-constexpr double left_out = 0.1;      // an x that is 0 is known to this: a lobe that p does not have
-constexpr double known_factor = 0.1;  // half an interval of x, relative: a factor of a lobe that is named
 
 struct NumberStep {
     std::size_t of;
@@ -168,7 +159,7 @@ std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& chooser, c
             cell.mean_variance[k] += share * share * lobes[k].square[l];
             cell.draws += 2 * lobes[k].sum[l];
         }
-        if (cell.draws + 2 * cell.claimed * lobes[0].drawn < least_draws) continue;
+        if (cell.draws + 2 * cell.claimed * lobes[0].drawn < draws_of_lobe) continue;
         out.push_back(std::move(cell));
         clear();
     }
@@ -235,14 +226,14 @@ bool explains(const Shares& s) {
     for (std::size_t k = 0; k < s.x.size(); ++k)
         if (s.x[k] < -3 * s.errors[k]) return false;  // no share is negative
     // The rest is within chance, or a fiftieth of the original misfit.
-    return chi_squared_tail(degrees, s.misfit) > fits_at || s.misfit - degrees < 0.02 * (s.before - degrees);
+    return chi_squared_tail(degrees, s.misfit) > lobes_fit || s.misfit - degrees < 0.02 * (s.before - degrees);
 }
 
 /// Whether x fits better than 1 beyond chance, and well: with more draws it may explain the difference.
 bool may_explain(const Shares& s) {
     const double lobes = static_cast<double>(s.x.size());
-    return s.cells > lobes && chi_squared_tail(lobes, s.before - s.misfit) < fits_at &&
-        chi_squared_tail(s.cells - lobes, s.misfit) > fits_at;
+    return s.cells > lobes && chi_squared_tail(lobes, s.before - s.misfit) < lobes_fit &&
+        chi_squared_tail(s.cells - lobes, s.misfit) > lobes_fit;
 }
 
 /// The shares by which p has the lobes that it draws otherwise; none if they do not explain the difference.
@@ -303,7 +294,7 @@ std::optional<std::string> lobe_sentence(const LobeChooser& chooser, const Share
         if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) differing.push_back(k);
     }
     for (std::size_t k : differing)
-        if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], known_share) && 3 * s.errors[k] < left_out)
+        if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], known_share) && 3 * s.errors[k] < known_to_be_0)
             return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}{}.",
                 number, chooser.lobes[k].from, chooser.lobes[k].to, where);
     if (differing.size() == 1) {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <vector>
 
-#include "check/constants.h"
+#include "check/explain/constants.h"
 #include "check/decide/check_sampler.h"
 #include "check/estimate/source.h"
 #include "check/explain/causes.h"
@@ -63,10 +63,6 @@ constexpr std::size_t of_one_surface = 5;  // factors that do not depend on neig
 constexpr std::size_t of_height = 8, of_azimuth = 4, of_target = 2, regions = of_height * of_azimuth * of_target;
 constexpr std::uint32_t draws_of_weights = 1u << 18, points_of_target = 1u << 16, batch = 1u << 14;
 constexpr double golden_ratio = 0.618033988749894848;
-constexpr double least_mass = 2e-3;    // of a region, relative to all
-constexpr double least_p = 0.01;       // of a factor that explains the weights
-constexpr double distinct_errors = 4;  // by which a constant differs from 1
-constexpr double none_p = 1e-6;        // a factor that is rejected so clearly is none
 
 std::size_t region_of(Vec3d w, double h) {
     const auto part = [](double share, std::size_t count) {
@@ -208,7 +204,7 @@ WeightFit fit_of(const ReservoirSums& sums, std::size_t factor) {
     double chi2 = 0, counted = 0;
     for (std::size_t r = 0; r < regions; ++r) {
         const double d = drawn[r].sum / sums.draws, expected = out.constant * sums.integral[r];
-        if (std::max(d, expected) < least_mass * estimate) continue;
+        if (std::max(d, expected) < least_region * estimate) continue;
         const double v = std::max(drawn[r].squares - sqr(drawn[r].sum) / sums.draws, 0.0) / sqr(sums.draws) +
             sqr(out.constant * sums.error[r]);
         chi2 += sqr(d - expected) / std::max(v, 1e-300);
@@ -229,7 +225,7 @@ std::string count_sentence(const ReservoirSums& sums, const WeightFit& fit, cons
     for (std::size_t k = 0; k < sums.with_target.size(); ++k) {
         const double share = sums.with_target[k], explained = reservoirs / std::max(share, 1e-9);
         if (std::fabs(explained - 1) < 0.01 ||
-            std::fabs(fit.constant - explained) > distinct_errors * fit.error + 0.005 * explained)
+            std::fabs(fit.constant - explained) > clear_constant * fit.error + 0.005 * explained)
             continue;
         candidates += fmt::format("{}{}", candidates.empty() ? "" : " or ", names[k]);
         least = std::min(least, share);
@@ -280,9 +276,9 @@ std::optional<Cause> reciprocal_weight_cause(std::span<const CheckCase> check_ca
             std::optional<Cause> found;
             for (std::size_t f = 0; f < factor_count(source.traits); ++f) {
                 const WeightFit fit = fit_of(sums, f);
-                if (fit.p < none_p) continue;
-                if (fit.p < least_p || found) return {};  // unclear, or two of them
-                if (f == by_constant && std::fabs(fit.constant - 1) < distinct_errors * fit.error) return {};
+                if (fit.p < rejected) continue;
+                if (fit.p < weights_fit || found) return {};  // unclear, or two of them
+                if (f == by_constant && std::fabs(fit.constant - 1) < clear_constant * fit.error) return {};
                 found = Cause{.factor = weight_factors[f].name,
                     .exponent = fit.constant,
                     .error = fit.error,

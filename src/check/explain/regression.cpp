@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/explain/constants.h"
 #include "check/explain/causes.h"
 #include "math/functions.h"
 #include "math/statistics.h"
@@ -13,8 +14,6 @@ namespace crescent::check {
 
 namespace {
 
-constexpr double least_gain = 8;  // of the log likelihood, in units of one draw: e^-8 for each factor tried
-constexpr double largest = 20;    // exponents of e
 constexpr int most_steps = 40;
 
 /// Means and constants for given exponents.
@@ -30,7 +29,7 @@ Model model_of(std::span<const Row> rows, std::size_t groups, const Fit& f) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
         double eta = 0;
         for (std::size_t k = 0; k < f.factors.size(); ++k) eta += f.exponents[k] * rows[i].x[f.factors[k]];
-        m.mu[i] = rows[i].expected * math::exp(std::clamp(eta, -largest, largest));
+        m.mu[i] = rows[i].expected * math::exp(std::clamp(eta, -largest_exponent, largest_exponent));
         drawn[rows[i].group] += rows[i].observed;
         claimed[rows[i].group] += m.mu[i];
     }
@@ -131,7 +130,7 @@ Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, s
             Fit f = fit(rows, groups, std::move(with));
             if (std::isfinite(f.likelihood) && f.likelihood > next.likelihood) next = std::move(f);
         }
-        if (next.likelihood - best.likelihood < math::log(static_cast<double>(rows.size())) / 2 + least_gain) break;
+        if (next.likelihood - best.likelihood < math::log(static_cast<double>(rows.size())) / 2 + least_lead) break;
         best = std::move(next);
         if (best.misfit < 1.05) break;
     }
@@ -142,11 +141,7 @@ Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, s
 
 namespace {
 
-constexpr double wide_leaf = 0.02;       // rad: in a wider leaf a factor is averaged over four points
 constexpr std::size_t most_factors = 3;  // that are tested further
-constexpr double to_simple = 0.03;       // an exponent is rounded to a multiple of 1/2 within this distance
-constexpr double most_power = 0.5;       // largest power: for a nearly uniform density any power is likely
-constexpr double least_power = 1e-3;     // least difference of the exponent from 1
 
 double average(const Factor& f, Vec3d wo, const ChartRect& rect) {
     if (std::max(rect.theta_width(), rect.phi_width()) < wide_leaf) return f.value(wo, from_chart(rect.at(0.5, 0.5)));
@@ -272,7 +267,7 @@ std::optional<FactorHypothesis> power_hypothesis(std::span<const Place> places) 
     if (rows.size() < 32) return {};
     const Fit f = fit(rows, places.size(), {0});
     const double b = f.exponents[0];
-    if (!(std::fabs(b) > std::max(least_power, 4 * f.errors[0])) || !(std::fabs(b) < most_power)) return {};
+    if (!(std::fabs(b) > std::max(least_power, 4 * f.errors[0])) || !(std::fabs(b) < largest_power)) return {};
     FactorHypothesis out{
         .hypothesis = {}, .name = "p", .exponent = b, .fitted = b, .error = f.errors[0], .usual_constant = 1};
     out.hypothesis.name = "p";

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <tuple>
 
+#include "check/explain/constants.h"
 #include "check/decide/small_tests.h"
 #include "output/format.h"
 
@@ -14,11 +15,6 @@ namespace crescent::check {
 namespace {
 
 constexpr int share_halvings = 24;
-constexpr double least_share = 1e-4;
-constexpr double least_errors = 8;        // least ratio of a share to its standard error
-constexpr double expected_at_least = 10;  // expected draws of an empty leaf that counts as unreached: e^-10
-constexpr double right_elsewhere = 0.1;   // largest difference from 1 of draws over p where there are draws
-constexpr double least_unreached = 0.02;  // share of the mass of p
 
 bool in_domain(const ChartRect& rect, bool whole) { return whole || rect.t0 < 1; }
 
@@ -129,7 +125,7 @@ Reach reach_at(const CheckAt& c) {
         const double p = of_tree.met ? of_tree.q * c.plan->tree.rect(of_tree).area() : 0;
         const double expected = leaf.bridge.value * n * scale;
         if (!(c.observations.counts[l] > 0)) {
-            if (expected > expected_at_least || leaf.bridge.value * n > expected_at_least) out.unreached += p;
+            if (expected > expected_unreached || leaf.bridge.value * n > expected_unreached) out.unreached += p;
             continue;
         }
         out.reached += p;
@@ -145,7 +141,7 @@ Reach reach_at(const CheckAt& c) {
 
 }  // namespace
 
-bool Leak::is_clear() const { return share > least_errors * error; }
+bool Leak::is_clear() const { return share > clear_leak * error; }
 
 std::vector<Leak> leak_hypotheses(std::span<const Place> places) {
     std::vector<Leak> out;
@@ -154,7 +150,7 @@ std::vector<Leak> leak_hypotheses(std::span<const Place> places) {
     for (bool whole : {true, false}) {
         if (!whole && domain) continue;
         Leak leak = fitted_leak(places, whole);
-        if (leak.share < least_share || leak.share > 0.9) continue;
+        if (leak.share < least_leak || leak.share > 0.9) continue;
         bool mass_agrees = true;
         for (const Place& place : places) {
             leak.hypothesis.masses.push_back(1 - leak.share +
@@ -180,7 +176,6 @@ std::string leak_sentence(const Leak& leak, const Traits& traits) {
 }
 
 std::optional<Cause> delta_cause(std::span<const Place> places) {
-    constexpr double least_part = 0.01, same = 1e-6, in_all = 0.999;
     for (const Place& place : places) {
         std::vector<Vec3d> w = place.w;
         const DomainChart* domain = place.traits.domain.get();
@@ -190,7 +185,7 @@ std::optional<Cause> delta_cause(std::span<const Place> places) {
         std::ranges::sort(w, {}, [](Vec3d v) { return std::tuple(v.x, v.y, v.z); });
         std::size_t longest = 0, first = 0;
         for (std::size_t i = 0, end = 0; i < w.size(); i = end) {
-            for (end = i + 1; end < w.size() && length(w[end] - w[i]) < same;) ++end;
+            for (end = i + 1; end < w.size() && length(w[end] - w[i]) < one_point;) ++end;
             if (end - i > longest) {
                 longest = end - i;
                 first = i;
@@ -198,12 +193,12 @@ std::optional<Cause> delta_cause(std::span<const Place> places) {
         }
         const double share = static_cast<double>(longest) / place.of,
                      half = 1.96 * std::sqrt(share * (1 - share) / place.of);
-        if (share < least_part) continue;
+        if (share < least_delta) continue;
         return Cause{.factor = "delta",
             .exponent = share,
             .error = half / 1.96,
             .text = fmt::format("{} of the draws have one {}, {}{}, for any u. A density does not draw it{}.",
-                share > in_all ? "All" : percent_with_error(share, half), domain ? "point" : "direction",
+                share > every_draw ? "All" : percent_with_error(share, half), domain ? "point" : "direction",
                 place_text(place.traits, w[first]), place.where(),
                 domain ? "" : ": if it is a delta part, the sampler must declare it (delta) with its probability")};
     }

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "check/constants.h"
+#include "check/explain/constants.h"
 #include "check/explain/hypothesis.h"
 
 namespace crescent::check {
@@ -55,17 +55,16 @@ DecoratedSampler warped(std::shared_ptr<const SamplerAdapter> sampler, const War
 
 /// Whether the ratio of the map is that of the warp at nine of ten points, and not 1 there.
 bool explains(const Warp& warp, std::span<const Place> places) {
-    constexpr double differs = 0.1;
-    constexpr double fewest = 24;
     double points = 0, agreeing = 0, different = 0;
     for (const Place& place : places)
         for (const MapDensity& m : place.map) {
             const double deviation = std::fabs(math::log(m.drawn / m.p / warp.ratio(m.u[warp.number])));
             ++points;
             agreeing += deviation < agreement + 2 * m.error;
-            different += std::fabs(math::log(m.drawn / m.p)) > differs;
+            different += std::fabs(math::log(m.drawn / m.p)) > least_warp;
         }
-    return points >= fewest && agreeing >= share_in_agreement * points && different > points / 2;
+    return points >= static_cast<double>(fewest_of_form) && agreeing >= share_in_agreement * points &&
+        different > points / 2;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "check/constants.h"
+#include "check/explain/constants.h"
 #include "check/decide/check_sampler.h"
 #include "check/explain/hypothesis.h"
 
@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::size_t most_directions = 3;
 constexpr std::uint32_t draws_to_compare = 512;
-constexpr double agrees_to = 2e-3;  // relative, for a constant
 
 using ByChannel = std::array<double, 3>;
 
@@ -164,7 +163,7 @@ std::optional<Cause> reciprocity_cause(const CheckCase& check_case) {
                                return o.z * i.z >= 0 ? 1.0 : o.z > 0 ? eta2 : 1 / eta2;
                            }});
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
-    if (!c || c->exponent == 0 || std::fabs(c->constant - 1) > agrees_to) return {};
+    if (!c || c->exponent == 0 || std::fabs(c->constant - 1) > same_weight) return {};
     return Cause{.factor = c->name,
         .exponent = c->exponent,
         .error = 0,
@@ -182,12 +181,12 @@ bool found(const CheckAt& c, Family family) {
 }  // namespace
 
 std::string ratio_sentence(const char* given, const char* expected, const RatioCause& c, const Traits& traits) {
-    const std::string number = number_name(c.constant, agrees_to, traits);
+    const std::string number = number_name(c.constant, same_weight, traits);
     const std::string constant = fmt::format("a constant {:.4g}{}", c.constant, number.empty() ? "" : " = " + number);
     if (c.exponent == 0) return fmt::format("{} {} times {}.", given, expected, constant);
     const std::string power = std::fabs(c.exponent) == 1 ? "" : fmt::format("^{:g}", std::fabs(c.exponent));
     return fmt::format("{} {} {} {}{}{}.", given, expected, c.exponent > 0 ? "times" : "over", c.name, power,
-        std::fabs(c.constant - 1) < agrees_to ? "" : " and " + constant);
+        std::fabs(c.constant - 1) < same_weight ? "" : " and " + constant);
 }
 
 std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome) {
