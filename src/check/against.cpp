@@ -16,6 +16,7 @@
 #include "check/report/print.h"
 #include "check/sources/check_case.h"
 #include "check/sources/decorators.h"
+#include "check/report/verdicts.h"
 #include "check/verdicts/statistics.h"
 #include "output/format.h"
 
@@ -25,16 +26,6 @@ namespace {
 
 constexpr std::array compared_by = {"same_distribution", "same_f", "variance"};
 constexpr std::uint32_t streams_of_b = 1u << 15;  // B draws from streams that A never uses
-
-/// Differences between the two distributions.
-struct Differences {
-    std::vector<std::pair<AgainstAnswer, AgainstAnswer>> found;  // significant at both stages
-    std::map<AgainstAnswer::Family, double> p;                   // least p-value times the number of members
-};
-
-auto questions_to(const CommonTree& common, const AgainstDraws& a, const AgainstDraws& b) {
-    return [&](const std::function<void(const AgainstAnswer&)>& visit) { test_against(common, a, b, visit); };
-}
 
 /// The settings of the comparison at one w_o.
 struct AgainstPlan {
@@ -54,8 +45,8 @@ AgainstPlan plan_of(const TestSettings& settings, bool limited, bool expect_same
     if (limited && !settings.full) out.own.looks = 1;
     out.seed = settings.seed;
     out.expect_same = expect_same;
-    constexpr double of_each = static_cast<double>(AgainstAnswer::families) + 2 * static_cast<double>(Family::families);
-    out.levels = levels_of(settings.alpha, static_cast<double>(cases) * of_each);
+    constexpr double of_both_and_each = 3 * static_cast<double>(Family::families);
+    out.levels = levels_of(settings.alpha, static_cast<double>(cases) * of_both_and_each);
     return out;
 }
 
@@ -75,13 +66,13 @@ public:
             v.name = name;
             out.push_back(std::move(v));
         }
-        common_.emplace(common_tree(a_, b_, plan_.budget));
-        const Differences d = differences();
-        if (draws_a_.invalid + draws_b_.invalid > 0) {
+        common_.emplace(common_plan(a_, b_, plan_.budget));
+        find_differences();
+        if (unusable(draws_a_) + unusable(draws_b_) > 0) {
             for (Verdict& v : out) note_unusable(v);
             return out;
         }
-        note_distribution(d, out[0]);
+        note_distribution(out[0]);
         const CheckAt own_a = own(a_), own_b = own(b_);
         const AgainstCase c{.a = a_,
             .b = b_,
@@ -101,8 +92,10 @@ public:
 private:
     const AgainstPlan& plan_;
     AgainstSide a_, b_;
-    std::optional<CommonTree> common_;
-    AgainstDraws draws_a_, draws_b_;
+    std::optional<CommonPlan> common_;
+    SamplerDraws draws_a_, draws_b_;
+    std::map<Family, Least> least_;
+    std::vector<Finding> findings_;  // significant at both stages
 
     StreamKey key_of(const Side& side) const {
         StreamKey key;
@@ -116,104 +109,110 @@ private:
             {side.check_case.light, side.key.place, plan_.levels}, plan_.own, plan_.seed);
     }
 
-    Differences differences() {
-        Differences out;
-        for (int look = 0; look < plan_.budget.looks && out.found.empty(); ++look) {
+    AgainstEvidence evidence() const { return {a_, *common_, draws_a_, draws_b_}; }
+
+    void find_differences() {
+        for (int look = 0; look < plan_.budget.looks && findings_.empty(); ++look) {
             const Look to = plan_.budget.look(look);
             draw_on(a_, *common_, to, plan_.budget.of_f(), draws_a_);
             draw_on(b_, *common_, to, plan_.budget.of_f(), draws_b_);
+            const AgainstEvidence first = evidence();
+            least_ = least_by_family<Answer>(first.tests());
             const double level = level_at(plan_.levels, look, plan_.budget.looks);
-            out.p.clear();
-            std::vector<AgainstAnswer> suspects;
-            for (const auto& [family, least] :
-                least_by_family<AgainstAnswer>(questions_to(*common_, draws_a_, draws_b_))) {
-                out.p[family] = least.p();
-                if (least.p() < level) suspects.push_back(least.answer);
-            }
-            if (!suspects.empty()) confirm(suspects, to, look, out);
+            const std::vector<Least> suspects = suspects_of(first.tests(), least_, level, draws_a_.total.independent);
+            if (!suspects.empty()) confirm(suspects, to, look);
         }
-        return out;
     }
 
-    void confirm(const std::vector<AgainstAnswer>& suspects, const Look& to, int look, Differences& out) const {
+    void confirm(const std::vector<Least>& suspects, const Look& to, int look) {
         const Look largest_look = plan_.budget.look(plan_.budget.looks - 1).divided_by(4);
         const Look more = {
             0, std::max(to.independent, largest_look.independent), std::max(to.scrambled, largest_look.scrambled)};
         AgainstSide a = a_, b = b_;
         a.key.stage = b.key.stage = static_cast<std::uint8_t>(2 + look);
-        AgainstDraws of_a, of_b;
-        draw_on(a, *common_, more, 0, of_a);
-        draw_on(b, *common_, more, 0, of_b);
-        for (const AgainstAnswer& r : suspects) {
-            AgainstAnswer again = same_member(questions_to(*common_, of_a, of_b), r);
-            again.p = one_sided(r, again);
-            if (again.p < plan_.levels.second) out.found.push_back({r, again});
+        SamplerDraws draws_a, draws_b;
+        draw_on(a, *common_, more, 0, draws_a);
+        draw_on(b, *common_, more, 0, draws_b);
+        const AgainstEvidence second(a, *common_, draws_a, draws_b);
+        for (const Least& suspect : suspects) {
+            const Answer again = retest(second.tests(), suspect.answer);
+            if (again.p < plan_.levels.second) findings_.push_back({suspect.answer, again, suspect.members});
         }
     }
 
+    static double unusable(const SamplerDraws& draws) { return static_cast<double>(draws.total.checks.unusable); }
+
     void note_unusable(Verdict& v) const {
-        const bool of_a = draws_a_.invalid > 0;
+        const bool of_a = unusable(draws_a_) > 0;
         v.state = State::inconclusive;
         v.sentences = {{"unusable draws",
-            fmt::format("{:g} draws of {} cannot be used: {} is not valid here.",
-                of_a ? draws_a_.invalid : draws_b_.invalid, of_a ? "A" : "B", of_a ? "A" : "B")}};
+            fmt::format("{:g} draws of {} cannot be used: {} is not valid here.", unusable(of_a ? draws_a_ : draws_b_),
+                of_a ? "A" : "B", of_a ? "A" : "B")}};
         v.next_step = "A valid sampler; `crescent check` of it alone shows more.";
     }
 
     Traits traits() const { return a_.check_case.adapter->traits(); }
 
-    std::string sentence_of(const AgainstAnswer& r) const {
-        const double half = 1.959964 * r.sd;
-        switch (r.family) {
-            case AgainstAnswer::kinds:
-                if (r.member < 2)
-                    return fmt::format("A {} {:+.3g} +- {:.1g} more of its samples than B.",
-                        r.member == 0 ? "draws nothing at" : "draws a direction at", r.difference, half);
-                return fmt::format(
-                    "The delta part towards {} takes {:+.3g} +- {:.1g} more of the samples of A than of B.",
-                    direction_text(common_->delta_directions[static_cast<std::size_t>(r.member) - 2]), r.difference,
-                    half);
-            case AgainstAnswer::sums:
-            case AgainstAnswer::sums_by_sets:
-                if (r.member == log_density)
-                    return fmt::format(
-                        "A is {} concentrated than B: the mean logarithm of their density differs by "
-                        "{:.3g} +- {:.1g}.",
-                        r.difference > 0 ? "more" : "less", std::fabs(r.difference), half);
-                if (traits().domain) return "The means of their draws differ.";
-                return fmt::format("The mean direction of A is off that of B in {} by {:+.3g} +- {:.1g}.",
-                    "xyz"[r.member - mean_x], r.difference, half);
-            default: break;
-        }
-        const ChartRect& rect = common_->tree.nodes()[static_cast<std::size_t>(r.member)].rect;
-        if (traits().domain)
-            return fmt::format("Draws of A and B divide differently {}: by {:+.3g} +- {:.1g} of those there.",
-                traits().domain->text(rect), r.difference, half);
-        return fmt::format(
-            "About w_i = {}, within {:.2g} rad, draws of A and B divide differently: by {:+.3g} +- {:.1g} "
-            "of those there.",
-            direction_text(from_chart(rect.at(0.5, 0.5))), std::max(rect.theta_width(), rect.phi_width()), r.difference,
-            half);
+    /// Where the shares of the draws differ most, or what else the clearest finding says.
+    std::string clearest_difference() const {
+        if (const auto place = largest_difference(common_->plan, shares_of_draws(draws_b_.total), draws_a_.total))
+            return fmt::format("Of the draws of A {} are {}, of those of B {}.",
+                share_text(place->drawn, place->drawn_error), region_text(place->rect, traits()),
+                share_text(place->claimed, place->claimed_error));
+        const Finding& clearest = *std::ranges::min_element(
+            findings_, {}, [](const Finding& f) { return std::fabs(f.second.sd / f.second.difference); });
+        return sentence_of(clearest.second);
     }
 
-    void note_distribution(const Differences& d, Verdict& v) const {
-        const bool differ = !d.found.empty();
+    std::string sentence_of(const Answer& a) const {
+        // The right side is the mean of both; replicates are compared with each other.
+        const bool by_sets =
+            a.family == Family::mass_sets || a.family == Family::slope_sets || a.family == Family::centre_sets;
+        const double pooled = draws_a_.total.independent + draws_b_.total.independent;
+        const double per_visible = by_sets ? 1 : pooled / draws_b_.total.independent;
+        const double difference = a.difference * per_visible, half = half_width_95 * a.sd * per_visible;
+        const double h = common_->plan.largest_h();
+        switch (a.family) {
+            case Family::mass:
+            case Family::mass_sets:
+                return fmt::format(
+                    "A draws a direction at {:+.3g} +- {:.1g} more of its samples than B.", difference, half);
+            case Family::delta_share:
+                return fmt::format(
+                    "The delta part towards {} takes {:+.3g} +- {:.1g} more of the samples of A than of B.",
+                    direction_text(common_->delta_directions[static_cast<std::size_t>(a.member)]), difference, half);
+            case Family::slope:
+            case Family::slope_sets:
+                return fmt::format(
+                    "A is {} concentrated than B: the mean logarithm of their density differs by {:.3g} +- {:.1g}.",
+                    difference > 0 ? "more" : "less", std::fabs(difference) / h, half / h);
+            case Family::centre:
+            case Family::centre_sets:
+                if (traits().domain) return "The means of their draws differ.";
+                return fmt::format("The mean direction of A is off that of B in {} by {:+.3g} +- {:.1g}.",
+                    "xyz"[a.member], difference / h, half / h);
+            default: return "Their draws differ in many small places.";
+        }
+    }
+
+    void note_distribution(Verdict& v) const {
+        const bool differ = !findings_.empty();
         v.same = !differ;
         v.evidence["same"] = !differ;
-        v.evidence["draws"] = {draws_a_.independent + draws_a_.scrambled, draws_b_.independent + draws_b_.scrambled};
-        for (const auto& [family, p] : d.p) v.evidence["p"][std::string(name_of(family))] = p;
-        for (const auto& [first, again] : d.found)
-            v.evidence["tests"][std::string(name_of(first.family))] = {
-                {"difference", again.difference}, {"sd", again.sd}, {"p_first", first.p}, {"p_again", again.p}};
+        const Observations &a = draws_a_.total, &b = draws_b_.total;
+        v.evidence["draws"] = {a.independent + a.scrambled, b.independent + b.scrambled};
+        for (const auto& [family, least] : least_) v.evidence["p"][std::string(info(family).name)] = least.p();
+        for (const Finding& f : findings_)
+            v.evidence["tests"][std::string(info(f.first.family).name)] = {{"difference", f.second.difference},
+                {"sd", f.second.sd}, {"p_first", f.first.p}, {"p_again", f.second.p}};
         v.state = differ && plan_.expect_same ? State::wrong : State::right;
         if (differ) {
-            const auto clearest = std::ranges::min_element(
-                d.found, {}, [](const auto& f) { return std::fabs(f.second.sd / f.second.difference); });
             v.sentences = {{"different distributions", "They draw from different distributions."},
-                {"clearest difference", sentence_of(clearest->second)}};
+                {"clearest difference", clearest_difference()}};
             return;
         }
-        const AgainstSizes sizes = sizes_against(*common_, draws_a_, draws_b_, plan_.levels.first);
+        const AgainstEvidence both = evidence();
+        const DifferenceSizes sizes = sizes_between(both.evidence(), plan_.levels.first, common_->drawn);
         v.sentences = {{"no difference", "No difference between their distributions was found."}};
         if (!sizes.part) return;
         v.evidence["would_have_found"]["part"] = *sizes.part;

@@ -1,18 +1,15 @@
-// Draws of two samplers on one tree, and a test whether they come from one distribution: E_A[h] = E_B[h] for every test
-// function h of a tree that is grown from the pilot draws of both. The density is evaluated only to decide whether a
-// draw below the surface is valid.
+// Two samplers on one plan: E_A[h] = E_B[h] for the test functions h of a tree that is grown from the pilot draws of
+// both. The density is evaluated only to decide whether a draw below the surface is valid.
 #pragma once
 
-#include <array>
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "check/constants.h"
 #include "check/decide/check_at.h"
+#include "check/decide/two_stages.h"
 #include "check/estimate/observations.h"
 #include "check/verdict.h"
-#include "check/verdicts/statistics.h"
 
 namespace crescent::check {
 
@@ -23,65 +20,66 @@ struct AgainstSide {
     StreamKey key;
 };
 
-/// The tree, directions and delta parts that both samplers share.
-struct CommonTree {
-    Tree tree;
-    double step = 0;  // of the less precise arithmetic, as an angle
-    Vec3d middle{};
-    double log_q = 0;                         // mean of ln q over the mass of the tree
+/// What both samplers share: the plan, in which h does not depend on p, and their delta parts.
+struct CommonPlan {
+    Plan plan;
     std::vector<Vec3d> delta_directions;      // of both samplers
     std::vector<DeltaPart> delta_a, delta_b;  // of the pilot draws
-    std::vector<Vec3d> drawn;                 // some pilot directions of each sampler
+    std::vector<Vec3d> drawn;                 // some pilot directions of each sampler, in turn
 };
 
 /// Built from pilot draws of each sampler.
-CommonTree common_tree(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget);
+CommonPlan common_plan(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget);
 
-/// Quantities of a draw whose means are compared.
-enum AgainstSum : int { log_density, mean_x, mean_y, mean_z, against_sums };
-
-/// The draws of one sampler in one stage.
-struct AgainstDraws {
-    double independent = 0, scrambled = 0;
-    std::vector<double> leaves;  // number of directions by leaf
-    std::vector<double> kinds;   // number of draws: no sample, directions, each delta direction
-    std::array<Sums, against_sums> sums;
-    std::array<Replicates, against_sums> by_set{};
-    std::vector<Replicates> node_by_set;
-    std::vector<double> x;          // weights f L cos / p of the first draws; luminance
-    bool has_weights = true;        // whether each of these draws has a weight
-    double invalid = 0, first = 0;  // unusable draws
+/// The draws of one sampler at one stage.
+struct SamplerDraws {
+    std::vector<Observations> techniques;
+    Observations total;               // of all techniques; its weights are f L cos / p of the first draws, luminance
+    std::vector<double> delta_draws;  // number of draws towards each delta direction
 };
 
 /// Adds draws up to a look, and weights of the first `of_f`.
-void draw_on(const AgainstSide& side, const CommonTree& common, const Look& to, std::uint32_t of_f, AgainstDraws& d);
+void draw_on(const AgainstSide& side, const CommonPlan& common, const Look& to, std::uint32_t of_f, SamplerDraws& d);
 
-/// One test applied to both samplers.
-struct AgainstAnswer {
-    /// The compared quantity.
-    enum Family { kinds, sums, sums_by_sets, nodes, nodes_by_sets, families } family;
-    int member = 0;
-    double difference = 0, sd = 0, floor = 0, p = 1;  // share of A less share of B, or difference of the means
-};
-std::string_view name_of(AgainstAnswer::Family family);
-void test_against(const CommonTree& common, const AgainstDraws& a, const AgainstDraws& b,
-    const std::function<void(const AgainstAnswer&)>& visit);
+/// The right side if both have one distribution: the mean over the draws of both.
+Integrals pooled_integrals(const Plan& plan, const Observations& a, const Observations& b);
+/// The integral of the density in each leaf as the share of the draws there, with its variance.
+Integrals shares_of_draws(const Observations& draws);
 
-/// Sizes that the test detects with the stated power: a part of the distribution of one sampler that the other never
-/// draws, at nine of ten places, and a distance between the mean directions.
-struct AgainstSizes {
-    std::optional<double> part, distance;
+/// Both sides of the tests, A on the left.
+class AgainstEvidence {
+public:
+    /// Refers to its arguments.
+    AgainstEvidence(
+        const AgainstSide& a, const CommonPlan& common, const SamplerDraws& draws_a, const SamplerDraws& draws_b);
+    AgainstEvidence(const AgainstEvidence&) = delete;
+    AgainstEvidence& operator=(const AgainstEvidence&) = delete;
+
+    Evidence evidence() const {
+        return {.source = source_,
+            .plan = common_.plan,
+            .integrals = integrals_,
+            .observations = a_.total,
+            .second = &b_.total};
+    }
+    /// Those of one sampler for the distribution, and the share of each delta direction.
+    VisitAll tests() const;
+
+private:
+    const CommonPlan& common_;
+    const SamplerDraws &a_, &b_;
+    Source source_;
+    Integrals integrals_;
+    void test_delta_shares(const Visit& visit) const;
 };
-/// level: of each test.
-AgainstSizes sizes_against(const CommonTree& common, const AgainstDraws& a, const AgainstDraws& b, double level);
 
 // ---- f and variances of two samplers.
 
 /// The inputs of a comparison at one w_o.
 struct AgainstCase {
     const AgainstSide &a, &b;
-    const CommonTree& common;
-    const AgainstDraws &draws_a, &draws_b;
+    const CommonPlan& common;
+    const SamplerDraws &draws_a, &draws_b;
     const CheckAt &own_a, &own_b;  // checks of each sampler alone
     std::uint32_t of_f = 0;
     Levels levels;

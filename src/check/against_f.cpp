@@ -215,9 +215,9 @@ void note_ratio(Verdict& v, double ratio, double log_se, bool differ) {
 std::vector<double> fresh_weights(const AgainstSide& side, const AgainstCase& c) {
     AgainstSide again = side;
     again.key.stage = 2;
-    AgainstDraws d;
-    draw_on(again, c.common, {0, c.of_f, 0}, c.of_f, d);
-    return d.x;
+    SamplerDraws draws;
+    draw_on(again, c.common, {0, c.of_f, 0}, c.of_f, draws);
+    return draws.total.weights;
 }
 
 double variances_p(const WeightMoments& a, const WeightMoments& b) {
@@ -369,13 +369,13 @@ void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
                          : "The file of A has no column f, so there are no weights f L cos / p.");
     if (!b.has_drawn_f() && !only_at_draws(a)) return skip(v, "B has no f, so its f L cos / p has no variance.");
     for (const auto& [draws, adapter, who] : {std::tuple(&c.draws_a, &a, "A"), {&c.draws_b, &b, "B"}})
-        if (adapter->has_drawn_f() && !draws->has_weights)
+        if (adapter->has_drawn_f() && draws->total.weightless > 0)
             return skip(v,
                 fmt::format(
                     "{} has neither a pdf(w) nor a weight with its draws (weight=yes), so it has no variance.", who));
     if (is_wrong_itself(c.own_a, "A", v) || is_wrong_itself(c.own_b, "B", v)) return;
     if (!b.has_drawn_f()) return over_draws_of_a(c, v);
-    const WeightMoments of_a(c.draws_a.x), of_b(c.draws_b.x);
+    const WeightMoments of_a(c.draws_a.total.weights), of_b(c.draws_b.total.weights);
     v.evidence["variance_a"] = of_a.variance;
     v.evidence["variance_b"] = of_b.variance;
     for (const auto& [m, who] : {std::pair(&of_a, "A"), {&of_b, "B"}})

@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "check/constants.h"
 #include "check/decide/small_tests.h"
+#include "check/decide/two_stages.h"
 #include "check/estimate/source.h"
 #include "check/verdicts/statistics.h"
 
@@ -45,30 +46,13 @@ struct Stage {
     }
 };
 
-void test_all(const Evidence& e, const Visit& visit) {
-    test_sums(e, visit);
-    test_nodes(e, visit);
-    test_bands(e, visit);
-    test_light(e, visit);
-    test_counts(e, visit);
-    test_deltas(e, visit);
-}
-
-using Least = LeastOf<Answer>;
-
-auto least_of(const Evidence& e) {
-    return least_by_family<Answer>([&](const Visit& visit) { test_all(e, visit); });
-}
-
-/// Unusable numbers are a fault by themselves and need no second test.
-bool is_deterministic(Family f) { return f == Family::values || f == Family::corners; }
-
-/// Tests the same member again, one-sided in the direction of the first result.
-Answer retest(const Evidence& e, const Answer& first) {
-    Answer out = same_member([&](const Visit& visit) { test_all(e, visit); }, first);
-    const bool two_sided = out.p > 0 && first.family != Family::depth;
-    if (two_sided) out.p = one_sided(first, out);
-    return out;
+VisitAll all_tests(const Evidence& e) {
+    return [e](const Visit& visit) {
+        test_distribution(e, visit);
+        test_light(e, visit);
+        test_counts(e, visit);
+        test_deltas(e, visit);
+    };
 }
 
 class Check {
@@ -183,38 +167,13 @@ private:
         out_.looks = look + 1;
         const Evidence e = first_.evidence(source_, *out_.plan);
         note_answers(e);
-        const std::vector<Least> suspects = suspects_of(e, level);
+        const std::vector<Least> suspects = suspects_of(all_tests(e), least_, level, e.observations.independent);
         if (!suspects.empty()) confirm(suspects, look);
         if (!out_.findings.empty()) return true;
         if (!budget_.stop_when_conclusive && look < budget_.looks - 1) return false;
         out_.sizes = sizes(e, level);
         out_.inconclusive = worst_ratio(out_.sizes) > out_.most_ratio();
         return budget_.stop_when_conclusive && !out_.inconclusive;
-    }
-
-    /// For each family below the level, the member to test again. Among all members that are below the level by
-    /// themselves it is the one with the largest ratio of difference to standard error, where the standard error
-    /// includes that of the draws that cause the difference. The member with the least p may have two draws where none
-    /// was expected; the next stage has none of these with a probability of 13 %.
-    std::vector<Least> suspects_of(const Evidence& e, double level) const {
-        std::map<Family, std::pair<double, Least>> clearest;
-        for (const auto& [family, least] : least_)
-            if (least.p() < level) clearest[family] = {-1, least};
-        if (clearest.empty()) return {};
-        test_all(e, [&](const Answer& a) {
-            const auto found = clearest.find(a.family);
-            if (found == clearest.end() || a.p * found->second.second.members >= level) return;
-            const double d = std::fabs(a.difference);
-            const double errors =
-                std::max(d - a.floor, 0.0) / std::sqrt(a.sd * a.sd + d / e.observations.independent + 1e-300);
-            if (errors > found->second.first) {
-                found->second.first = errors;
-                found->second.second.answer = a;
-            }
-        });
-        std::vector<Least> out;
-        for (const auto& [family, chosen] : clearest) out.push_back(chosen.second);
-        return out;
     }
 
     /// If p has regions that the tree does not resolve, builds the tree once more from all points and draws so far.
@@ -261,7 +220,7 @@ private:
         Evidence e = second.evidence(source_, *out_.plan);
         e.least *= std::min(1.0, second.observations.independent / first_.observations.independent);
         for (const Least& b : suspects) {
-            const Answer again = is_deterministic(b.answer.family) ? b.answer : retest(e, b.answer);
+            const Answer again = retest(all_tests(e), b.answer);
             if (again.p < levels_.second && !is_of_resolution(again, second.observations.independent))
                 out_.findings.push_back({b.answer, again, b.members});
             else out_.suspected.push_back(b.answer);
@@ -279,7 +238,7 @@ private:
         return true;
     }
 
-    void note_answers(const Evidence& e) { least_ = least_of(e); }
+    void note_answers(const Evidence& e) { least_ = least_by_family<Answer>(all_tests(e)); }
 
     /// Uses the second stage for the explanation, since it has more draws than the first.
     void use_second_stage(Stage&& second) {

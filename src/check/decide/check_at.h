@@ -43,6 +43,13 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
 /// of a leak, that change is used.
 double worst_ratio(const Sizes& sizes);
 
+/// Sizes of differences between two samplers that are found with the stated power: a part of the draws of one that the
+/// other lacks, at nine of ten centres, and a distance between the mean directions.
+struct DifferenceSizes {
+    std::optional<double> part, distance;
+};
+DifferenceSizes sizes_between(const Evidence& e, double level, std::span<const Vec3d> centres);
+
 /// The relative error of the integral of p, none if that is 0: half its interval where points resolve p, and elsewhere
 /// the share of the draws, or what the points hold if this is more; or by how much these may differ.
 std::optional<double> error_of_integral(const Integrals& integrals, const Observations& observations);

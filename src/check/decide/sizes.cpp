@@ -28,26 +28,20 @@ double bennett_difference(double z2, double v, double b) {
     return x * v / b;
 }
 
-/// Variance of the difference of a test: of its draws, and of its integrals.
-struct Variances {
-    double drawn, claimed;
-    double all() const { return drawn + claimed; }
-};
-
 /// The difference that one test needs to detect a fault.
 class Needed {
 public:
     /// largest: largest single term, for Bennett's inequality.
-    static Needed by_bennett(double floor, Variances v, double largest, double freedom, double level) {
+    static Needed by_bennett(double floor, double variance, double largest, double freedom, double level) {
         const double z2 = -2 * math::log(level / 2) / freedom;
-        return {floor, v.all(), largest, z2 < 500 ? freedom * (math::exp(z2) - 1) : 1e300, 0};
+        return {floor, variance, largest, z2 < 500 ? freedom * (math::exp(z2) - 1) : 1e300, 0};
     }
     /// The quantile of Student's t, shared by many tests with the same degrees of freedom.
     static double quantile(double freedom, double level) {
         return student_two_sided_quantile(std::clamp(freedom, 1.0, 1e6), level);
     }
-    static Needed by_student(double floor, Variances v, double quantile, double freedom) {
-        return {floor, v.all(), 0, quantile, 1 / (2 * std::clamp(freedom, 1.0, 1e6))};
+    static Needed by_student(double floor, double variance, double quantile, double freedom) {
+        return {floor, variance, 0, quantile, 1 / (2 * std::clamp(freedom, 1.0, 1e6))};
     }
 
     /// `tested`: variance that the fault adds and that the test estimates from its draws; `untested`: variance that the
@@ -82,29 +76,24 @@ struct SumTest {
     std::size_t of;  // index of the sum
     Needed needed;
     double draws;
+    double visible;  // part of a fault of one of two samplers that the difference shows; 1 for one sampler
 };
 
 /// The tests of whole sums, with both kinds of draws.
 std::vector<SumTest> whole_sums(const Evidence& e, double of_family) {
     std::vector<SumTest> out;
-    const double n = e.observations.independent;
-    const Values unmet = unmet_variance(e);
+    const std::array<WholeSum, integrands> sums = compare_sums(e);
     for (std::size_t q = 0; q < integrands; ++q) {
-        const double level = of_family / (q >= centre_x ? 3 : 1);
-        const Estimate& claimed = e.integrals.sums[q];
-        const double floor = floor_of_sum(e, static_cast<int>(q));
-        const Variances v{drawn_variance(e, static_cast<int>(q)), claimed.variance};
-        const double of_draws = freedom(v.all(), claimed.doubt);
-        const bool vary = draws_vary(e, static_cast<int>(q));
-        out.push_back({q,
-            vary ? Needed::by_bennett(floor, v, 1 / n, of_draws, level)
-                 : Needed::by_student(floor, v, Needed::quantile(of_draws, level), of_draws),
-            n});
-        if (e.observations.scrambled == 0 || !vary) continue;
-        const ReplicateMean<Replicates> sets = replicate_mean(e, static_cast<int>(q));
-        const Variances w{sets.variance + unmet[q] / e.observations.scrambled, claimed.variance};
-        const double nu = freedom(w.all(), claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1));
-        out.push_back({q, Needed::by_student(floor, w, Needed::quantile(nu, level), nu), e.observations.scrambled});
+        const auto add = [&](const SumComparison& s, double draws) {
+            const double level = of_family / (q >= centre_x ? 3 : 1);
+            out.push_back({q,
+                s.largest > 0
+                    ? Needed::by_bennett(s.floor, s.variance(), s.largest, s.freedom, level)
+                    : Needed::by_student(s.floor, s.variance(), Needed::quantile(s.freedom, level), s.freedom),
+                draws, s.visible});
+        };
+        add(sums[q].by_draws, e.observations.independent);
+        if (sums[q].by_sets) add(*sums[q].by_sets, e.observations.scrambled);
     }
     return out;
 }
@@ -114,8 +103,8 @@ struct NodeTest {
     double share;  // of h p in the first half
     double h;      // weight of one draw
     Needed needed;
-    double
-        draws;  // number of draws; 0: the variance is predicted from the claimed density, not estimated from the draws
+    double draws;    // 0: the variance is predicted from the claimed density, not estimated from draws
+    double visible;  // as for a sum
 };
 
 /// The nodes that are tested, with both kinds of draws.
@@ -135,14 +124,11 @@ std::vector<NodeTest> node_tests(const Evidence& e, const std::vector<NodeSums>&
         const NodeSplit s = split_of(e, sums, i);
         if (a.family == Family::node)
             out.push_back({i, s.share, s.one_draw,
-                Needed::by_bennett(s.floor, {s.variance - s.claim_variance, s.claim_variance}, sums[i].largest,
-                    freedom(s.variance, s.doubt), level_of_one),
-                0});
+                Needed::by_bennett(s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt), level_of_one), 0,
+                s.visible});
         else
-            out.push_back({i, s.share, s.one_draw,
-                Needed::by_student(
-                    s.floor, {a.sd * a.sd * (1 - a.claimed), a.sd * a.sd * a.claimed}, t, replicate_sets - 1),
-                e.observations.scrambled});
+            out.push_back({i, s.share, s.one_draw, Needed::by_student(a.floor, a.sd * a.sd, t, replicate_sets - 1),
+                e.observations.scrambled, 1});
     }
     return out;
 }
@@ -151,22 +137,53 @@ void take_less(std::optional<double>& to, double size) {
     if (!to || size < *to) to = std::min(size, 1.0);
 }
 
+// ---- Faults of size e that draw by p (1 + e g) for some g. A kind of fault is one function: what g changes in each
+// test.
+
+/// Per unit of size: the change of the mean of h, and the mean square of the draws that are exchanged.
+struct FaultChange {
+    double mean = 0, square = 0;
+};
+
+/// Takes the least size that one of these tests detects. n: number of independent draws.
+template <class Test, class ChangeOf>
+void take_detected(const std::vector<Test>& tests, double n, const ChangeOf& change_of, std::optional<double>& size) {
+    for (const Test& t : tests) {
+        const FaultChange change = change_of(t);
+        const double added = change.square / (t.draws > 0 ? t.draws : n);
+        const bool estimated = t.draws > 0;
+        take_less(size, t.needed.size(change.mean * t.visible, estimated ? added : 0, estimated ? 0 : added));
+    }
+}
+
+/// p is (1 + e) times the density of the draws.
+std::optional<double> constant_of(const Evidence& e, const std::vector<SumTest>& whole) {
+    std::optional<double> out;
+    const auto of_sum = [&](const SumTest& t) {
+        const bool grows = t.of == mass || t.of == bridge;
+        return FaultChange{grows ? e.integrals.sums[t.of].value : 0};
+    };
+    take_detected(whole, e.observations.independent, of_sum, out);
+    return out;
+}
+
+/// A share e of the draws is uniform.
 std::optional<double> leak_of(const Evidence& e, const std::vector<SumTest>& whole, const std::vector<NodeSums>& sums,
     const std::vector<NodeTest>& nodes) {
     std::optional<double> out;
     const double domain = e.integrals.domain, n = e.observations.independent;
-    for (const SumTest& t : whole) {
-        const double effect = std::fabs(e.integrals.even[t.of] / domain - e.observations.sums[t.of].sum / n);
-        const double square = e.integrals.even_square[t.of] / domain + effect * effect;  // of one leaked draw
-        take_less(out, t.needed.size(effect, square / t.draws));
-    }
-    for (const NodeTest& t : nodes) {
+    const auto of_sum = [&](const SumTest& t) {
+        const double mean = std::fabs(e.integrals.even[t.of] / domain - e.observations.sums[t.of].sum / n);
+        return FaultChange{mean, e.integrals.even_square[t.of] / domain + mean * mean};
+    };
+    const auto of_node = [&](const NodeTest& t) {
         const auto first = static_cast<std::size_t>(e.plan.tree.nodes()[t.node].child);
         const double a = sums[first].solid_angle / domain, b = sums[first + 1].solid_angle / domain;
-        const double effect = std::fabs((1 - t.share) * a - t.share * b);
-        const double square = t.h * ((1 - t.share) * (1 - t.share) * a + t.share * t.share * b);
-        take_less(out, t.draws > 0 ? t.needed.size(effect, square / t.draws) : t.needed.size(effect, 0, square / n));
-    }
+        return FaultChange{std::fabs((1 - t.share) * a - t.share * b),
+            t.h * ((1 - t.share) * (1 - t.share) * a + t.share * t.share * b)};
+    };
+    take_detected(whole, n, of_sum, out);
+    take_detected(nodes, n, of_node, out);
     return out;
 }
 
@@ -223,10 +240,10 @@ public:
             if (nodes[i].child >= 0)
                 for (int half : {0, 1}) parent_[static_cast<std::size_t>(nodes[i].child + half)] = static_cast<int>(i);
         for (const NodeTest& t : tests) {
-            least_[t.node] = std::min(least_[t.node], t.needed.difference(0, 0, 0));
+            least_[t.node] = std::min(least_[t.node], t.needed.difference(0, 0, 0) / t.visible);
             const NodeSplit split = split_of(e, sums, t.node);
             if (t.draws > 0 || split.smaller_half < e.least) continue;
-            variance_[t.node] = split.variance;
+            variance_[t.node] = split.variance / sqr(t.visible);
             ++degrees[static_cast<std::size_t>(nodes[t.node].depth)];
         }
         const auto depths = static_cast<double>(std::ranges::count_if(degrees, [](double d) { return d > 0; }));
@@ -538,22 +555,27 @@ void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& w
 }
 
 /// Draws by p^(1 + e) in place of p move E[h] by e times the covariance of h and ln p. They are modelled as draws of p
-/// that are kept with probability (p / c)^e: about 3 e standard deviations of ln p are drawn again.
-void by_exponent(const Evidence& e, const std::vector<SumTest>& whole, Sizes& out) {
+/// that are kept with probability (p / c)^e: about 3 e standard deviations of ln p are drawn again. spread: variance of
+/// ln p.
+std::optional<double> exponent_of(const Evidence& e, const std::vector<SumTest>& whole, double spread) {
     const Observations& o = e.observations;
     const double n = o.independent;
     const double covariance = o.slope_log_p / n - o.sums[slope].sum / n * o.log_p.sum / n;
-    const double spread = o.log_p.square / n - o.log_p.sum / n * o.log_p.sum / n;
-    if (!(spread > 1e-4 && covariance > 0)) return;
+    std::optional<double> out;
+    if (!(covariance > 0)) return out;
     const double again = 3 * std::sqrt(spread), square = 2 * o.sums[slope].square / n;
-    for (const SumTest& t : whole)
-        if (t.of == slope) take_less(out.parameter, t.needed.size(covariance, again * square / t.draws));
-    out.by_parameter = std::sqrt(spread) / 2;
+    const auto of_sum = [&](const SumTest& t) {
+        return t.of == slope ? FaultChange{covariance, again * square} : FaultChange{};
+    };
+    take_detected(whole, n, of_sum, out);
+    return out;
 }
 
-}  // namespace
-
-namespace {
+/// Variance of ln p over the draws.
+double spread_of_log_p(const Observations& o) {
+    const double n = o.independent;
+    return o.log_p.square / n - o.log_p.sum / n * o.log_p.sum / n;
+}
 
 /// The relative bias of all weights that is found; a node has more noise.
 std::optional<double> bias_of(const Evidence& e, double level) {
@@ -582,13 +604,16 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
     const std::vector<NodeSums> sums = node_sums(e);
     const std::vector<NodeTest> nodes = node_tests(e, sums, level);
     out.integral = error_of_integral(e.integrals, e.observations);
-    for (const SumTest& t : whole)
-        if (t.of == mass || t.of == bridge) take_less(out.constant, t.needed.size(e.integrals.sums[t.of].value));
+    out.constant = constant_of(e, whole);
     // No density is uniform over an infinite line, and powers of p per length are not those of p over the chart.
     if (!source.traits.domain || !source.traits.domain->domain().is_infinite()) {
         out.leak = leak_of(e, whole, sums, nodes);
         out.by_leak = distance_from_even(e);
-        by_exponent(e, whole, out);
+        constexpr double least_spread_of_log_p = 1e-4;
+        if (const double spread = spread_of_log_p(e.observations); spread > least_spread_of_log_p) {
+            out.parameter = exponent_of(e, whole, spread);
+            out.by_parameter = std::sqrt(spread) / 2;
+        }
     }
     const Sample sample = drawn(source, draws, key);
     out.cap = cap_of(e, sums, nodes, sample, level);
@@ -596,6 +621,21 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
     constexpr double box_over_cap = 4.0 / 3;
     if (out.cap && source.traits.domain && !source.is_line()) out.cap = std::min(*out.cap * box_over_cap, 1.0);
     by_turning(source, e, whole, nodes, sample, out);
+    return out;
+}
+
+DifferenceSizes sizes_between(const Evidence& e, double level, std::span<const Vec3d> centres) {
+    DifferenceSizes out;
+    const double h = e.plan.largest_h();
+    for (const SumTest& t : whole_sums(e, level))
+        if (t.of >= centre_x) take_less(out.distance, t.needed.difference() / (t.visible * h));
+    const std::vector<NodeSums> sums = node_sums(e);
+    Sample sample;
+    for (Vec3d w : centres) {
+        sample.w.push_back(w);
+        sample.p.push_back(e.plan.tree.leaves()[e.plan.tree.find(to_chart(w))].q);
+    }
+    out.part = cap_of(e, sums, node_tests(e, sums, level), sample, level);
     return out;
 }
 

@@ -75,14 +75,16 @@ std::uint64_t key_of(Vec3d w) {
 
 class Observer {
 public:
-    Observer(Source& source, const Plan& plan, Integrals& integrals, Observations& to)
-        : source_(source), plan_(plan), integrals_(integrals), to_(to) {}
+    /// integrals: completed by the draws; none for draws that are compared with draws. below: as in `observe_draws`, or
+    /// none.
+    Observer(Source& source, const Plan& plan, Integrals* integrals, Source* below, Observations& to)
+        : source_(source), plan_(plan), integrals_(integrals), below_(below), to_(to) {}
 
     /// Whether the pdf of every independent draw so far equals pdf(w): then scrambled draws need no evaluation of
     /// pdf(w).
     bool pdf_is_confirmed() const {
         const DrawChecks& c = to_.checks;
-        return source_.has_density() && !plan_.estimates && to_.independent > 0 &&
+        return !below_ && source_.has_density() && !plan_.estimates && to_.independent > 0 &&
             c.pointwise.times + c.zero.times + c.null_below == 0;
     }
 
@@ -112,7 +114,8 @@ public:
 private:
     Source& source_;
     const Plan& plan_;
-    Integrals& integrals_;
+    Integrals* integrals_;
+    Source* below_;
     Observations& to_;
     std::vector<Draw> draws_;
     std::vector<Vec3d> w_, f_, true_f_;
@@ -131,8 +134,9 @@ private:
                 at_.push_back(i);
             }
         p_.resize(w_.size());
-        if (set >= 0 && pdf_is_confirmed()) {
+        if (below_ || (set >= 0 && pdf_is_confirmed())) {
             for (std::size_t k = 0; k < w_.size(); ++k) p_[k] = draws_[at_[k]].pdf;
+            if (below_) evaluate_below(*below_, w_, p_);
         } else {
             source_.density(w_, p_);
             if (source_.estimates) restore_zeros();
@@ -161,7 +165,7 @@ private:
         if (k >= leaf_.size()) return;
         __builtin_prefetch(&plan_.tree.leaves()[leaf_[k]]);
         if (set >= 0) return;
-        __builtin_prefetch(&integrals_.leaves[leaf_[k]].top);
+        if (integrals_) __builtin_prefetch(&integrals_->leaves[leaf_[k]].top);
         __builtin_prefetch(&to_.leaves[leaf_[k]]);
     }
 
@@ -350,7 +354,8 @@ private:
             to_.slope_log_p += v[slope] * log_p;
         }
         to_.met.push_back({key_of(w), density});
-        LeafIntegral& integral = integrals_.leaves[l];
+        if (!integrals_) return;
+        LeafIntegral& integral = integrals_->leaves[l];
         if (p > alike * integral.top) complete(integral, points_[k], v, p, resolved);
     }
 
@@ -367,21 +372,36 @@ private:
         leaf.second += v[bridge] * v[bridge] / draws;
         add(leaf.bridge, v[bridge]);
         for (std::size_t q = 0; q < integrands; ++q)
-            add(q == mass && !resolved ? integrals_.unresolved : integrals_.sums[q], v[q]);
+            add(q == mass && !resolved ? integrals_->unresolved : integrals_->sums[q], v[q]);
     }
 };
 
 }  // namespace
 
+void evaluate_below(Source& source, std::span<const Vec3d> w, std::span<double> p) {
+    std::vector<std::size_t> rows;
+    std::vector<Vec3d> directions;
+    for (std::size_t k = 0; k < w.size(); ++k)
+        if (!(w[k].z > 0)) {
+            rows.push_back(k);
+            directions.push_back(w[k]);
+        }
+    std::vector<double> density(rows.size());
+    source.density(directions, density);
+    for (std::size_t k = 0; k < rows.size(); ++k) p[rows[k]] = density[k];
+}
+
+namespace {
+
 void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t of_f, const StreamKey& key,
-    Integrals& integrals, Observations& to) {
+    Integrals* integrals, Source* below, Observations& to) {
     if (to.leaves.empty()) {
         to.leaves.resize(plan.tree.leaves().size());
         to.counts.resize(plan.tree.leaves().size());
         to.node_by_set.resize(plan.tree.rows());
         if (!source.has_density()) to.weight_leaves.resize(plan.tree.leaves().size());
     }
-    Observer observer(source, plan, integrals, to);
+    Observer observer(source, plan, integrals, below, to);
     const bool with_weights = source.has_f() || source.declaration.has_drawn_f;
     std::vector<PrimarySample> u;
     StreamKey draws = key;
@@ -395,9 +415,9 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         u.resize(std::min(with_f ? batch_size : source.batch_rows(), last_draw - from));
         observer.batch(draws, from, u, with_f);
     }
-    if (!to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
+    if (integrals && !to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
     if (source.traits.own_random || !source.declaration.can_draw) return;
-    const std::uint32_t evaluations_each = observer.pdf_is_confirmed() || !source.has_density() ? 1 : 2;
+    const std::uint32_t evaluations_each = below || observer.pdf_is_confirmed() || !source.has_density() ? 1 : 2;
     const std::uint32_t first = static_cast<std::uint32_t>(to.scrambled) / replicate_sets,
                         last = std::max(first, look.scrambled / replicate_sets / evaluations_each);
     for (int set = 0; set < replicate_sets; ++set) {
@@ -407,6 +427,43 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
         observer.set(scramble, set, first, last);
     }
     to.scrambled = static_cast<double>(last) * replicate_sets;
+}
+
+}  // namespace
+
+void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t of_f, const StreamKey& key,
+    Integrals& integrals, Observations& to) {
+    observe(source, plan, look, of_f, key, &integrals, nullptr, to);
+}
+
+void observe_draws(Source& source, Source& below, const Plan& plan, const Look& look, std::uint32_t of_f,
+    const StreamKey& key, Observations& to) {
+    observe(source, plan, look, of_f, key, nullptr, &below, to);
+}
+
+void add_technique(const Observations& technique, Observations& to) {
+    const auto add = [](auto& sums, const auto& more) {
+        if (sums.size() < more.size()) {
+            if constexpr (requires { sums.resize(0); }) sums.resize(more.size());
+        }
+        for (std::size_t i = 0; i < more.size(); ++i) sums[i] += more[i];
+    };
+    to.independent += technique.independent;
+    to.scrambled += technique.scrambled;
+    for (std::size_t q = 0; q < integrands; ++q) {
+        to.sums[q].sum += technique.sums[q].sum;
+        to.sums[q].square += technique.sums[q].square;
+        add(to.by_set[q], technique.by_set[q]);
+    }
+    add(to.leaves, technique.leaves);
+    add(to.counts, technique.counts);
+    add(to.bands, technique.bands);
+    add(to.weights, technique.weights);
+    to.node_by_set.resize(technique.node_by_set.size());
+    for (std::size_t row = 0; row < technique.node_by_set.size(); ++row)
+        add(to.node_by_set[row], technique.node_by_set[row]);
+    to.checks.unusable += technique.checks.unusable;
+    to.weightless += technique.weightless;
 }
 
 // ---- Delta parts: directions, q and weights are compared to single precision.

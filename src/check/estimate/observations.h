@@ -157,6 +157,15 @@ std::vector<Vec3d> of_other_lengths(const Source& source, Vec3d w);
 void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t of_f, const StreamKey& key,
     Integrals& integrals, Observations& to);
 
+/// The same for draws that are compared with those of another sampler. They need no density: p is evaluated only below
+/// the surface, by `below`, to decide which draws count.
+void observe_draws(Source& source, Source& below, const Plan& plan, const Look& look, std::uint32_t of_f,
+    const StreamKey& key, Observations& to);
+/// Replaces p by that of `source` at directions below the surface.
+void evaluate_below(Source& source, std::span<const Vec3d> w, std::span<double> p);
+/// Adds the draws of another technique of the sampler: all that two samplers are compared by, apart from delta parts.
+void add_technique(const Observations& technique, Observations& to);
+
 // ---- The weights X = f L cos / p of draws, for the tail and the variance.
 
 /// Draws of a batch that belong to the density: their indices in the batch, their directions, p there, and f |cos| if

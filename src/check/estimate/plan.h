@@ -145,6 +145,8 @@ struct Plan {
         return {1, h, density > 0 ? h * (log_of(density) - median_log_p) : 0, h * (w.x - middle.x),
             h * (w.y - middle.y), h * (w.z - middle.z)};
     }
+    /// A bound of h: it is 1/2 if it does not depend on p.
+    double largest_h() const { return estimates ? 0.5 : 1; }
     /// Whether the points of the leaf resolve p, see `heaviest_point`.
     bool resolves(const Leaf& leaf, double p) const { return estimates || !(p > leaf.resolved); }
     /// Whether the sampler computes in single precision, as it declares or as the step of its directions shows: that of

@@ -23,16 +23,16 @@ struct NodeShares {
     std::vector<double> drawn, claimed, variance;
     double draws = 0, mass = 0;
 
-    explicit NodeShares(const CheckAt& c) {
-        const std::vector<TreeNode>& nodes = c.plan->tree.nodes();
+    NodeShares(const Plan& plan, const Integrals& integrals, const Observations& observations) {
+        const std::vector<TreeNode>& nodes = plan.tree.nodes();
         drawn.resize(nodes.size());
         claimed.resize(nodes.size());
         variance.resize(nodes.size());
         for (std::size_t i = nodes.size(); i-- > 0;) {
             if (nodes[i].child < 0) {
                 const auto l = static_cast<std::size_t>(nodes[i].leaf);
-                const Estimate& p = c.integrals.leaves[l].mass;
-                drawn[i] = static_cast<double>(c.observations.counts[l]);
+                const Estimate& p = integrals.leaves[l].mass;
+                drawn[i] = static_cast<double>(observations.counts[l]);
                 claimed[i] = p.value;
                 variance[i] = p.variance;
                 continue;
@@ -96,11 +96,12 @@ double ShareDifference::errors() const {
     return std::fabs(difference()) / std::sqrt(drawn_error * drawn_error + claimed_error * claimed_error + 1e-300);
 }
 
-std::optional<ShareDifference> largest_difference(const CheckAt& c) {
-    if (!c.plan || c.integrals.leaves.empty() || c.observations.counts.empty()) return {};
-    const NodeShares shares(c);
+std::optional<ShareDifference> largest_difference(
+    const Plan& plan, const Integrals& integrals, const Observations& observations) {
+    if (integrals.leaves.empty() || observations.counts.empty()) return {};
+    const NodeShares shares(plan, integrals, observations);
     if (!shares.known()) return {};
-    const Tree& tree = c.plan->tree;
+    const Tree& tree = plan.tree;
     double largest = 0;
     std::size_t best = 0;
     for (std::size_t i = 1; i < tree.nodes().size(); ++i) {
@@ -139,28 +140,29 @@ std::string region_text(const ChartRect& r, const Traits& traits) {
     return out;
 }
 
+std::string share_text(double share, double error) {
+    const double half = half_width_95 * error;
+    if (share - half < 0) return fmt::format("at most {:.2g} %", 100 * (share + half));
+    if (share + half > 1) return fmt::format("at least {:.4g} %", 100 * (share - half));
+    return percent_with_error(share, half);
+}
+
 Sentence sentence_of(const ShareDifference& d, const Traits& traits) {
-    const auto share = [](double x, double error) {
-        const double half = half_width_95 * error;
-        if (x - half < 0) return fmt::format("at most {:.2g} %", 100 * (x + half));
-        if (x + half > 1) return fmt::format("at least {:.4g} %", 100 * (x - half));
-        return percent_with_error(x, half);
-    };
     if (const auto entry = traits.domain ? traits.domain->entry(d.rect) : std::nullopt)
         return {"probability of an entry",
             fmt::format("Entry {} is drawn with {}, p says {}.", *entry,
                 with_error(d.drawn, half_width_95 * d.drawn_error),
                 with_error(d.claimed, half_width_95 * d.claimed_error))};
     return {"share of a region",
-        fmt::format("Of the draws {} are {}, where p has {}.", share(d.drawn, d.drawn_error),
-            region_text(d.rect, traits), share(d.claimed, d.claimed_error))};
+        fmt::format("Of the draws {} are {}, where p has {}.", share_text(d.drawn, d.drawn_error),
+            region_text(d.rect, traits), share_text(d.claimed, d.claimed_error))};
 }
 
 std::optional<Concentration> concentration_of(const CheckAt& c) {
     if (!c.plan || c.integrals.leaves.empty() || c.observations.counts.empty()) return {};
     // The chart of an infinite line is fitted to the draws, so that they are even on it whatever they are on the line.
     if (c.traits.domain && c.traits.domain->domain().is_infinite()) return {};
-    const NodeShares shares(c);
+    const NodeShares shares(*c.plan, c.integrals, c.observations);
     if (!shares.known()) return {};
     const Tree& tree = c.plan->tree;
     double drawn = 0, claimed = 0, square = 0, occupied = 0;

@@ -12,6 +12,10 @@ using ::testing::HasSubstr;
 using Compared = Concentration::Compared;
 
 const CheckAt& at(const Explained& r) { return r.outcomes.at(0).at.at(0).at(0); }
+std::optional<ShareDifference> difference_in(const Explained& r) {
+    const CheckAt& c = at(r);
+    return largest_difference(*c.plan, c.integrals, c.observations);
+}
 
 TEST(DifferencesOfShares, AreThoseOfTheRegion) {
     // 40 % of the draws go to x > 0, where p has a half.
@@ -21,14 +25,14 @@ TEST(DifferencesOfShares, AreThoseOfTheRegion) {
         return w;
     };
     const Explained r = checked(made(draw, cosine_pdf, 3));
-    const auto d = largest_difference(at(r));
+    const auto d = difference_in(r);
     ASSERT_TRUE(d);
     EXPECT_TRUE(d->drawn > 0 && d->drawn < 1 && d->claimed > 0 && d->claimed < 1);
     const Vec3d w = from_chart(d->rect.at(0.5, 0.5));
     EXPECT_NEAR(d->drawn / d->claimed, w.x > 0 ? 0.8 : 1.2, 5 * d->drawn_error / d->claimed);
     EXPECT_THAT(sentence_of(*d, {}).text, HasSubstr("Of the draws"));
     const Explained constant = checked(made(cosine_draw, [](Vec3d o, Vec3d v) { return 1.5 * cosine_pdf(o, v); }));
-    EXPECT_FALSE(largest_difference(at(constant)));  // it changes no share
+    EXPECT_FALSE(difference_in(constant));  // it changes no share
 }
 
 TEST(Regions, HaveEndsThatDiffer) {

@@ -76,8 +76,8 @@ Sentences describe_worst(const CheckAt& c, const Finding& worst, Verdict& v) {
     const Answer& a = worst.second.sd > 0 ? worst.second : worst.first;
     Sentences out;
     double size = share_of(c, a);
-    if (compares_densities(worst.first.family))
-        if (const std::optional<ShareDifference> place = largest_difference(c)) {
+    if (compares_densities(worst.first.family) && c.plan)
+        if (const std::optional<ShareDifference> place = largest_difference(*c.plan, c.integrals, c.observations)) {
             out.push_back(sentence_of(*place, c.traits));
             size = std::fabs(place->difference());
             if (const auto spread = concentration_of(c))

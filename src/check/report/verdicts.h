@@ -35,10 +35,13 @@ struct ShareDifference {
     double errors() const;
 };
 /// The largest difference that is clear, in the smallest node that has most of it; none if no node differs clearly.
-std::optional<ShareDifference> largest_difference(const CheckAt& check);
+std::optional<ShareDifference> largest_difference(
+    const Plan& plan, const Integrals& integrals, const Observations& observations);
 /// "Of the draws 12.3 % +- 0.4 % are at polar angles 0 to 30 deg, where p has 6.1 % +- 0.1 %."
 Sentence sentence_of(const ShareDifference& difference, const Traits& traits);
 std::string region_text(const ChartRect& rect, const Traits& traits);
+/// "12.3 % +- 0.4 %", or the end of the interval that is next to 0 or 1.
+std::string share_text(double share, double error);
 
 /// The solid angles over which draws and p are spread: exp(entropy) over the same cells, sr. A uniform density has the
 /// solid angle of its support.

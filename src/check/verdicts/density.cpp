@@ -41,7 +41,7 @@ std::vector<NodeSums> node_sums(const Evidence& e) {
                 .solid_angle = c.solid_angle,
                 .variance = c.bridge.variance,
                 .doubt = c.bridge.doubt,
-                .largest = std::max(1 / o.independent, c.per_point * e.plan.tree.leaves()[l].q),
+                .largest = std::max(e.plan.largest_h() / o.independent, c.per_point * e.plan.tree.leaves()[l].q),
                 .known_to = known_to(e, l)};
             continue;
         }
@@ -60,27 +60,33 @@ NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::si
     const TreeNode& x = e.plan.tree.nodes()[node];
     const NodeSums &a = sums[static_cast<std::size_t>(x.child)], &b = sums[static_cast<std::size_t>(x.child) + 1];
     const double share = a.claimed / (a.claimed + b.claimed);
-    return split_between(a, b, e.observations.independent, floor_of_cut(x, share));
+    return split_between(a, b, e.observations.independent, floor_of_cut(x, share), e.pooled_draws());
 }
 
-NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double floor) {
+NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double floor, double pooled) {
     NodeSums both = a;
     both += b;
     NodeSplit out;
     const double r = out.share = a.claimed / both.claimed, less = std::min(r, 1 - r);
     out.difference = a.drawn - r * both.drawn;
-    out.floor = both.drawn * (floor + ((1 - r) * a.known_to + r * b.known_to) / both.claimed);
+    // Given the draws of two samplers in the whole and in the part, those of one have a hypergeometric distribution. It
+    // is that of a sum of independent indicators (Vatutin and Mikhailov 1982), so that Bennett's inequality holds.
+    out.visible = 1 - both.drawn * n / (both.claimed * pooled);
+    out.floor = out.visible * both.drawn * (floor + ((1 - r) * a.known_to + r * b.known_to) / both.claimed);
     const double c2 = both.claimed * both.claimed, to_variance = both.drawn * both.drawn / (c2 * c2);
     out.claim_variance = to_variance * (b.claimed * b.claimed * a.variance + a.claimed * a.claimed * b.variance);
     const auto fourth = [](double v) { return v * v * v * v; };
     out.doubt = to_variance * to_variance * (fourth(b.claimed) * a.doubt + fourth(a.claimed) * b.doubt);
-    out.variance =
-        both.drawn / both.claimed * ((1 - r) * (1 - r) * a.second + r * r * b.second) / n + out.claim_variance;
+    out.variance = out.visible * both.drawn / both.claimed * ((1 - r) * (1 - r) * a.second + r * r * b.second) / n +
+        out.claim_variance;
     out.one_draw = both.second / both.claimed;
     out.smaller_half = less * n * c2 / (both.second + 1e-300);
     return out;
 }
 
+namespace {
+
+/// Sums over replicates below each node down to the replicated depth, from those of its lowest rows.
 std::vector<Replicates> replicates_by_row(const Tree& tree, std::vector<Replicates> out) {
     const std::vector<TreeNode>& nodes = tree.nodes();
     for (std::size_t i = nodes.size(); i-- > 0;) {
@@ -93,45 +99,78 @@ std::vector<Replicates> replicates_by_row(const Tree& tree, std::vector<Replicat
     return out;
 }
 
-namespace {
+/// The replicates of one sampler by node.
+class SplitSets {
+public:
+    SplitSets(const Tree& tree, const Observations& o)
+        : tree_(tree), sets_(replicates_by_row(tree, o.node_by_set)), draw_(replicate_sets / o.scrambled) {}
+
+    /// What the first half of a node has beyond its share.
+    ReplicateMean<Replicates> at(std::size_t node, const NodeSplit& s) const {
+        const TreeNode& x = tree_.nodes()[node];
+        const Replicates &whole = sets_[static_cast<std::size_t>(x.row)],
+                         &half = sets_[static_cast<std::size_t>(tree_.nodes()[static_cast<std::size_t>(x.child)].row)];
+        Replicates y;
+        for (std::size_t k = 0; k < y.size(); ++k) y[k] = (half[k] - s.share * whole[k]) * draw_;
+        return {y, s.one_draw * draw_};
+    }
+
+private:
+    const Tree& tree_;
+    std::vector<Replicates> sets_;
+    double draw_;
+};
+
+/// Of the draws, and of a second sampler; empty without replicates.
+std::vector<SplitSets> split_sets(const Evidence& e) {
+    std::vector<SplitSets> out;
+    for (const Observations* o : {&e.observations, e.second}) {
+        if (!o) continue;
+        if (o->scrambled == 0) return {};
+        out.emplace_back(e.plan.tree, *o);
+    }
+    return out;
+}
 
 /// drawn: the sum over the node, as in `test_nodes`.
-Answer answer_of_sets(
-    const Evidence& e, const std::vector<Replicates>& sets, std::size_t node, const NodeSplit& s, double drawn) {
-    const TreeNode& x = e.plan.tree.nodes()[node];
-    const Replicates &whole = sets[static_cast<std::size_t>(x.row)],
-                     &half = sets[static_cast<std::size_t>(e.plan.tree.nodes()[static_cast<std::size_t>(x.child)].row)];
-    const double draw = replicate_sets / e.observations.scrambled;
-    Replicates y;
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] = (half[k] - s.share * whole[k]) * draw;
-    const ReplicateMean of_sets(y, s.one_draw * draw);
-    const double v = of_sets.variance + s.claim_variance;
+Answer answer_of_sets(std::span<const SplitSets> sets, std::size_t node, const NodeSplit& s, double drawn) {
+    Estimate claimed{.value = 0, .variance = s.claim_variance, .doubt = s.doubt};
+    const auto doubt_of = [](double variance) { return 2 * variance * variance / (replicate_sets - 1); };
+    for (const SplitSets& second : sets.subspan(1)) {
+        const ReplicateMean mean = second.at(node, s);
+        claimed.add({mean.mean, mean.variance, doubt_of(mean.variance)});
+    }
+    const ReplicateMean mean = sets[0].at(node, s);
+    const double v = mean.variance + claimed.variance;
+    // Replicates are compared with replicates, so that the whole difference between two samplers is visible.
     Answer a{.family = Family::node_sets,
         .member = static_cast<int>(node),
-        .difference = of_sets.mean,
+        .difference = mean.mean - claimed.value,
         .sd = std::sqrt(v),
-        .floor = s.floor,
+        .floor = s.floor / s.visible,
         .p = 1,
         .expected = s.share * drawn,
-        .claimed = s.claim_variance / (v + 1e-300)};
-    a.p = student_p_of(std::fabs(of_sets.mean) - s.floor, v,
-        freedom(v, s.doubt + 2 * of_sets.variance * of_sets.variance / (replicate_sets - 1)));
+        .claimed = claimed.variance / (v + 1e-300)};
+    a.p = student_p_of(std::fabs(a.difference) - a.floor, v, freedom(v, claimed.doubt + doubt_of(mean.variance)));
     return a;
+}
+
+/// The least number of draws of a part: expected, drawn, and of a second sampler.
+double least_draws(const Evidence& e, double drawn, double claimed) {
+    const double n = e.observations.independent, least = std::min(drawn, claimed) * n;
+    return e.second ? std::min(least, claimed * e.pooled_draws() - drawn * n) : least;
 }
 
 }  // namespace
 
 void test_nodes(const Evidence& e, const Visit& visit) {
-    if (!e.source.has_density()) return;
+    if (!e.has_density()) return;
     const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
     const std::vector<NodeSums> sums = node_sums(e);
-    const double n = e.observations.independent;
-    const bool by_sets = e.observations.scrambled > 0;
-    const std::vector<Replicates> sets =
-        by_sets ? replicates_by_row(e.plan.tree, e.observations.node_by_set) : std::vector<Replicates>();
+    const std::vector<SplitSets> sets = split_sets(e);
     std::vector<double> chi(static_cast<std::size_t>(e.plan.tree.depth()) + 1), degrees(chi.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (nodes[i].child < 0 || std::min(sums[i].drawn, sums[i].claimed) * n < e.least) continue;
+        if (nodes[i].child < 0 || least_draws(e, sums[i].drawn, sums[i].claimed) < e.least) continue;
         const NodeSplit s = split_of(e, sums, i);
         const double z2 =
             bennett_z2(std::fabs(s.difference) - s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt));
@@ -149,8 +188,8 @@ void test_nodes(const Evidence& e, const Visit& visit) {
         ++degrees[depth];
         // The mean of a replicate must be nearly normal: with fewer draws the tail of Student's t is wrong by orders of
         // magnitude.
-        if (by_sets && nodes[i].depth < replicated_depth && s.smaller_half / replicate_sets >= e.least)
-            visit(answer_of_sets(e, sets, i, s, sums[i].drawn));
+        if (!sets.empty() && nodes[i].depth < replicated_depth && s.smaller_half / replicate_sets >= e.least)
+            visit(answer_of_sets(sets, i, s, sums[i].drawn));
     }
     for (std::size_t d = 0; d < chi.size(); ++d)
         if (degrees[d] > 0)
@@ -192,8 +231,8 @@ void add_leaves(const Evidence& e, ByBand<Band>& to) {
                 band.sums.variance += leaf.bridge.variance;
                 band.sums.doubt += leaf.bridge.doubt;
                 band.sums.known_to += known_to(e, l);
-                band.sums.largest =
-                    std::max({band.sums.largest, 1 / e.observations.independent, leaf.per_point * tree.leaves()[l].q});
+                band.sums.largest = std::max({band.sums.largest, e.plan.largest_h() / e.observations.independent,
+                    leaf.per_point * tree.leaves()[l].q});
                 if (from <= k || past >= k + 1) band.moved += moved * leaf.bridge.value / total;
             }
         }
@@ -218,8 +257,7 @@ ByBand<Band> bands_of(const Evidence& e) {
 }  // namespace
 
 void test_bands(const Evidence& e, const Visit& visit) {
-    if (!e.source.has_density()) return;
-    const double n = e.observations.independent;
+    if (!e.has_density()) return;
     const ByBand<Band> finest = bands_of(e);
     for (std::size_t axis = 0; axis < chart_axes; ++axis)
         for (std::size_t width = 1; width < bands; width *= 2)
@@ -232,9 +270,10 @@ void test_bands(const Evidence& e, const Visit& visit) {
                     to.moved += from.moved;
                 }
                 const NodeSums &a = inside.sums, &b = outside.sums;
-                if (std::min(a.drawn + b.drawn, a.claimed + b.claimed) * n < e.least) continue;
+                if (least_draws(e, a.drawn + b.drawn, a.claimed + b.claimed) < e.least) continue;
                 const double share = a.claimed / (a.claimed + b.claimed);
-                const NodeSplit s = split_between(a, b, n, detection_floor * std::min(share, 1 - share) + inside.moved);
+                const NodeSplit s = split_between(a, b, e.observations.independent,
+                    detection_floor * std::min(share, 1 - share) + inside.moved, e.pooled_draws());
                 const double z2 = bennett_z2(std::fabs(s.difference) - s.floor, s.variance,
                     std::max(a.largest, b.largest), freedom(s.variance, s.doubt));
                 visit({.family = Family::band,

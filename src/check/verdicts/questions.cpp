@@ -48,6 +48,12 @@ bool is_of_f(Family f) {
         f == Family::albedo;
 }
 
+void test_distribution(const Evidence& e, const Visit& visit) {
+    test_sums(e, visit);
+    test_nodes(e, visit);
+    test_bands(e, visit);
+}
+
 }  // namespace crescent::check
 
 namespace crescent::check::kinds {

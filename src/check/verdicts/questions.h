@@ -3,7 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string_view>
 
 #include "check/estimate/observations.h"
@@ -72,11 +75,23 @@ struct Evidence {
     const Plan& plan;
     const Integrals& integrals;
     const Observations& observations;
+    /// The draws of a second sampler. The right side is then the mean over the draws of both, which holds if they have
+    /// one distribution.
+    const Observations* second = nullptr;
     /// Nodes with fewer expected draws are not tested.
     double least = least_count;
+
+    /// Whether there is a right side: a density, or draws of a second sampler.
+    bool has_density() const { return second || source.has_density(); }
+    /// Number of draws of which the right side is the mean; infinite for integrals.
+    double pooled_draws() const {
+        return second ? observations.independent + second->independent : std::numeric_limits<double>::infinity();
+    }
 };
 
 // Each calls `visit` for every member of its families.
+/// Whole sums, nodes and bands: all that compares how the draws are distributed.
+void test_distribution(const Evidence& e, const Visit& visit);
 void test_sums(const Evidence& e, const Visit& visit);
 void test_nodes(const Evidence& e, const Visit& visit);
 void test_bands(const Evidence& e, const Visit& visit);
@@ -89,24 +104,29 @@ bool tail_may_be_heavy(std::span<const double> weights);
 /// Whether their mean can be compared with the integral of f cos.
 bool mean_can_be_tested(const Evidence& e);
 
-/// The tolerance of a whole sum: a share of the sum itself (mass, bridge) or of the spread of h (slope, centre), and
-/// for a logarithm the rounding of p in single precision.
-double floor_of_sum(const Evidence& e, int integrand);
-/// False for the mass if every draw is a direction: the draws then add no variance. If none of 2^16 draws at either
-/// stage is without a sample, the share of such draws is below the detection floor with probability 1 - 1e-11.
-bool draws_vary(const Evidence& e, int integrand);
-/// The variance of a whole sum from independent draws, or its replacement if the draws do not vary.
-double drawn_variance(const Evidence& e, int integrand);
-/// The variance of one draw due to leaves without draws: replicates that all miss them do not show it.
-Values unmet_variance(const Evidence& e);
+/// A whole sum on both sides, by independent draws or by replicates.
+struct SumComparison {
+    double difference = 0, floor = 0;
+    double drawn_variance = 0, claim_variance = 0;
+    double freedom = 0;  // degrees of freedom of the sum of both
+    double largest = 0;  // largest single term, for Bennett's inequality; 0: Student's t
+    double visible = 1;  // part of a difference between two samplers that the right side, the mean of both, shows
+    double variance() const { return drawn_variance + claim_variance; }
+    double p() const;
+};
+/// A whole sum by both kinds of draws.
+struct WholeSum {
+    SumComparison by_draws;
+    std::optional<SumComparison> by_sets;  // none without replicates, and for the mass if every draw is a direction
+};
+std::array<WholeSum, integrands> compare_sums(const Evidence& e);
+
 /// How well h p of a leaf is known: as well as a tabulated p, and as the arithmetic of the sampler allows. Where
 /// rounding makes p 0 or too small, the draws show how much it may be.
 inline double known_to(const Evidence& e, std::size_t leaf) {
     const LeafIntegral& x = e.integrals.leaves[leaf];
     return x.known_to + x.rounding * std::max(x.bridge.value, e.observations.leaves[leaf] / e.observations.independent);
 }
-/// Mean of a whole sum over the replicates.
-ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand);
 
 /// O and C of every node, from its leaves, and the division of its h between its halves.
 struct NodeSums {
@@ -121,14 +141,15 @@ struct NodeSplit {
     double floor = 0, variance = 0, doubt = 0, claim_variance = 0;
     double smaller_half = 0;  // expected draws
     double one_draw = 0;      // weight of one draw: E[h^2] / E[h]
+    double visible = 1;       // as for a whole sum
 };
 /// The tolerance of a cut, in shares of the node's draws: the detection floor of its smaller half, and the draws that
 /// rounding by the node's step moves across the cut and across the other edges of the node.
 double floor_of_cut(const TreeNode& node, double share);
-/// Sums over replicates below each node down to the replicated depth, from those of its lowest rows.
-std::vector<Replicates> replicates_by_row(const Tree& tree, std::vector<Replicates> lowest);
-/// Divides a whole into a part `a` and the rest `b`. floor: tolerance in shares of the draws of the whole.
-NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double floor);
+/// Divides a whole into a part `a` and the rest `b`. n: number of draws. floor: tolerance in shares of the draws of the
+/// whole. pooled: as in `Evidence`.
+NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double floor,
+    double pooled = std::numeric_limits<double>::infinity());
 NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::size_t node);
 
 }  // namespace crescent::check

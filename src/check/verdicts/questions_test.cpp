@@ -40,8 +40,11 @@ TEST(TestsOfDensity, AConstantFactorIsADifferenceOfTheMass) {
     EXPECT_LT(found->p(), 1e-10);
     EXPECT_NEAR(found->answer.difference, -0.02, 1e-3);
     EXPECT_NEAR(found->answer.expected, 1.02, 1e-3);
-    EXPECT_FALSE(draws_vary(e.evidence(), mass));  // every draw is a direction
-    EXPECT_TRUE(draws_vary(e.evidence(), bridge));
+    const auto sums = compare_sums(e.evidence());
+    EXPECT_EQ(sums[mass].by_draws.largest, 0);  // every draw is a direction: they have no variance
+    EXPECT_FALSE(sums[mass].by_sets);
+    EXPECT_GT(sums[bridge].by_draws.largest, 0);
+    EXPECT_TRUE(sums[bridge].by_sets);
     EXPECT_GT(e.least(test_nodes, Family::node)->p(), 1e-3);  // shares are right
 }
 

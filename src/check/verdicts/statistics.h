@@ -32,18 +32,6 @@ inline double bennett_z2(double d, double v, double b, double nu) {
 /// Two-sided.
 inline double bennett_p(double z2) { return std::min(1.0, 2 * math::exp(-z2 / 2)); }
 
-/// The difference that Bennett's test detects with the stated power.
-inline double needed_by_bennett(double floor, double v, double b, double nu, double level) {
-    const double z2 = -2 * math::log(level / 2);
-    double low = 0, high = 1;
-    while (bennett_z2(high, v, b, nu) < z2 && high < 1e6) high *= 2;
-    for (int k = 0; k < 60; ++k) {
-        const double middle = (low + high) / 2;
-        (bennett_z2(middle, v, b, nu) < z2 ? low : high) = middle;
-    }
-    return floor + high + power_quantile * std::sqrt(v);
-}
-
 /// Mean and variance of the mean of replicates, where one draw changes a replicate by `jump`. The variance is at least
 /// `least_jumps`^2 of a jump: a count that is n in most replicates and n + 1 in a few sometimes shows no spread, and
 /// Student's t would then be infinite.

@@ -36,8 +36,7 @@ double rounding_of_sum(const Evidence& e, std::size_t q) {
     return out;
 }
 
-}  // namespace
-
+/// The variance of one draw due to leaves without draws: replicates that all miss them do not show it.
 Values unmet_variance(const Evidence& e) {
     Values out{};
     for (std::size_t l = 0; l < e.integrals.leaves.size(); ++l) {
@@ -50,72 +49,126 @@ Values unmet_variance(const Evidence& e) {
     return out;
 }
 
-ReplicateMean<Replicates> replicate_mean(const Evidence& e, int integrand) {
-    const Observations& o = e.observations;
-    const auto q = static_cast<std::size_t>(integrand);
+/// Mean of a whole sum over the replicates.
+ReplicateMean<Replicates> replicate_mean(const Observations& o, std::size_t q) {
     Replicates y;
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = o.by_set[q][k] * replicate_sets / o.scrambled;
     const double one_draw = std::sqrt(o.sums[q].square / std::max(o.sums[mass].sum, 1.0));
     return {y, one_draw * replicate_sets / o.scrambled};
 }
 
-double floor_of_sum(const Evidence& e, int integrand) {
-    const auto q = static_cast<std::size_t>(integrand);
+/// The tolerance of a whole sum: a share of the sum itself (mass, bridge) or of the spread of h (slope, centre), and
+/// for a logarithm the rounding of p in single precision.
+double floor_of_sum(const Evidence& e, std::size_t q) {
     const Sums& s = e.observations.sums[q];
     const double n = e.observations.independent;
     // Rounding always to one side changes h by half a step on average.
     const double known_to = e.integrals.known_to[q] + rounding_of_sum(e, q) + e.plan.per_step[q] / 2;
     // The integral of p lacks what its points do not resolve, where this share of the draws is.
-    const double unresolved = integrand == mass ? e.observations.share_unresolved() : 0;
-    if (integrand < slope)
-        return detection_floor * std::max(s.sum / n, e.integrals.sums[q].value) + known_to + unresolved;
-    return detection_floor * std::sqrt(s.square / n) + (integrand == slope ? ulp : 0) + known_to;
+    const double unresolved = q == mass ? e.observations.share_unresolved() : 0;
+    if (q < slope) return detection_floor * std::max(s.sum / n, e.integrals.sums[q].value) + known_to + unresolved;
+    return detection_floor * std::sqrt(s.square / n) + (q == slope ? ulp : 0) + known_to;
 }
 
-bool draws_vary(const Evidence& e, int integrand) {
-    return integrand != mass || e.observations.sums[mass].sum < e.observations.independent;
+/// Mean and mean square of the values of a sum, over all draws that have one distribution.
+struct Moments {
+    double mean, square;
+};
+Moments moments_of(const Evidence& e, std::size_t q) {
+    const Sums& first = e.observations.sums[q];
+    if (!e.second) return {first.sum / e.observations.independent, first.square / e.observations.independent};
+    const Sums& second = e.second->sums[q];
+    return {(first.sum + second.sum) / e.pooled_draws(), (first.square + second.square) / e.pooled_draws()};
 }
 
-double drawn_variance(const Evidence& e, int integrand) {
-    const Sums& s = e.observations.sums[static_cast<std::size_t>(integrand)];
-    const double n = e.observations.independent, mean = s.sum / n;
-    return draws_vary(e, integrand) ? std::max(s.square / n - mean * mean, 0.0) / n : least_spread * least_spread;
+/// False for the mass if every draw is a direction: the draws then add no variance. If none of 2^16 draws at either
+/// stage is without a sample, the share of such draws is below the detection floor with probability 1 - 1e-11.
+bool draws_vary(const Evidence& e, std::size_t q) { return q != mass || moments_of(e, q).mean < 1; }
+
+/// A bound of a value: ln q, unlike h ln p, has none of its own.
+double largest_value(const Evidence& e, std::size_t q) {
+    double out = 1;
+    if (q != slope || !e.plan.estimates) return out;
+    const std::vector<Leaf>& leaves = e.plan.tree.leaves();
+    for (std::size_t l = 0; l < leaves.size(); ++l)
+        if (e.integrals.leaves[l].bridge.value > 0)
+            out = std::max(out, e.plan.largest_h() * std::fabs(Plan::log_of(leaves[l].q) - e.plan.median_log_p));
+    return out;
+}
+
+SumComparison compare_draws(const Evidence& e, std::size_t q) {
+    const double n = e.observations.independent;
+    const Estimate& claimed = e.integrals.sums[q];
+    const Moments moments = moments_of(e, q);
+    const bool vary = draws_vary(e, q);
+    SumComparison out{.difference = e.observations.sums[q].sum / n - claimed.value,
+        .floor = floor_of_sum(e, q),
+        .drawn_variance =
+            vary ? std::max(moments.square - moments.mean * moments.mean, 0.0) / n : least_spread * least_spread,
+        .claim_variance = claimed.variance,
+        .freedom = 0,
+        .largest = vary ? largest_value(e, q) / n : 0,
+        .visible = 1 - n / e.pooled_draws()};
+    out.floor *= out.visible;
+    out.drawn_variance *= out.visible;
+    out.freedom = freedom(out.variance(), claimed.doubt);
+    return out;
+}
+
+/// Draws of a second sampler are compared by its own replicates, so that the whole difference is visible.
+std::optional<SumComparison> compare_sets(const Evidence& e, std::size_t q, double unmet) {
+    const Observations& o = e.observations;
+    if (o.scrambled == 0 || (e.second && e.second->scrambled == 0) || !draws_vary(e, q)) return {};
+    const auto doubt_of = [](double variance) { return 2 * variance * variance / (replicate_sets - 1); };
+    Estimate claimed = e.integrals.sums[q];
+    if (e.second) {
+        const ReplicateMean<Replicates> sets = replicate_mean(*e.second, q);
+        claimed = {sets.mean, sets.variance, doubt_of(sets.variance)};
+    }
+    const ReplicateMean<Replicates> sets = replicate_mean(o, q);
+    SumComparison out{.difference = sets.mean - claimed.value,
+        .floor = floor_of_sum(e, q),
+        .drawn_variance = sets.variance + unmet / o.scrambled,
+        .claim_variance = claimed.variance,
+        .freedom = 0,
+        .largest = 0,
+        .visible = 1};
+    out.freedom = freedom(out.variance(), claimed.doubt + doubt_of(sets.variance));
+    return out;
+}
+
+}  // namespace
+
+double SumComparison::p() const {
+    const double beyond = std::fabs(difference) - floor;
+    return largest > 0 ? bennett_p(bennett_z2(beyond, variance(), largest, freedom))
+                       : student_p_of(beyond, variance(), freedom);
+}
+
+std::array<WholeSum, integrands> compare_sums(const Evidence& e) {
+    const Values unmet = unmet_variance(e);
+    std::array<WholeSum, integrands> out;
+    for (std::size_t q = 0; q < integrands; ++q) out[q] = {compare_draws(e, q), compare_sets(e, q, unmet[q])};
+    return out;
 }
 
 void test_sums(const Evidence& e, const Visit& visit) {
-    if (!e.source.has_density()) return;
-    const Observations& o = e.observations;
-    const double n = o.independent;
-    const Values unmet = unmet_variance(e);
+    if (!e.has_density()) return;
+    const std::array<WholeSum, integrands> sums = compare_sums(e);
     for (int q = 0; q < integrands; ++q) {
-        const auto index = static_cast<std::size_t>(q);
-        const Estimate& claimed = e.integrals.sums[index];
-        const double mean = o.sums[index].sum / n;
-        const double floor = floor_of_sum(e, q);
-        Answer a{.family = sum_kinds[q].family,
-            .member = q >= centre_x ? q - centre_x : 0,
-            .difference = mean - claimed.value,
-            .sd = 0,
-            .floor = floor,
-            .p = 1,
-            .expected = claimed.value};
-        const double v = drawn_variance(e, q) + claimed.variance;
-        a.sd = std::sqrt(v);
-        a.claimed = claimed.variance / (v + 1e-300);
-        const double beyond = std::fabs(a.difference) - floor, nu = freedom(v, claimed.doubt);
-        const bool vary = draws_vary(e, q);
-        a.p = vary ? bennett_p(bennett_z2(beyond, v, 1 / n, nu)) : student_p_of(beyond, v, nu);
-        visit(a);
-        if (o.scrambled == 0 || !vary) continue;
-        const ReplicateMean<Replicates> sets = replicate_mean(e, q);
-        a.family = sum_kinds[q].by_sets;
-        a.difference = sets.mean - claimed.value;
-        const double w = sets.variance + claimed.variance + unmet[index] / o.scrambled;
-        a.sd = std::sqrt(w);
-        a.claimed = claimed.variance / (w + 1e-300);
-        a.p = student_p_of(std::fabs(a.difference) - floor, w,
-            freedom(w, claimed.doubt + 2 * sets.variance * sets.variance / (replicate_sets - 1)));
-        visit(a);
+        const auto visit_sum = [&](Family family, const SumComparison& s) {
+            visit({.family = family,
+                .member = q >= centre_x ? q - centre_x : 0,
+                .difference = s.difference,
+                .sd = std::sqrt(s.variance()),
+                .floor = s.floor,
+                .p = s.p(),
+                .expected = e.integrals.sums[static_cast<std::size_t>(q)].value,
+                .claimed = s.claim_variance / (s.variance() + 1e-300)});
+        };
+        const WholeSum& s = sums[static_cast<std::size_t>(q)];
+        visit_sum(sum_kinds[q].family, s.by_draws);
+        if (s.by_sets) visit_sum(sum_kinds[q].by_sets, *s.by_sets);
     }
 }
 
