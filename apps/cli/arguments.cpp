@@ -33,24 +33,25 @@ std::string seconds(const std::string& text) {
 
 CLI::Validator whole_number(std::int64_t low, std::int64_t high) {
     const std::string range = fmt::format("{} to {}", low, high);
-    const auto wrong = [=](std::string& text) {
+    const auto find_mistake = [=](std::string& text) {
         std::int64_t value = 0;
         const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool good = error == std::errc{} && stop == text.data() + text.size() && value >= low && value <= high;
-        return good ? std::string() : fmt::format("expected a whole number from {}, not '{}'", range, printable(text));
+        const bool is_good = error == std::errc{} && stop == text.data() + text.size() && value >= low && value <= high;
+        return is_good ? std::string()
+                       : fmt::format("expected a whole number from {}, not '{}'", range, printable(text));
     };
-    return {wrong, range, ""};
+    return {find_mistake, range, ""};
 }
 
 CLI::Validator number(double low, double high) {
     const std::string range = fmt::format("{} to {}", low, high);
-    const auto wrong = [=](std::string& text) {
+    const auto find_mistake = [=](std::string& text) {
         char* end = nullptr;
         const double value = std::strtod(text.c_str(), &end);
-        const bool good = end != text.c_str() && *end == 0 && value >= low && value <= high;
-        return good ? std::string() : fmt::format("expected a number from {}, not '{}'", range, printable(text));
+        const bool is_good = end != text.c_str() && *end == 0 && value >= low && value <= high;
+        return is_good ? std::string() : fmt::format("expected a number from {}, not '{}'", range, printable(text));
     };
-    return {wrong, range, ""};
+    return {find_mistake, range, ""};
 }
 
 void timeout(CLI::App& command, double& to) {
@@ -60,10 +61,10 @@ void timeout(CLI::App& command, double& to) {
 }
 
 CLI::Validator one_of(const std::vector<std::string>& words) {
-    const auto wrong = [=](std::string& text) {
+    const auto find_mistake = [=](std::string& text) {
         return std::ranges::find(words, text) != words.end() ? std::string() : expected_one_of(words, text);
     };
-    return {wrong, "", ""};
+    return {find_mistake, "", ""};
 }
 
 namespace {
@@ -168,22 +169,23 @@ std::vector<std::string> words(const CLI::App& command, bool flags = true) {
 
 /// Returns the message for a word that a command does not accept.
 std::string unexpected(const CLI::App& command, const std::string& word) {
-    const std::string shown = "'" + printable(word) + "'";
-    const std::string close = did_you_mean(word.substr(0, word.find('=')), words(command));
-    if (word.starts_with('-')) return "no flag " + shown + close;
+    const std::string quoted_word = "'" + printable(word) + "'";
+    const std::string suggestion = did_you_mean(word.substr(0, word.find('=')), words(command));
+    if (word.starts_with('-')) return "no flag " + quoted_word + suggestion;
     if (!command.get_subcommands([](const CLI::App*) { return true; }).empty())
-        return fmt::format("no command {}: expected one of {}{}", shown, fmt::join(words(command, false), ", "), close);
+        return fmt::format(
+            "no command {}: expected one of {}{}", quoted_word, fmt::join(words(command, false), ", "), suggestion);
     for (const CLI::Option* option : command.get_options())
         if (option->get_positional())
-            return fmt::format("takes one {}, and {} is a second one", option->get_name(true), shown);
-    return fmt::format("takes flags alone, and {} is none{}", shown, close);
+            return fmt::format("takes one {}, and {} is a second one", option->get_name(true), quoted_word);
+    return fmt::format("takes flags alone, and {} is none{}", quoted_word, suggestion);
 }
 
 /// Returns the parser's error in two lines, with the nearest valid word for an unknown one.
 std::string misuse(const CLI::App& app, const CLI::ParseError& error) {
-    const auto used = app.get_subcommands();
-    const CLI::App& command = used.empty() ? app : *used.front();
-    const std::string name = used.empty() ? "crescent" : "crescent " + command.get_name();
+    const auto subcommands = app.get_subcommands();
+    const CLI::App& command = subcommands.empty() ? app : *subcommands.front();
+    const std::string name = subcommands.empty() ? "crescent" : "crescent " + command.get_name();
     std::string text = name + ": " + error.what();
     const std::vector<std::string> extra = app.remaining(true);
     if (dynamic_cast<const CLI::ExtrasError*>(&error) && !extra.empty()) {
@@ -202,10 +204,10 @@ Work print_text(std::FILE* to, const std::string& text, int code) {
 
 /// Returns whether a flag that may have no value has an empty one: CLI11 does not tell them apart.
 bool has_empty_value(std::span<char*> arguments, std::string_view flag) {
-    bool inside = false;
+    bool is_after_flag = false;
     for (const std::string_view argument : arguments) {
-        if (argument == std::string(flag) + "=" || (inside && argument.empty())) return true;
-        if (argument.starts_with('-')) inside = argument == flag;
+        if (argument == std::string(flag) + "=" || (is_after_flag && argument.empty())) return true;
+        if (argument.starts_with('-')) is_after_flag = argument == flag;
     }
     return false;
 }

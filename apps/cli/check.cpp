@@ -108,9 +108,10 @@ Grid grid_of(const CheckFlags& flags) {
     Grid out;
     for (const std::string& text : flags.wo) {
         const Vec3d w = direction_of(text);
-        const auto rounded = [](double v) { return std::round(v * 1e9) / 1e9; };  // 60 for 60, not 60.00000000000001
-        const double theta = rounded(math::acos(std::clamp(w.z, -1.0, 1.0)) * 180 / pi),
-                     turn = rounded(math::atan2(w.y, w.x) * 180 / pi);
+        // 60 for 60, not 60.00000000000001
+        const auto round_angle = [](double v) { return std::round(v * 1e9) / 1e9; };
+        const double theta = round_angle(math::acos(std::clamp(w.z, -1.0, 1.0)) * 180 / pi),
+                     turn = round_angle(math::atan2(w.y, w.x) * 180 / pi);
         out.emplace_back(theta, theta == 0 ? 0 : turn < 0 ? turn + 360 : turn);
     }
     return out;
@@ -125,13 +126,13 @@ std::string shortest(double v) {
 }
 
 TestSettings test_settings_of(const CheckFlags& flags) {
-    TestSettings r = flags.full ? TestSettings::thorough() : TestSettings::quick();
+    TestSettings settings = flags.full ? TestSettings::thorough() : TestSettings::quick();
     if (!(flags.alpha > 0 && flags.alpha < 1)) throw InputError({"--alpha", 0, 0}, "is between 0 and 1");
-    r.alpha = flags.alpha;
-    r.seed = flags.seed;
-    r.pictures = !flags.html.empty() || !flags.json.empty();
-    r.accept_few = flags.accept_few;
-    return r;
+    settings.alpha = flags.alpha;
+    settings.seed = flags.seed;
+    settings.pictures = !flags.html.empty() || !flags.json.empty();
+    settings.accept_few = flags.accept_few;
+    return settings;
 }
 
 namespace {
@@ -193,13 +194,13 @@ std::optional<Domain> domain_of(const CheckFlags& flags) {
 
 /// The sampler in a Python file or of --exec; null if there is none.
 std::shared_ptr<const SamplerAdapter> program_of(const CheckFlags& flags, const ProgressMonitor& monitor) {
-    const bool python = names_python_sampler(flags.arm);
-    if (python && !flags.settings.empty())
+    const bool is_python = names_python_sampler(flags.arm);
+    if (is_python && !flags.settings.empty())
         throw InputError({"--set " + flags.settings.front(), 0, 0},
             "is for built-in samplers, and " + flags.arm + " has its own parameters");
     const int neighbours = flags.neighbours > 0 ? flags.neighbours : default_neighbours;
     std::shared_ptr<const SamplerAdapter> out;
-    if (python) out = start_python_sampler(flags.arm, limits_of(flags, monitor), neighbours);
+    if (is_python) out = start_python_sampler(flags.arm, limits_of(flags, monitor), neighbours);
     else if (!flags.exec.empty())
         out = start_pipe(flags.exec, limits_of(flags, monitor), "", domain_of(flags), neighbours);
     if (out && flags.neighbours > 0 && out->traits().neighbours == 0)
@@ -315,11 +316,11 @@ void check_shader_options(const CheckFlags& flags) {
     }
     if (!flags.domain.empty() && flags.exec.empty() && flags.samples.empty())
         throw InputError({"--domain", 0, 0}, "needs --exec, --samples or a shader");
-    std::string given = flags.over.empty() ? "" : "--over";
+    std::string shader_flag = flags.over.empty() ? "" : "--over";
     for (const auto& [flag, values] : flags.shader)
-        if (!values.empty() && flag != "--device") given = flag;
-    if (!given.empty())
-        throw InputError({given, 0, 0}, "needs a shader: FILE.wgsl, FILE.glsl, FILE.hlsl or FILE.slang");
+        if (!values.empty() && flag != "--device") shader_flag = flag;
+    if (!shader_flag.empty())
+        throw InputError({shader_flag, 0, 0}, "needs a shader: FILE.wgsl, FILE.glsl, FILE.hlsl or FILE.slang");
 }
 
 /// Replaces this process by the host of shaders, which prints the adapters.
@@ -377,14 +378,14 @@ std::string given_sampler(const CheckFlags& flags) {
 }
 
 /// Writes the script, or says why there is none.
-void write_repro(const CheckFlags& flags, std::span<const CheckCase> check_cases, const CheckResult& j) {
+void write_repro(const CheckFlags& flags, std::span<const CheckCase> check_cases, const CheckResult& result) {
     if (flags.repro.empty()) return;
-    std::string why = why_no_repro(flags, check_cases, j);
+    std::string reason = why_no_repro(flags, check_cases, result);
     try {
-        if (const std::optional<std::string> script = repro_script(flags, check_cases, j))
+        if (const std::optional<std::string> script = repro_script(flags, check_cases, result))
             return write_whole(flags.repro, *script);
-    } catch (const SamplerError& e) { why = e.what(); }
-    print_to_stderr(fmt::format("--repro: {} is not written: {}\n", flags.repro, why));
+    } catch (const SamplerError& e) { reason = e.what(); }
+    print_to_stderr(fmt::format("--repro: {} is not written: {}\n", flags.repro, reason));
 }
 
 /// --patience and --accept-few are for programs, a Python interpreter among them, and for arms of experiments.
@@ -395,8 +396,9 @@ void check_limits(const CheckFlags& flags) {
         throw InputError({"--neighbours", 0, 0}, "needs --exec or a sampler in a Python file");
     if (!flags.exec.empty() || names_python_sampler(flags.arm) || names_shader(flags.arm) || is_experiment(flags))
         return;
-    for (const auto& [flag, given] : {std::pair("--patience", flags.patience > 0), {"--accept-few", flags.accept_few}})
-        if (given)
+    for (const auto& [flag, is_given] :
+        {std::pair("--patience", flags.patience > 0), {"--accept-few", flags.accept_few}})
+        if (is_given)
             throw InputError({flag, 0, 0}, "needs --exec, an experiment, or a sampler in a Python file or a shader");
 }
 
@@ -405,20 +407,20 @@ bool whole_list(const CheckFlags& flags) {
 }
 
 /// Right if each verdict is the expected one; inconclusive if others were only not decided.
-State state_of_list(const CheckResult& j) {
-    if (j.as_expected) return State::right;
-    const bool not_decided = j.unmet.empty() && std::ranges::all_of(j.verdicts, [](const Verdict& v) {
+State state_of_list(const CheckResult& result) {
+    if (result.as_expected) return State::right;
+    const bool is_undecided = result.unmet.empty() && std::ranges::all_of(result.verdicts, [](const Verdict& v) {
         return v.waived || v.expected || v.state == State::inconclusive;
     });
-    return not_decided ? State::inconclusive : State::wrong;
+    return is_undecided ? State::inconclusive : State::wrong;
 }
 
 /// With hundreds of cases, each ends at the first stage that leaves nothing open.
 TestSettings settings_of_list(const CheckFlags& flags) {
-    TestSettings r = test_settings_of(flags);
-    r.budget = flags.full ? check::CheckBudget::thorough() : check::CheckBudget::quick();
-    r.budget->stop_when_conclusive = !flags.full;
-    return r;
+    TestSettings settings = test_settings_of(flags);
+    settings.budget = flags.full ? check::CheckBudget::thorough() : check::CheckBudget::quick();
+    settings.budget->stop_when_conclusive = !flags.full;
+    return settings;
 }
 
 /// Returns the command that repeats the check. The output files are omitted, so that equal calls state equal commands.
@@ -440,9 +442,10 @@ std::string command_of(const CheckFlags& f) {
         if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
     for (const std::string& text : f.wo) out += " --wo " + shell_word(text);
     for (const std::string& text : f.expect) out += " --expect " + shell_word(text);
-    for (const auto& [flag, given] : {std::pair("--full", f.full), {"--planted", f.planted}, {"--describe", f.describe},
-             {"--accept-few", f.accept_few}, {"--allow-inconclusive", f.allow_inconclusive}})
-        if (given) out += std::string(" ") + flag;
+    for (const auto& [flag, is_given] :
+        {std::pair("--full", f.full), {"--planted", f.planted}, {"--describe", f.describe},
+            {"--accept-few", f.accept_few}, {"--allow-inconclusive", f.allow_inconclusive}})
+        if (is_given) out += std::string(" ") + flag;
     if (f.patience > 0) out += " --patience " + shortest(f.patience);
     if (f.timeout > 0) out += " --timeout " + shortest(f.timeout);
     if (f.alpha != 1e-3) out += " --alpha " + shortest(f.alpha);
@@ -463,29 +466,29 @@ void try_files(const CheckFlags& flags) {
 
 }  // namespace
 
-void write_files(const CheckFlags& flags, const CheckResult& j) {
+void write_files(const CheckFlags& flags, const CheckResult& result) {
     const ResultSource source{crescent::version(), crescent::commit(), command_of(flags)};
-    if (!flags.json.empty()) write_whole(flags.json, verdict_json(j, source));
-    if (!flags.junit.empty()) write_whole(flags.junit, verdict_junit(j));
-    if (!flags.sarif.empty()) write_whole(flags.sarif, verdict_sarif(j, place_of_sampler(flags), source));
-    if (!flags.html.empty()) write_whole(flags.html, verdict_html(j, source));
+    if (!flags.json.empty()) write_whole(flags.json, verdict_json(result, source));
+    if (!flags.junit.empty()) write_whole(flags.junit, verdict_junit(result));
+    if (!flags.sarif.empty()) write_whole(flags.sarif, verdict_sarif(result, place_of_sampler(flags), source));
+    if (!flags.html.empty()) write_whole(flags.html, verdict_html(result, source));
 }
 
 namespace {
 
 /// Logs how many queries a program will receive, before a long run.
 void log_cost(std::span<const CheckCase> check_cases, const TestSettings& settings, ProgressMonitor& monitor) {
-    std::size_t checked = 0;
-    bool program = false, light = false;
+    std::size_t case_count = 0;
+    bool has_program = false, has_light = false;
     for (const CheckCase& t : check_cases) {
-        checked += !t.baseline;
-        program = program || t.adapter->limited();
-        light = light || t.adapter->traits().wo == Traits::WoDomain::none;
+        case_count += !t.baseline;
+        has_program = has_program || t.adapter->limited();
+        has_light = has_light || t.adapter->traits().wo == Traits::WoDomain::none;
     }
-    if (!program || !settings.full) return;
-    const char* more = light ? ", and for each texel where p is a table, of up to ten million" : "";
-    monitor.log(fmt::format("--full makes at most {} queries: {} at each of {} w_o{}", checked * settings.questions,
-        settings.questions, checked, more));
+    if (!has_program || !settings.full) return;
+    const char* table_note = has_light ? ", and for each texel where p is a table, of up to ten million" : "";
+    monitor.log(fmt::format("--full makes at most {} queries: {} at each of {} w_o{}", case_count * settings.questions,
+        settings.questions, case_count, table_note));
 }
 
 /// Logs which device evaluates each sampler, where one is declared.
@@ -512,17 +515,17 @@ int describe_draws(const CheckFlags& flags, std::span<const CheckCase> check_cas
     settings.seed = flags.seed;
     if (flags.full) {
         settings.draws *= 16;
-        settings.draws_of_limited *= 16;
+        settings.limited_draws *= 16;
     }
-    const std::vector<check::Description> all = check::describe(check_cases, settings, monitor);
+    const std::vector<check::Description> descriptions = check::describe(check_cases, settings, monitor);
     monitor.clear();
     std::string text;
-    for (const check::Description& d : all) text += check::description_text(d) + "\n";
+    for (const check::Description& d : descriptions) text += check::description_text(d) + "\n";
     print(text);
     if (!flags.json.empty()) {
         const nlohmann::ordered_json out = {{"format", "crescent check descriptions 1"},
             {"version", crescent::version()}, {"commit", crescent::commit()}, {"command", command_of(flags)},
-            {"descriptions", check::description_json(all)}};
+            {"descriptions", check::description_json(descriptions)}};
         write_whole(flags.json, out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     }
     return passed;
@@ -533,29 +536,30 @@ int describe_draws(const CheckFlags& flags, std::span<const CheckCase> check_cas
 namespace {
 
 /// "2.1 s, 3.9 s of CPU time, 45 MB of memory at most; 9,700,000 evaluations ..."
-std::string cost_of(const CheckResult& j, double seconds) {
+std::string cost_of(const CheckResult& result, double seconds) {
     std::set<std::pair<std::string, std::string>> cases;
-    for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.check_case});
-    const Usage used = usage();
-    const double each =
-        static_cast<double>(j.evaluations) / static_cast<double>(std::max<std::size_t>(cases.size(), 1));
+    for (const Verdict& v : result.verdicts) cases.insert({v.arm, v.check_case});
+    const Usage process_usage = usage();
+    const double evaluations_per_case =
+        static_cast<double>(result.evaluations) / static_cast<double>(std::max<std::size_t>(cases.size(), 1));
     return fmt::format(
         "{:.1f} s, {:.1f} s of CPU time, {:.0f} MB of memory at most; {} evaluations of sample, pdf and f, {:.0f} in "
         "the "
         "mean of {} cases\n",
-        seconds, used.cpu_seconds, static_cast<double>(used.peak_memory) / 1e6, j.evaluations, each, cases.size());
+        seconds, process_usage.cpu_seconds, static_cast<double>(process_usage.peak_memory) / 1e6, result.evaluations,
+        evaluations_per_case, cases.size());
 }
 
 }  // namespace
 
-void print_verdicts(const CheckResult& j, bool verbose) {
-    if (verbose || !one_sampler(j)) return print(verdict_table(j));
+void print_verdicts(const CheckResult& result, bool verbose) {
+    if (verbose || !one_sampler(result)) return print(verdict_table(result));
     const Terminal terminal = terminal_of_stdout();
-    print_marked(screen_of(j, terminal.columns), terminal);
+    print_marked(screen_of(result, terminal.columns), terminal);
 }
 
-int check(const CheckFlags& given) {
-    CheckFlags flags = given;
+int check(const CheckFlags& call_flags) {
+    CheckFlags flags = call_flags;
     for (std::string* file : {&flags.json, &flags.junit, &flags.sarif, &flags.html, &flags.repro})
         // a sampler may call chdir
         if (!file->empty()) *file = std::filesystem::absolute(*file).string();
@@ -570,65 +574,66 @@ int check(const CheckFlags& given) {
         return list_adapters();
     try_files(flags);
     if (flags.planted) return check_planted(flags, monitor);
-    CheckResult j;
+    CheckResult result;
     std::vector<std::string> expected = flags.expect;
-    const bool same = std::erase(expected, "same") > 0;
-    if (same && flags.against.empty()) throw InputError({"--expect same", 0, 0}, "needs --against");
+    const bool expects_same = std::erase(expected, "same") > 0;
+    if (expects_same && flags.against.empty()) throw InputError({"--expect same", 0, 0}, "needs --against");
     const std::vector<Waiver> waivers = read_waivers(expected);
     try {
         const std::vector<CheckCase> check_cases = cases_for(flags, monitor);
         check_waivers(waivers, names_of(check_cases));
         log_devices(check_cases, monitor);
-        const bool number = check_cases.front().adapter && check_cases.front().adapter->traits().number;
-        if (number) {
+        const bool is_number = check_cases.front().adapter && check_cases.front().adapter->traits().number;
+        if (is_number) {
             if (flags.describe) throw InputError({"--describe", 0, 0}, "is for samplers of directions and points");
-            j = check_of_number(flags, check_cases.front().adapter, monitor);
+            result = check_of_number(flags, check_cases.front().adapter, monitor);
         } else {
             if (!flags.estimates.empty())
                 throw InputError({"--estimates", 0, 0},
                     "needs a sampler whose draws are values: domain=number in its handshake, or in Python");
             if (flags.describe) return describe_draws(flags, check_cases, monitor);
-            if (!flags.against.empty()) return check_against(flags, check_cases, waivers, same, monitor);
+            if (!flags.against.empty()) return check_against(flags, check_cases, waivers, expects_same, monitor);
             log_cost(check_cases, test_settings_of(flags), monitor);
-            j = run_checks(check_cases, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
+            result =
+                run_checks(check_cases, whole_list(flags) ? settings_of_list(flags) : test_settings_of(flags), monitor);
         }
-        write_repro(flags, check_cases, j);
-    } catch (const SamplerError& fault) { j = unchecked_result(fault, flags, given_sampler(flags)); }
-    if (!waivers.empty()) waive(j, waivers);
+        write_repro(flags, check_cases, result);
+    } catch (const SamplerError& fault) { result = unchecked_result(fault, flags, given_sampler(flags)); }
+    if (!waivers.empty()) waive(result, waivers);
     monitor.clear();
-    const bool all = whole_list(flags);
-    if (all) j.state = state_of_list(j);
-    print_verdicts(j, flags.verbose);
-    if (flags.verbose) print(cost_of(j, watch.seconds()));
-    if (all)
-        print(j.as_expected ? "every sampler gets the verdicts expected of it\n"
-                : j.state == State::inconclusive
+    const bool is_list = whole_list(flags);
+    if (is_list) result.state = state_of_list(result);
+    print_verdicts(result, flags.verbose);
+    if (flags.verbose) print(cost_of(result, watch.seconds()));
+    if (is_list)
+        print(result.as_expected ? "every sampler gets the verdicts expected of it\n"
+                : result.state == State::inconclusive
                 ? "every verdict that was decided is the expected one; --full decides more\n"
                 : "not every sampler gets the verdicts expected of it\n");
-    write_files(flags, j);
-    return exit_of(j.state, flags);
+    write_files(flags, result);
+    return exit_of(result.state, flags);
 }
 
 // ---- `crescent check A --against B`, and the report for a program that could not be checked.
 
 CheckResult unchecked_result(const SamplerError& fault, const CheckFlags& flags, const std::string& command) {
-    CheckResult j;
-    j.alpha = flags.alpha;
-    j.state = dynamic_cast<const SamplerTimeout*>(&fault) ? State::inconclusive : State::error;
+    CheckResult result;
+    result.alpha = flags.alpha;
+    result.state = dynamic_cast<const SamplerTimeout*>(&fault) ? State::inconclusive : State::error;
     for (std::string_view name : verdict_names) {
         Verdict v;
         v.arm = printable(command, 60);
         v.check_case = before_any_case;
         v.name = name;
-        v.state = j.state;
+        v.state = result.state;
         v.sentences = {name == verdict_names[0]
                 ? Sentence{"failure", "The sampler could not be checked: " + std::string(fault.what()) + "."}
                 : Sentence{"not evaluated", "It could not be queried: the sampler was not checked."}};
         v.expected = false;
-        j.verdicts.push_back(v);
+        result.verdicts.push_back(v);
     }
-    j.as_expected = false;
-    return j;
+    result.as_expected = false;
+    return result;
 }
 
 namespace {
@@ -644,11 +649,11 @@ std::vector<CheckCase> others_of(
     const std::vector<std::string> names = sampler_names();
     if (std::find(names.begin(), names.end(), flags.against) != names.end())
         return sampler_named_against(flags.against, a);
-    const std::string near = did_you_mean(flags.against, names);
-    if (!near.empty() && flags.against.find_first_of(" /") == std::string::npos)  // a name, not a command
-        throw InputError({"--against " + flags.against, 0, 0}, "no built-in arm" + near);
-    for (const char* end : {".csv", ".npy"})
-        if (flags.against.ends_with(end) && flags.against.find(' ') == std::string::npos)
+    const std::string suggestion = did_you_mean(flags.against, names);
+    if (!suggestion.empty() && flags.against.find_first_of(" /") == std::string::npos)  // a name, not a command
+        throw InputError({"--against " + flags.against, 0, 0}, "no built-in arm" + suggestion);
+    for (const char* extension : {".csv", ".npy"})
+        if (flags.against.ends_with(extension) && flags.against.find(' ') == std::string::npos)
             throw InputError({"--against " + flags.against, 0, 0},
                 "is a file of samples, which has no p and f elsewhere: give it as --samples FILE, and --against an arm "
                 "or a program");
@@ -657,26 +662,26 @@ std::vector<CheckCase> others_of(
 
 }  // namespace
 
-int check_against(
-    const CheckFlags& flags, std::vector<CheckCase> a, std::span<const Waiver> waivers, bool same, Progress& monitor) {
+int check_against(const CheckFlags& flags, std::vector<CheckCase> a, std::span<const Waiver> waivers, bool expects_same,
+    Progress& monitor) {
     std::erase_if(a, [](const CheckCase& t) { return t.baseline; });
     std::vector<CheckCase> b;
     try {
         b = others_of(flags, a, monitor);
     } catch (const SamplerError& fault) {  // B's own: A has responded
-        const CheckResult j = unchecked_result(fault, flags, flags.against);
+        const CheckResult result = unchecked_result(fault, flags, flags.against);
         monitor.clear();
-        print_verdicts(j, flags.verbose);
-        write_files(flags, j);
-        return exit_of(j.state, flags);
+        print_verdicts(result, flags.verbose);
+        write_files(flags, result);
+        return exit_of(result.state, flags);
     }
     log_devices(b, monitor);
-    CheckResult j = compare_samplers(a, b, test_settings_of(flags), same, monitor);
-    if (!waivers.empty()) waive(j, waivers);
+    CheckResult result = compare_samplers(a, b, test_settings_of(flags), expects_same, monitor);
+    if (!waivers.empty()) waive(result, waivers);
     monitor.clear();
-    print(against_text(j));
-    write_files(flags, j);
-    return exit_of(j.state, flags);
+    print(against_text(result));
+    write_files(flags, result);
+    return exit_of(result.state, flags);
 }
 
 }  // namespace crescent::cli

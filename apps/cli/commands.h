@@ -42,7 +42,7 @@ struct RunFlags {
 };
 int run(const RunFlags& flags);
 /// The file that was given, or the installed experiment of that name: `crescent run gallery`.
-std::string experiment_file(const std::string& given);
+std::string experiment_file(const std::string& word);
 
 struct JoinFlags {
     std::vector<std::string> parts;

@@ -21,15 +21,15 @@ std::vector<std::string> arms_of(const CompareFlags& flags) {
 }
 
 /// Reads a number for all arms, or for one by name, which overrides it.
-void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std::vector<std::string>& all,
+void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std::vector<std::string>& texts,
     const std::string& flag, const char* key) {
-    for (const std::string& text : all) {
+    for (const std::string& text : texts) {
         if (text.find('=') != std::string::npos) continue;
         for (const std::string& arm : arms_of(flags))
             out.push_back({{"arms", arm, key}, text, true, flag + " " + text});
     }
     const std::vector<std::string> arms = arms_of(flags);
-    for (const std::string& text : all) {
+    for (const std::string& text : texts) {
         if (text.find('=') == std::string::npos) continue;
         const auto [arm, value] = name_and_value(flag, text, "NAME=NUMBER");
         if (std::find(arms.begin(), arms.end(), arm) == arms.end())
@@ -43,7 +43,7 @@ void per_arm(std::vector<CompareFlag>& out, const CompareFlags& flags, const std
 /// too.
 void layers_of(std::vector<CompareFlag>& out, const CompareFlags& flags) {
     const std::vector<std::string> arms = arms_of(flags);
-    const auto named = [&](const std::string& text) {
+    const auto is_named = [&](const std::string& text) {
         const std::string name = text.substr(0, text.find('='));
         return name.size() < text.size() && (name == "reference" || std::count(arms.begin(), arms.end(), name));
     };
@@ -52,12 +52,12 @@ void layers_of(std::vector<CompareFlag>& out, const CompareFlags& flags) {
         else out.push_back({{"arms", name, "layer"}, layer, false, "--layer " + text});
     };
     for (const std::string& text : flags.layers) {
-        if (named(text)) continue;
+        if (is_named(text)) continue;
         for (const std::string& arm : arms) add(arm, text, text);
         add("reference", text, text);
     }
     for (const std::string& text : flags.layers)
-        if (named(text)) add(text.substr(0, text.find('=')), text.substr(text.find('=') + 1), text);
+        if (is_named(text)) add(text.substr(0, text.find('=')), text.substr(text.find('=') + 1), text);
 }
 
 std::vector<CompareFlag> flags_of(const CompareFlags& f) {
@@ -99,23 +99,23 @@ std::vector<CompareFlag> flags_of(const CompareFlags& f) {
 std::string command_of(const CompareFlags& f) {
     std::string out = "crescent compare";
     if (!f.file.empty()) out += " " + shell_word(f.file);
-    const auto all = [&](const char* flag, const std::vector<std::string>& values) {
+    const auto add = [&](const char* flag, const std::vector<std::string>& values) {
         for (const std::string& value : values) out += fmt::format(" {} {}", flag, shell_word(value));
     };
-    all("--arm", f.arms);
-    all("--reference", f.reference);
-    all("--region", f.regions);
-    all("--mask", f.masks);
-    all("--layer", f.layers);
-    all("--spp", f.spp);
-    all("--seconds", f.seconds);
-    all("--assert", f.assertions);
+    add("--arm", f.arms);
+    add("--reference", f.reference);
+    add("--region", f.regions);
+    add("--mask", f.masks);
+    add("--layer", f.layers);
+    add("--spp", f.spp);
+    add("--seconds", f.seconds);
+    add("--assert", f.assertions);
     if (f.pair) out += " --pair";
     if (f.crop) out += " --crop";
-    const std::pair<const char*, std::string> rest[] = {{"--align", f.align}, {"--expect", f.expect},
+    const std::pair<const char*, std::string> options[] = {{"--align", f.align}, {"--expect", f.expect},
         {"--smallest", f.smallest}, {"--exposure", f.exposure}, {"--alpha", f.alpha}, {"--trim", f.trim},
         {"--brightest", f.brightest}, {"--theme", f.theme}};
-    for (const auto& [flag, value] : rest)
+    for (const auto& [flag, value] : options)
         if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
     for (const auto& [key, value] : reading_keys(f))
         if (!value.empty()) out += fmt::format(" --{} {}", key, shell_word(value));
@@ -124,12 +124,12 @@ std::string command_of(const CompareFlags& f) {
 
 /// InputError if a flag is given that only a suite has.
 void forbid_suite_flags(const CompareFlags& f) {
-    const std::pair<const char*, bool> only[] = {{"--json", !f.json.empty()}, {"--junit", !f.junit.empty()},
+    const std::pair<const char*, bool> suite_options[] = {{"--json", !f.json.empty()}, {"--junit", !f.junit.empty()},
         {"--markdown", !f.markdown.empty()}, {"--because", !f.because.empty()}, {"--store", !f.store.empty()},
         {"--tolerance", !f.tolerance.empty()}, {"--new-baseline", f.new_baseline}, {"--plan", f.plan},
         {"--accept", f.accept}};
-    for (const auto& [flag, given] : only)
-        if (given)
+    for (const auto& [flag, is_given] : suite_options)
+        if (is_given)
             throw InputError(
                 {flag, 0, 0}, "expected a suite: a file with a table [suite], or --baseline and --candidate");
 }
@@ -168,11 +168,11 @@ int compare(const CompareFlags& flags) {
     if (flags.schema)
         return print(flags.schema_as_json ? compare_schema_json() : compare_schema_text() + "\n" + suite_schema_text()),
                passed;
-    const bool folders = !flags.baseline.empty() || !flags.candidate.empty();
+    const bool has_folders = !flags.baseline.empty() || !flags.candidate.empty();
     const std::string out = flags.out.empty() ? "out/compare" : flags.out;
     std::string junit = flags.junit;
     try {
-        if (folders || flags.makes_renders() || (!flags.file.empty() && is_suite(flags.file)))
+        if (has_folders || flags.makes_renders() || (!flags.file.empty() && is_suite(flags.file)))
             return compare_suite(flags);
         forbid_suite_flags(flags);
         if (flags.file.empty() && flags.arms.empty())

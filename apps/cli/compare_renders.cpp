@@ -55,10 +55,10 @@ Suite suite_of_two(const CompareFlags& flags, std::vector<CompareFlag> keys) {
             const auto [name, box] = name_and_value("--region", region, "NAME=x0,y0,x1,y1");
             keys.push_back({{"view", view, "regions", name, "box"}, "[" + box + "]", true, "--region " + region});
         }
-    Suite stated = read_suite_flags(keys);
-    stated.options.noise = NoiseDemand::ignore;  // two algorithms have one mean, and each its own noise
-    stated.options.title = "two programs: a is the baseline, b the candidate";
-    return suite_of_commands(sides, views, out + "-renders", stated);
+    Suite suite = read_suite_flags(keys);
+    suite.options.noise = NoiseDemand::ignore;  // two algorithms have one mean, and each its own noise
+    suite.options.title = "two programs: a is the baseline, b the candidate";
+    return suite_of_commands(sides, views, out + "-renders", suite);
 }
 
 SuiteResult make_renders_of(const CompareFlags& flags, Suite& suite, Progress& progress) {

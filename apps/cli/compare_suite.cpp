@@ -14,8 +14,8 @@ namespace {
 
 /// The path of a folder, which may be an address that begins with file://.
 std::string folder_of(const char* flag, const std::string& text) {
-    constexpr std::string_view local = "file://";
-    if (text.starts_with("file:///")) return text.substr(local.size());
+    constexpr std::string_view scheme = "file://";
+    if (text.starts_with("file:///")) return text.substr(scheme.size());
     if (text.find("://") == std::string::npos) return text;
     throw InputError({fmt::format("{} {}", flag, text), 0, 0},
         "expected a folder, found an address: mount it, and give the folder where it is mounted");
@@ -27,8 +27,8 @@ SuiteFlags suite_flags(const CompareFlags& f) {
     out.baseline = folder_of("--baseline", f.baseline);
     out.candidate = folder_of("--candidate", f.candidate);
     out.baseline_only = f.plan || (f.accept && !f.views.empty()) || !f.render.empty();
-    const auto add = [&](const char* key, const std::string& text, bool toml) {
-        if (!text.empty()) out.keys.push_back({{"suite", key}, text, toml, fmt::format("--{} {}", key, text)});
+    const auto add = [&](const char* key, const std::string& text, bool is_toml) {
+        if (!text.empty()) out.keys.push_back({{"suite", key}, text, is_toml, fmt::format("--{} {}", key, text)});
     };
     add("alpha", f.alpha, true);
     add("exposure", f.exposure, true);
@@ -44,19 +44,22 @@ SuiteFlags suite_flags(const CompareFlags& f) {
 
 /// InputError if a flag is given that a suite does not have.
 void forbid_other_flags(const CompareFlags& f) {
-    const std::pair<const char*, bool> others[] = {{"--arm", !f.arms.empty()}, {"--reference", !f.reference.empty()},
-        {"--region", !f.regions.empty() && !f.makes_both_sides()}, {"--mask", !f.masks.empty()},
-        {"--spp", !f.spp.empty()}, {"--seconds", !f.seconds.empty()}, {"--assert", !f.assertions.empty()},
-        {"--align", !f.align.empty()}, {"--expect", !f.expect.empty()}, {"--trim", !f.trim.empty()},
-        {"--theme", !f.theme.empty()}, {"--crop", f.crop}, {"--pair", f.pair && !f.makes_renders()}};
-    for (const auto& [flag, given] : others)
-        if (given) throw InputError({flag, 0, 0}, "expected no such flag: a suite compares a baseline and a candidate");
+    const std::pair<const char*, bool> arm_options[] = {{"--arm", !f.arms.empty()},
+        {"--reference", !f.reference.empty()}, {"--region", !f.regions.empty() && !f.makes_both_sides()},
+        {"--mask", !f.masks.empty()}, {"--spp", !f.spp.empty()}, {"--seconds", !f.seconds.empty()},
+        {"--assert", !f.assertions.empty()}, {"--align", !f.align.empty()}, {"--expect", !f.expect.empty()},
+        {"--trim", !f.trim.empty()}, {"--theme", !f.theme.empty()}, {"--crop", f.crop},
+        {"--pair", f.pair && !f.makes_renders()}};
+    for (const auto& [flag, is_given] : arm_options)
+        if (is_given)
+            throw InputError({flag, 0, 0}, "expected no such flag: a suite compares a baseline and a candidate");
     if (!f.because.empty() && !f.accept) throw InputError({"--because", 0, 0}, "expected --accept with it");
     if (!f.store.empty() && !f.accept) throw InputError({"--store", 0, 0}, "expected --accept with it");
-    const std::pair<const char*, bool> of_renders[] = {{"--until", !f.until.empty()}, {"--budget", !f.budget.empty()},
-        {"--timeout", !f.timeout.empty()}, {"--views", !f.made_views.empty()}};
-    for (const auto& [flag, given] : of_renders)
-        if (given && !f.makes_renders()) throw InputError({flag, 0, 0}, "expected --render, or --a and --b, with it");
+    const std::pair<const char*, bool> render_options[] = {{"--until", !f.until.empty()},
+        {"--budget", !f.budget.empty()}, {"--timeout", !f.timeout.empty()}, {"--views", !f.made_views.empty()}};
+    for (const auto& [flag, is_given] : render_options)
+        if (is_given && !f.makes_renders())
+            throw InputError({flag, 0, 0}, "expected --render, or --a and --b, with it");
     if (!f.made_views.empty() && !f.render.empty())
         throw InputError({"--views", 0, 0}, "expected --a and --b with it: --render makes those of the suite");
     if (f.makes_renders() && (f.accept || f.plan))
@@ -67,10 +70,10 @@ void forbid_other_flags(const CompareFlags& f) {
 std::string suite_command(const CompareFlags& f) {
     std::string out = "crescent compare";
     if (!f.file.empty()) out += " " + shell_word(f.file);
-    const std::pair<const char*, std::string> all[] = {{"--baseline", f.baseline}, {"--candidate", f.candidate},
+    const std::pair<const char*, std::string> options[] = {{"--baseline", f.baseline}, {"--candidate", f.candidate},
         {"--alpha", f.alpha}, {"--smallest", f.smallest}, {"--brightest", f.brightest}, {"--exposure", f.exposure},
         {"--tolerance", f.tolerance}};
-    for (const auto& [flag, value] : all)
+    for (const auto& [flag, value] : options)
         if (!value.empty()) out += fmt::format(" {} {}", flag, shell_word(value));
     for (const auto& [key, text] : reading_keys(f))
         if (!text.empty()) out += fmt::format(" --{} {}", key, shell_word(text));

@@ -24,7 +24,7 @@ be read; 4 too few renders.)";
 
 /// The flags of a suite.
 void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
-    const auto file = [&](const char* flag, std::string& to, const char* means) {
+    const auto add_file = [&](const char* flag, std::string& to, const char* means) {
         c.add_option(flag, to, means)->type_name("FILE")->check(not_empty);
     };
     c.add_option("--baseline", f->baseline,
@@ -35,13 +35,13 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
         ->type_name("DIR")
         ->check(not_empty);
     c.add_flag("--allow-inconclusive", f->allow_inconclusive, "exit code 0 in place of 4: too few renders do not fail");
-    const auto text = [&](const char* flag, std::string& to, const char* means, const char* type) {
+    const auto add_text = [&](const char* flag, std::string& to, const char* means, const char* type) {
         c.add_option(flag, to, means)->type_name(type)->check(not_empty);
     };
-    text("--render", f->render, "of a suite: the program that makes renders of {view} with {seed} in the file {out}",
-        "CMD");
-    text("--a", f->a, "without a suite: the program that makes one side", "CMD");
-    text("--b", f->b, "the same of the other side, whose mean is to be equal", "CMD");
+    add_text("--render", f->render,
+        "of a suite: the program that makes renders of {view} with {seed} in the file {out}", "CMD");
+    add_text("--a", f->a, "without a suite: the program that makes one side", "CMD");
+    add_text("--b", f->b, "the same of the other side, whose mean is to be equal", "CMD");
     c.add_option("--views", f->made_views, "of --a and --b: what {view} stands for")
         ->type_name("A,B,...")
         ->delimiter(',');
@@ -49,9 +49,9 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
          "of renders without noise: \"0 ulp\", \"0.5 %\", \"2/255\" of each channel of a pixel; default: equal bits")
         ->type_name("SIZE")
         ->check(not_empty);
-    text("--until", f->until, "make renders until each view is decided", "decided");
-    text("--budget", f->budget, "the longest time for all renders; default 10min", "TIME");
-    text("--timeout", f->timeout, "the longest time of one render; default 1h", "TIME");
+    add_text("--until", f->until, "make renders until each view is decided", "decided");
+    add_text("--budget", f->budget, "the longest time for all renders; default 10min", "TIME");
+    add_text("--timeout", f->timeout, "the longest time of one render; default 1h", "TIME");
     c.add_option("--jobs", f->jobs, "programs at a time; default 1")->type_name("N")->check(CLI::Range(1, 1024));
     c.add_flag("--new-baseline", f->new_baseline, "of a suite: views without a baseline do not fail");
     c.add_flag("--plan", f->plan, "of a suite: how many renders the smallest difference needs, from the baseline");
@@ -79,9 +79,9 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
          "of a suite: every number; with --schema: as a JSON Schema")
         ->type_name("[FILE]")
         ->expected(0, 1);
-    file("--sarif", f->sarif, "write what fails, for the annotations of a code host");
-    file("--junit", f->junit, "of a suite: one case for each view");
-    file("--markdown", f->markdown, "of a suite: a table of what changed, for a summary page");
+    add_file("--sarif", f->sarif, "write what fails, for the annotations of a code host");
+    add_file("--junit", f->junit, "of a suite: one case for each view");
+    add_file("--markdown", f->markdown, "of a suite: a table of what changed, for a summary page");
 }
 
 }  // namespace
@@ -90,7 +90,7 @@ void add_compare(CLI::App& app, Work& work) {
     std::shared_ptr<CompareFlags> f;
     CLI::App* c = command(app, work, "compare", "Compare renders of any program: noise, bias, where.", compare, f);
     c->footer(compare_footer);
-    const auto many = [&](const char* flag, std::vector<std::string>& to, const char* means, const char* type) {
+    const auto add_repeated = [&](const char* flag, std::vector<std::string>& to, const char* means, const char* type) {
         c->add_option(flag, to, means)
             ->type_name(type)
             ->take_all()
@@ -99,22 +99,22 @@ void add_compare(CLI::App& app, Work& work) {
             ->check(not_empty);
     };
     c->add_option("FILE", f->file, "a TOML file; flags override it")->type_name("");
-    many("--arm", f->arms, "renders of one arm; may be given again", "NAME=FILES");
-    many("--reference", f->reference, "the converged image, or several", "FILES");
-    many("--region", f->regions, "a box, both ends inside, from the bottom-left", "NAME=x0,y0,x1,y1");
-    many("--mask", f->masks, "pixels above 0 in a picture", "NAME=FILE");
-    many("--layer", f->layers, "which layer of the files, of one arm's, or of reference=LAYER", "[NAME=]LAYER");
-    const auto word = [&](const char* flag, std::string& to, const char* means, const char* type) {
+    add_repeated("--arm", f->arms, "renders of one arm; may be given again", "NAME=FILES");
+    add_repeated("--reference", f->reference, "the converged image, or several", "FILES");
+    add_repeated("--region", f->regions, "a box, both ends inside, from the bottom-left", "NAME=x0,y0,x1,y1");
+    add_repeated("--mask", f->masks, "pixels above 0 in a picture", "NAME=FILE");
+    add_repeated("--layer", f->layers, "which layer of the files, of one arm's, or of reference=LAYER", "[NAME=]LAYER");
+    const auto add_word = [&](const char* flag, std::string& to, const char* means, const char* type) {
         c->add_option(flag, to, means)->type_name(type)->check(not_empty);
     };
-    word("--encoding", f->encoding, "how whole numbers encode radiance; default: as the file states it, else srgb",
+    add_word("--encoding", f->encoding, "how whole numbers encode radiance; default: as the file states it, else srgb",
         "srgb|linear");
-    word("--space", f->space, "what of them is tested: radiance, or the displayed values", "radiance|display");
-    word("--channels", f->channels, "rgba: the alpha channel is tested too", "rgb|rgba");
-    word("--channel", f->channel, "this channel alone is tested", "NAME");
-    many("--spp", f->spp, "samples a pixel of one render", "[NAME=]N");
-    many("--seconds", f->seconds, "time of one render", "[NAME=]S");
-    many("--assert", f->assertions, "a claim such as 'rmse.H(a) < rmse.H(b)'", "CHECK");
+    add_word("--space", f->space, "what of them is tested: radiance, or the displayed values", "radiance|display");
+    add_word("--channels", f->channels, "rgba: the alpha channel is tested too", "rgb|rgba");
+    add_word("--channel", f->channel, "this channel alone is tested", "NAME");
+    add_repeated("--spp", f->spp, "samples a pixel of one render", "[NAME=]N");
+    add_repeated("--seconds", f->seconds, "time of one render", "[NAME=]S");
+    add_repeated("--assert", f->assertions, "a claim such as 'rmse.H(a) < rmse.H(b)'", "CHECK");
     c->add_option("--align", f->align, "display: place data windows that differ in the display window")
         ->type_name("display");
     c->add_flag("--crop", f->crop, "compare the pixels that the data windows of all renders share");

@@ -39,21 +39,22 @@ Frames are the same bits for any --threads and any --isa. Needs ffmpeg.)";
 std::string moment(const std::string& text) {
     const std::size_t colon = text.find(':');
     const std::string minutes = colon == std::string::npos ? "0" : text.substr(0, colon);
-    const std::string rest = colon == std::string::npos ? text : text.substr(colon + 1);
-    const bool plain =
+    const std::string seconds_text = colon == std::string::npos ? text : text.substr(colon + 1);
+    const bool has_minutes =
         !minutes.empty() && minutes.find_first_not_of("0123456789") == std::string::npos && minutes.size() < 4;
     char* end = nullptr;
-    const double s = std::strtod(rest.c_str(), &end);
-    const bool seconds_too = !rest.empty() && rest.find_first_not_of("0123456789.") == std::string::npos && *end == 0;
-    return plain && seconds_too && (colon == std::string::npos || s < 60) ? "" : "expected MM:SS, as in 1:30";
+    const double s = std::strtod(seconds_text.c_str(), &end);
+    const bool has_seconds =
+        !seconds_text.empty() && seconds_text.find_first_not_of("0123456789.") == std::string::npos && *end == 0;
+    return has_minutes && has_seconds && (colon == std::string::npos || s < 60) ? "" : "expected MM:SS, as in 1:30";
 }
 
 std::string seed_range(const std::string& text) {
     int first = 0, last = 0, read = 0;
-    const bool plain = text.find_first_not_of("0123456789:") == std::string::npos && text.size() <= 9;
-    const bool whole = plain && std::sscanf(text.c_str(), "%d:%d%n", &first, &last, &read) == 2;
-    const bool good = whole && static_cast<std::size_t>(read) == text.size() && first >= 1 && first <= last;
-    return good ? "" : "expected A:B with 1 <= A <= B, as in 1:8";
+    const bool is_plain = text.find_first_not_of("0123456789:") == std::string::npos && text.size() <= 9;
+    const bool is_range = is_plain && std::sscanf(text.c_str(), "%d:%d%n", &first, &last, &read) == 2;
+    const bool is_good = is_range && static_cast<std::size_t>(read) == text.size() && first >= 1 && first <= last;
+    return is_good ? "" : "expected A:B with 1 <= A <= B, as in 1:8";
 }
 
 }  // namespace

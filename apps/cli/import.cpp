@@ -30,16 +30,16 @@ constexpr std::size_t longest_name = 200, longest_line = 500;       // character
 
 /// The importer next to this program, otherwise the one in PATH.
 std::string importer() {
-    std::error_code unknown;
-    const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", unknown);
-    const std::filesystem::path beside = own.parent_path() / importer_name;
-    if (!unknown && std::filesystem::exists(beside, unknown)) return beside.string();
+    std::error_code error;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+    const std::filesystem::path neighbour = program.parent_path() / importer_name;
+    if (!error && std::filesystem::exists(neighbour, error)) return neighbour.string();
     const char* path = std::getenv("PATH");
-    for (std::string_view rest = path ? path : ""; !rest.empty();) {
-        const std::size_t end = std::min(rest.find(':'), rest.size());
-        const std::filesystem::path file = std::filesystem::path(rest.substr(0, end)) / importer_name;
-        if (std::filesystem::exists(file, unknown)) return file.string();
-        rest.remove_prefix(std::min(end + 1, rest.size()));
+    for (std::string_view folders = path ? path : ""; !folders.empty();) {
+        const std::size_t end = std::min(folders.find(':'), folders.size());
+        const std::filesystem::path file = std::filesystem::path(folders.substr(0, end)) / importer_name;
+        if (std::filesystem::exists(file, error)) return file.string();
+        folders.remove_prefix(std::min(end + 1, folders.size()));
     }
     throw not_built("crescent import");
 }
@@ -49,17 +49,17 @@ std::string contents_of_descriptor(int file) {
     const off_t size = ::lseek(file, 0, SEEK_END);
     if (size <= 0 || ::lseek(file, 0, SEEK_SET) != 0) return out;
     out.resize(static_cast<std::size_t>(size));
-    std::size_t done = 0;
-    while (done < out.size()) {
-        const ssize_t n = ::read(file, out.data() + done, out.size() - done);
+    std::size_t position = 0;
+    while (position < out.size()) {
+        const ssize_t n = ::read(file, out.data() + position, out.size() - position);
         if (n <= 0) return {};
-        done += static_cast<std::size_t>(n);
+        position += static_cast<std::size_t>(n);
     }
     return out;
 }
 
-Json options_of(const ImportFlags& flags, bool folder) {
-    Json out = {{"folder", folder}, {"up", flags.up}, {"scale", flags.scale}};
+Json options_of(const ImportFlags& flags, bool is_folder) {
+    Json out = {{"folder", is_folder}, {"up", flags.up}, {"scale", flags.scale}};
     if (!flags.material.empty()) out["material"] = flags.material;
     if (!flags.select.empty()) out["select"] = flags.select;
     if (flags.smooth) out["smooth"] = *flags.smooth;
@@ -75,19 +75,19 @@ std::string lower(std::string text) {
 
 void refuse(const std::string& file, const std::string& message) { throw InputError({file, 0, 0}, message); }
 
-Imported import_model(const ImportFlags& flags, bool folder) {
+Imported import_model(const ImportFlags& flags, bool is_folder) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> mesh(std::tmpfile(), &std::fclose);
     if (!mesh) throw OutputError("cannot create a temporary file for the mesh");
     ProcessPlan plan{.argv = {importer_name, flags.file, std::to_string(flags.memory_mib),
-                         fmt::format("{}", std::ceil(flags.timeout)), options_of(flags, folder).dump()}};
+                         fmt::format("{}", std::ceil(flags.timeout)), options_of(flags, is_folder).dump()}};
     plan.file = importer();
     plan.stdin_file = plan.stderr_file = "/dev/null";
     plan.shared = ::fileno(mesh.get());
     Process process(plan);
     const auto begin = std::chrono::steady_clock::now();
     const auto left_ms = [&] {
-        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-        return static_cast<int>(std::min(1e3 * (flags.timeout - spent.count()), 1e9));
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+        return static_cast<int>(std::min(1e3 * (flags.timeout - seconds.count()), 1e9));
     };
     std::string text;
     std::optional<ProcessEnd> end;
@@ -117,21 +117,21 @@ std::string point_text(Vec3d v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]",
 
 std::string moved_line(const Json& description) {
     if (!description.contains("moved")) return "";
-    const Json& moved = description["moved"];
-    const double scaled = description["scaled"].get<double>();
+    const Json& offset = description["moved"];
+    const double scale = description["scaled"].get<double>();
     return fmt::format("# moved by [{:.9g}, {:.9g}, {:.9g}]{}: an experiment holds sizes of 1e-3 to 1e5 m\n",
-        moved[0].get<double>(), moved[1].get<double>(), moved[2].get<double>(),
-        scaled == 1 ? "" : fmt::format(", then scaled by {:.9g}", scaled));
+        offset[0].get<double>(), offset[1].get<double>(), offset[2].get<double>(),
+        scale == 1 ? "" : fmt::format(", then scaled by {:.9g}", scale));
 }
 
 namespace {
 
 /// The material of one mesh: that of this name, or the only one. None: several.
 const Json* material_of_mesh(const Json& description, const std::string& name) {
-    const auto all = description.find("materials");
-    if (all == description.end()) return nullptr;
-    for (const Json& one : *all)
-        if (one.value("name", "") == name || (name.empty() && all->size() == 1)) return &one;
+    const auto materials = description.find("materials");
+    if (materials == description.end()) return nullptr;
+    for (const Json& material : *materials)
+        if (material.value("name", "") == name || (name.empty() && materials->size() == 1)) return &material;
     return nullptr;
 }
 
@@ -140,9 +140,9 @@ std::string material_keys(const Imported& imported, const ImportFlags& flags, bo
     const auto colour = [](const Rgb& c) { return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", c[0], c[1], c[2]); };
     const Json* from = material_of_mesh(imported.description, flags.material);
     if (!from) return fmt::format("rho_d = {}\n", colour({0.5, 0.5, 0.5}));
-    const std::filesystem::path beside = std::filesystem::absolute(flags.out).parent_path();
-    std::map<std::size_t, std::string> missing, unread;
-    const auto mean_of_image = [&](const char* key, bool linear) {
+    const std::filesystem::path folder = std::filesystem::absolute(flags.out).parent_path();
+    std::map<std::size_t, std::string> missing_images, unread_images;
+    const auto mean_of_image = [&](const char* key, bool is_linear) {
         if (!from->contains(key) || !has_uv) return Rgb{1, 1, 1};
         const auto index = (*from)[key].get<std::size_t>();
         const Json& picture = imported.description["pictures"][index];
@@ -150,23 +150,23 @@ std::string material_keys(const Imported& imported, const ImportFlags& flags, bo
             std::string_view(imported.files)
                 .substr(picture["begin"].get<std::size_t>(), picture["size"].get<std::size_t>());
         const std::string name = picture["name"].get<std::string>();
-        Staging scratch((beside / ".crescent-import").string(), "import");
+        Staging scratch((folder / ".crescent-import").string(), "import");
         std::optional<RgbImage> image;
-        if (!bytes.empty()) image = decoded_image(bytes, name, linear, scratch.scratch());
-        if (!image) (bytes.empty() ? missing : unread)[index] = name;
-        if (image && !linear && states_other_encoding(bytes))
+        if (!bytes.empty()) image = decoded_image(bytes, name, is_linear, scratch.scratch());
+        if (!image) (bytes.empty() ? missing_images : unread_images)[index] = name;
+        if (image && !is_linear && states_other_encoding(bytes))
             notes += fmt::format("# assumed: {}\n", counted(1, stated_encoding));
         return image ? mean_of(*image) : Rgb{1, 1, 1};
     };
-    Counts cut;
-    const ImportedMaterial to =
-        material_of(*from, mean_of_image("colours", false), mean_of_image("surface", true)[2], cut);
-    notes += left_out_images(missing, unread) + cut_lines(cut);
-    std::string out = fmt::format("rho_d = {}\n", colour(to.rho_d));
-    if (std::ranges::max(to.rho_s) > 0)
-        out += fmt::format("rho_s = {}\nbrdf = \"ggx\"\nalpha = {:.4g}\n", colour(to.rho_s), to.alpha);
-    if (std::ranges::max(to.emission) > 0) {
-        out += fmt::format("emission = {}\n", colour(to.emission));
+    Counts cuts;
+    const ImportedMaterial material =
+        material_of(*from, mean_of_image("colours", false), mean_of_image("surface", true)[2], cuts);
+    notes += left_out_images(missing_images, unread_images) + cut_lines(cuts);
+    std::string out = fmt::format("rho_d = {}\n", colour(material.rho_d));
+    if (std::ranges::max(material.rho_s) > 0)
+        out += fmt::format("rho_s = {}\nbrdf = \"ggx\"\nalpha = {:.4g}\n", colour(material.rho_s), material.alpha);
+    if (std::ranges::max(material.emission) > 0) {
+        out += fmt::format("emission = {}\n", colour(material.emission));
         if ((*from)["two_sided"].get<bool>()) out += "two_sided = true\n";
     }
     return out;
@@ -209,14 +209,14 @@ int import_image(const ImportFlags& flags) {
 
 int import(const ImportFlags& flags) {
     const std::string extension = lower(std::filesystem::path(flags.file).extension().string());
-    const std::vector<std::string> known = {".obj", ".ply", ".glb", ".gltf", ".stl"};
+    const std::vector<std::string> extensions = {".obj", ".ply", ".glb", ".gltf", ".stl"};
     if (extension == ".exr" || extension == ".hdr") return import_image(flags);
-    if (std::ranges::find(known, extension) == known.end())
+    if (std::ranges::find(extensions, extension) == extensions.end())
         refuse(flags.file,
             "expected a model with the extension .obj, .ply, .glb, .gltf or .stl, or an image .exr or .hdr");
     if (!flags.layer.empty() && flags.sky.empty())
         throw InputError({"--layer", 0, 0}, "expected together with --sky, or with an image as FILE");
-    if (std::error_code unknown; !std::filesystem::is_regular_file(flags.file, unknown))
+    if (std::error_code ignored; !std::filesystem::is_regular_file(flags.file, ignored))
         refuse(flags.file, "expected a file that can be read");
     if (!flags.out.ends_with(".mesh")) return import_folder(flags);
     if (!flags.sky.empty()) refuse(flags.out, "expected a folder (--out) for an experiment with a sky (--sky)");

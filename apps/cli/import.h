@@ -14,7 +14,7 @@ struct Imported {
 };
 
 /// Starts the importer. Throws InputError with the place of a mistake.
-Imported import_model(const ImportFlags& flags, bool folder);
+Imported import_model(const ImportFlags& flags, bool is_folder);
 
 /// Writes an experiment of the whole scene, its meshes and its images into a folder.
 int import_folder(const ImportFlags& flags);

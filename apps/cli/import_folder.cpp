@@ -31,8 +31,9 @@ public:
     Folder(const ImportFlags& flags, const Imported& imported)
         : flags_(flags), imported_(imported), stage_(flags.out, "import") {
         scene_.title = std::filesystem::path(flags.file).stem().string();
-        for (const Json& one : imported.description["materials"]) materials_[one["index"].get<std::size_t>()] = &one;
-        for (const Json& one : imported.description["meshes"]) add_mesh(one);
+        for (const Json& material : imported.description["materials"])
+            materials_[material["index"].get<std::size_t>()] = &material;
+        for (const Json& mesh : imported.description["meshes"]) add_mesh(mesh);
         add_camera();
         if (!flags.sky.empty()) add_sky();
     }
@@ -40,7 +41,7 @@ public:
     void write() {
         const std::string text = experiment_for(scene_);
         stage_.write("experiment.toml", text);
-        written_.emplace_back("experiment.toml");
+        file_names_.emplace_back("experiment.toml");
         // It is read as `crescent run` will read it: what it refuses is an error of the model.
         try {
             (void)load(stage_.path("experiment.toml"));
@@ -65,23 +66,23 @@ public:
                 : sees_nothing_ ? "one that sees the whole model; that of the file sees nothing of it"
                                 : "one that sees the whole model",
             scene_.sky ? "the sky" : "a disk");
-        const auto taken = [&](std::size_t count, const char* what) {
+        const auto add_line = [&](std::size_t count, const char* what) {
             if (count > 0) out += fmt::format("# taken: {}\n", counted(count, what));
         };
-        taken(used_.size(), "material[s], colours as rho_d and rho_s, roughness as alpha");
-        taken(colours_, "image[s] of colours, as rho_d_texture");
-        taken(roughness_, "image[s] of roughness, as alpha_texture");
-        taken(copies_, "cop[y|ies] of meshes, as [an instance|instances]");
-        taken(emitters_, "mesh[es] that emit[s|]");
+        add_line(mesh_materials_.size(), "material[s], colours as rho_d and rho_s, roughness as alpha");
+        add_line(colours_, "image[s] of colours, as rho_d_texture");
+        add_line(roughness_, "image[s] of roughness, as alpha_texture");
+        add_line(copies_, "cop[y|ies] of meshes, as [an instance|instances]");
+        add_line(emitters_, "mesh[es] that emit[s|]");
         out += assumed_lines(imported_.description);
-        if (other_encoding_ > 0) out += fmt::format("# assumed: {}\n", counted(other_encoding_, stated_encoding));
+        if (other_encodings_ > 0) out += fmt::format("# assumed: {}\n", counted(other_encodings_, stated_encoding));
         if (!sky_note_.empty()) out += "# " + sky_note_ + "\n";
         out += left_out_lines(imported_.description);
-        out += cut_lines(cut_);
-        for (const std::string& line : kept_) out += "# " + printable(line) + "\n";
+        out += cut_lines(cuts_);
+        for (const std::string& line : backup_lines_) out += "# " + printable(line) + "\n";
         for (const std::string& line : monitor_.take_lines()) out += "# " + printable(line) + "\n";
-        for (const auto& [what, count] : left_out_) out += fmt::format("# left out: {}\n", counted(count, what));
-        out += left_out_images(missing_, unread_);
+        for (const auto& [what, count] : omissions_) out += fmt::format("# left out: {}\n", counted(count, what));
+        out += left_out_images(missing_images_, unread_images_);
         return out +
             fmt::format(
                 "crescent run {} --out out/{}\n", shell_word(file("experiment.toml")), table_name_of(flags_.out));
@@ -93,8 +94,8 @@ private:
             .substr(place["begin"].get<std::size_t>(), place["size"].get<std::size_t>());
     }
     static std::string unique_name(
-        const std::string& wanted, const std::string& otherwise, std::set<std::string>& names) {
-        const std::string first = table_name_of(wanted.empty() ? otherwise : wanted).substr(0, 56);
+        const std::string& title, const std::string& fallback, std::set<std::string>& names) {
+        const std::string first = table_name_of(title.empty() ? fallback : title).substr(0, 56);
         std::string name = first;
         for (std::size_t k = 2; !names.insert(name).second; ++k) name = fmt::format("{}-{}", first, k);
         return name;
@@ -102,10 +103,10 @@ private:
 
     void add_mesh(const Json& from) {
         const Json& material = *materials_.at(from["material"].get<std::size_t>());
-        const std::string of_material = material["name"].get<std::string>();
-        const std::string own = from.value("name", "");
+        const std::string material_name = material["name"].get<std::string>();
+        const std::string mesh_name = from.value("name", "");
         ModelMesh to;
-        to.name = unique_name(own.empty() ? of_material : own, "mesh", mesh_names_);
+        to.name = unique_name(mesh_name.empty() ? material_name : mesh_name, "mesh", mesh_names_);
         to.file = fmt::format("meshes/{}.mesh", to.name);
         const std::string bytes(bytes_of(from));
         const std::shared_ptr<const MeshPack> pack = read_mesh(bytes, flags_.file);
@@ -113,7 +114,7 @@ private:
         leave_out(pack->degenerate, "triangle[s] without area");
         leave_out(pack->duplicate, "triangle[s] that occur[s|] twice");
         stage_.write(to.file, bytes);
-        written_.push_back(to.file);
+        file_names_.push_back(to.file);
         for (const Json& rows : from.value("instances", Json::array())) {
             std::array<double, 12> matrix{};
             for (std::size_t k = 0; k < matrix.size(); ++k) matrix[k] = rows[k / 4][k % 4].get<double>();
@@ -123,7 +124,7 @@ private:
         add_material(material, *pack, to);
         triangles_ += pack->mesh.triangles.size() * std::max<std::size_t>(to.instances.size(), 1);
         add_points(pack->mesh, to);
-        used_.insert(from["material"].get<std::size_t>());
+        mesh_materials_.insert(from["material"].get<std::size_t>());
         emitters_ += std::ranges::max(to.emission) > 0;
         scene_.meshes.push_back(std::move(to));
     }
@@ -132,38 +133,38 @@ private:
     void keep_edited() {
         namespace fs = std::filesystem;
         const fs::path out(flags_.out);
-        std::map<std::string, std::string> earlier, now;
+        std::map<std::string, std::string> earlier_hashes, new_hashes;
         std::istringstream lines(contents_of((out / hashes_name).string()));
         for (std::string hash, name; lines >> hash && std::getline(lines >> std::ws, name);)
-            if (hash != "#") earlier[name] = hash;
-        for (const std::string& name : written_) now[name] = hash_of(contents_of(stage_.path(name)));
+            if (hash != "#") earlier_hashes[name] = hash;
+        for (const std::string& name : file_names_) new_hashes[name] = hash_of(contents_of(stage_.path(name)));
         // Earlier versions stored no hashes, but the names.
         std::istringstream names(contents_of((out / ".crescent-import").string()));
         for (std::string name; std::getline(names, name);)
-            if (!name.starts_with('#') && name != hashes_name) earlier.try_emplace(name, "");
-        for (const auto& [name, hash] : earlier) {
-            std::error_code none;
+            if (!name.starts_with('#') && name != hashes_name) earlier_hashes.try_emplace(name, "");
+        for (const auto& [name, hash] : earlier_hashes) {
+            std::error_code ignored;
             const fs::path file = out / name;
-            if (!fs::is_regular_file(fs::symlink_status(file, none))) continue;
-            const std::string found = hash_of(contents_of(file.string()));
-            const auto same = now.find(name);
-            if (found == hash || (same != now.end() && found == same->second)) continue;
-            if (hash.empty() && same == now.end()) continue;
+            if (!fs::is_regular_file(fs::symlink_status(file, ignored))) continue;
+            const std::string current_hash = hash_of(contents_of(file.string()));
+            const auto entry = new_hashes.find(name);
+            if (current_hash == hash || (entry != new_hashes.end() && current_hash == entry->second)) continue;
+            if (hash.empty() && entry == new_hashes.end()) continue;
             const fs::path backup = free_backup_name(file);
-            if (!fs::copy_file(file, backup, none))
+            if (!fs::copy_file(file, backup, ignored))
                 throw OutputError(
                     fmt::format("{} has changed since crescent import wrote it, and cannot be copied to {}",
                         file.string(), backup.string()));
-            kept_.push_back(fmt::format("{} has changed since crescent import wrote it: it is now {}", file.string(),
-                backup.filename().string()));
+            backup_lines_.push_back(fmt::format("{} has changed since crescent import wrote it: it is now {}",
+                file.string(), backup.filename().string()));
         }
         std::string text = "# What crescent import wrote; a file that has changed since is kept as NAME.~1~.\n";
-        for (const auto& [name, hash] : now) text += fmt::format("{} {}\n", hash, name);
+        for (const auto& [name, hash] : new_hashes) text += fmt::format("{} {}\n", hash, name);
         stage_.write(hashes_name, text);
     }
 
     void leave_out(std::size_t count, const char* what) {
-        if (count > 0) left_out_[what] += count;
+        if (count > 0) omissions_[what] += count;
     }
 
     void add_points(const Mesh& points, const ModelMesh& mesh) {
@@ -200,8 +201,8 @@ private:
                 ++roughness_;
             }
         const bool is_first_use = materials_taken_.insert(from["index"].get<std::size_t>()).second;
-        Counts counted_before;  // a material that several meshes have is counted once
-        const ImportedMaterial material = material_of(from, mean, mean_metal, is_first_use ? cut_ : counted_before);
+        Counts earlier_counts;  // a material that several meshes have is counted once
+        const ImportedMaterial material = material_of(from, mean, mean_metal, is_first_use ? cuts_ : earlier_counts);
         to.rho_d = material.rho_d;
         to.rho_s = material.rho_s;
         to.emission = material.emission;
@@ -220,11 +221,11 @@ private:
     /// cannot be read.
     std::optional<WrittenTexture> texture_of(const Json& picture, std::size_t index, std::optional<double> alpha) {
         const auto [entry, is_new] = textures_.try_emplace({index, alpha.value_or(0)});
-        std::optional<WrittenTexture>& written = entry->second;
-        if (!is_new) return written;
+        std::optional<WrittenTexture>& texture = entry->second;
+        if (!is_new) return texture;
         std::optional<RgbImage> image = decoded(picture, index, alpha.has_value());
         if (!image) return std::nullopt;
-        written = WrittenTexture{"", mean_of(*image)};
+        texture = WrittenTexture{"", mean_of(*image)};
         if (alpha)
             for (std::size_t k = 0; k < image->rgb.size(); k += 3) {
                 const double roughness = static_cast<double>(image->rgb[k + 1]);
@@ -233,19 +234,19 @@ private:
             }
         const std::string stem = std::filesystem::path(picture["name"].get<std::string>()).stem().string();
         const std::string name = unique_name(stem, "image", texture_files_);
-        written->file = fmt::format("textures/{}.exr", name);
-        write_texture(stage_.path(written->file), *image);
-        written_.push_back(written->file);
-        return written;
+        texture->file = fmt::format("textures/{}.exr", name);
+        write_texture(stage_.path(texture->file), *image);
+        file_names_.push_back(texture->file);
+        return texture;
     }
 
-    std::optional<RgbImage> decoded(const Json& picture, std::size_t index, bool linear) {
+    std::optional<RgbImage> decoded(const Json& picture, std::size_t index, bool is_linear) {
         const std::string_view bytes = bytes_of(picture);
         const std::string name = picture["name"].get<std::string>();
         std::optional<RgbImage> out;
-        if (!bytes.empty()) out = decoded_image(bytes, name, linear, stage_.scratch());
-        if (!out) (bytes.empty() ? missing_ : unread_)[index] = name;
-        other_encoding_ += out && !linear && states_other_encoding(bytes);
+        if (!bytes.empty()) out = decoded_image(bytes, name, is_linear, stage_.scratch());
+        if (!out) (bytes.empty() ? missing_images_ : unread_images_)[index] = name;
+        other_encodings_ += out && !is_linear && states_other_encoding(bytes);
         return out;
     }
 
@@ -262,8 +263,8 @@ private:
         const Vec3d diagonal = widen(scene_.points.box().high) - widen(scene_.points.box().low);
         const double depth = std::max(dot(middle - eye, view), 0.1 * std::sqrt(dot(diagonal, diagonal)));
         const Camera camera{.eye = eye, .target = eye + depth * view, .up = up, .vfov_deg = from["vfov_deg"]};
-        const double stated = from["aspect"].get<double>();
-        const double aspect = stated > 0.1 && stated < 10 ? stated : scene_.aspect;
+        const double stated_aspect = from["aspect"].get<double>();
+        const double aspect = stated_aspect > 0.1 && stated_aspect < 10 ? stated_aspect : scene_.aspect;
         sees_nothing_ = !scene_.points.may_be_seen(camera, aspect);
         if (sees_nothing_) return;
         scene_.camera = camera;
@@ -277,7 +278,7 @@ private:
         load_sky(sky);  // refused with the place in the reader's own file
         sky_note_ = note_on_sky(sky);
         stage_.write(name, contents_of(flags_.sky));
-        written_.push_back(name);
+        file_names_.push_back(name);
         scene_.sky = name;
         scene_.sky_layer = flags_.layer;
     }
@@ -286,16 +287,16 @@ private:
     const Imported& imported_;
     Staging stage_;
     PolledMonitor monitor_;
-    std::vector<std::string> written_, kept_;  // names of files; lines on what was kept
+    std::vector<std::string> file_names_, backup_lines_;  // names of files; lines on what was kept
     ModelScene scene_;
     std::map<std::size_t, const Json*> materials_;
     std::map<std::pair<std::size_t, double>, std::optional<WrittenTexture>> textures_;
     std::set<std::string> mesh_names_, texture_files_;
-    std::set<std::size_t> used_;
+    std::set<std::size_t> mesh_materials_;
     std::set<std::size_t> materials_taken_;
-    Counts left_out_, cut_;
-    std::map<std::size_t, std::string> missing_, unread_;  // images, by their indices
-    std::size_t other_encoding_ = 0;                       // images
+    Counts omissions_, cuts_;
+    std::map<std::size_t, std::string> missing_images_, unread_images_;  // images, by their indices
+    std::size_t other_encodings_ = 0;                                    // images
     std::string sky_note_;
     bool sees_nothing_ = false;  // the file's camera
     std::size_t triangles_ = 0, copies_ = 0, colours_ = 0, roughness_ = 0, emitters_ = 0;

@@ -66,22 +66,22 @@ Rgb mean_of(const RgbImage& image) {
 
 double least_imported_alpha() { return least_roughness; }
 
-ImportedMaterial material_of(const Json& from, const Rgb& mean_colour, double mean_metal, Counts& cut) {
+ImportedMaterial material_of(const Json& from, const Rgb& mean_colour, double mean_metal, Counts& cuts) {
     constexpr double rounding = 1 + 1e-6;  // of single precision
-    const Rgb colour = colour_of(from["rho_d"]), of_lobe = colour_of(from["rho_s"]);
+    const Rgb colour = colour_of(from["rho_d"]), lobe_colour = colour_of(from["rho_s"]);
     const double metal = std::min(from["metal"].get<double>(), 1.0) * mean_metal;
     ImportedMaterial to{.emission = colour_of(from["emission"])};
     to.alpha = std::clamp(from["alpha"].get<double>(), least_roughness, 1.0);
     if (std::ranges::max(to.emission) < 1e-9) to.emission = {};
     for (std::size_t c = 0; c < 3; ++c) {
         to.rho_d[c] = (1 - metal) * colour[c];
-        to.rho_s[c] = (1 - metal) * of_lobe[c] + metal * colour[c] * mean_colour[c];
+        to.rho_s[c] = (1 - metal) * lobe_colour[c] + metal * colour[c] * mean_colour[c];
     }
     const auto count = [&](bool holds, const char* what) {
-        if (holds) ++cut[what];
+        if (holds) ++cuts[what];
     };
     count(std::ranges::max(colour) > rounding, "material[s] with colours (Kd) above 1, to 1");
-    count(std::ranges::max(of_lobe) > rounding, "material[s] with colours of the lobe (Ks) above 1, to 1");
+    count(std::ranges::max(lobe_colour) > rounding, "material[s] with colours of the lobe (Ks) above 1, to 1");
     count(from["metal"].get<double>() > rounding, "material[s] with metal above 1, to 1");
     count(from["alpha"].get<double>() > rounding, "material[s] with roughness above 1, to 1");
     count(from["alpha"].get<double>() < least_roughness, "material[s] with alpha below 0.001, to 0.001");
@@ -97,17 +97,18 @@ ImportedMaterial material_of(const Json& from, const Rgb& mean_colour, double me
     return to;
 }
 
-std::string cut_lines(const Counts& cut) {
+std::string cut_lines(const Counts& cuts) {
     std::string out;
-    for (const auto& [what, count] : cut) out += fmt::format("# cut: {}\n", counted(count, what));
+    for (const auto& [what, count] : cuts) out += fmt::format("# cut: {}\n", counted(count, what));
     return out;
 }
 
 std::string left_out_images(
-    const std::map<std::size_t, std::string>& missing, const std::map<std::size_t, std::string>& unread) {
+    const std::map<std::size_t, std::string>& missing_images, const std::map<std::size_t, std::string>& unread_images) {
     std::string out;
-    for (const auto& [names, what] : {std::pair{&missing, "image[s] that [is|are] not in the model or its folder"},
-             {&unread, "image[s], damaged or of a format that is not read"}}) {
+    for (const auto& [names, what] :
+        {std::pair{&missing_images, "image[s] that [is|are] not in the model or its folder"},
+            {&unread_images, "image[s], damaged or of a format that is not read"}}) {
         if (names->empty()) continue;
         constexpr std::size_t most_names = 3, longest_name = 100;
         std::string list;
@@ -144,13 +145,13 @@ bool states_other_encoding(std::string_view bytes) {
 }
 
 std::optional<RgbImage> decoded_image(
-    std::string_view bytes, const std::string& name, bool linear, const std::string& scratch) {
+    std::string_view bytes, const std::string& name, bool is_linear, const std::string& scratch) {
     const std::string file = (std::filesystem::path(scratch) / "picture").string() +
         std::filesystem::path(name).extension().string().substr(0, 8);
     write_whole(file, std::string(bytes));
     try {
         const Render render = read_render(
-            file, {}, {.encoding = linear ? ImageEncoding::linear : ImageEncoding::automatic, .channel = {}});
+            file, {}, {.encoding = is_linear ? ImageEncoding::linear : ImageEncoding::automatic, .channel = {}});
         RgbImage out;
         out.width = render.width;
         out.height = render.height;

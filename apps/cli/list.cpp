@@ -77,7 +77,7 @@ struct Topic {
     bool by_name_alone = false;  // finding them takes a while
 };
 const std::vector<Topic>& topics() {
-    static const std::vector<Topic> all = {
+    static const std::vector<Topic> table = {
         {"arms", "built-in samplers", arms},
         {"shapes", "kinds of shape", kinds<Shapes>},
         {"lights", "kinds of light", kinds<LightKinds>},
@@ -88,7 +88,7 @@ const std::vector<Topic>& topics() {
         {"isas", "instruction sets that this machine has, the best last", instruction_sets},
         {"devices", "GL devices that this machine has, by the number that --gl-device takes", devices, true},
     };
-    return all;
+    return table;
 }
 
 std::string lines(const std::vector<Word>& words, const char* indent) {
@@ -108,16 +108,16 @@ std::string lines(const std::vector<Word>& words, const char* indent) {
 
 int list(const ListFlags& flags) {
     std::string out;
-    bool known = flags.what.empty();
+    bool is_known = flags.what.empty();
     for (const Topic& topic : topics()) {
-        known = known || flags.what == topic.name;
+        is_known = is_known || flags.what == topic.name;
         if (flags.what.empty())
             out += (out.empty() ? "" : "\n") + topic.name + ": " + topic.means + "\n" +
                 (topic.by_name_alone ? "  `crescent list " + topic.name + "` queries the machine\n"
                                      : lines(topic.words(), "  "));
         if (flags.what == topic.name) out = lines(topic.words(), "");
     }
-    if (!known) unknown(flags.what);
+    if (!is_known) unknown(flags.what);
     print(out);
     return passed;
 }

@@ -19,8 +19,9 @@ void print(const std::string& text) { print_as_it_is(printable_lines(text)); }
 
 void print_as_it_is(const std::string& text) {
     errno = 0;
-    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-    if (!written && errno != EPIPE) throw OutputError(std::string("cannot write to stdout: ") + std::strerror(errno));
+    const bool is_written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    if (!is_written && errno != EPIPE)
+        throw OutputError(std::string("cannot write to stdout: ") + std::strerror(errno));
 }
 
 void print_to_stderr(const std::string& text) { std::fputs(printable_lines(text).c_str(), stderr); }

@@ -27,9 +27,10 @@ std::string rate(double per_second) {
 }
 
 std::string minutes(double seconds) {
-    const long whole = std::lround(std::min(seconds, 359999.0));
-    if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-    return fmt::format("{}:{:02}", whole / 60, whole % 60);
+    const long whole_seconds = std::lround(std::min(seconds, 359999.0));
+    if (whole_seconds >= 3600)
+        return fmt::format("{}:{:02}:{:02}", whole_seconds / 3600, whole_seconds / 60 % 60, whole_seconds % 60);
+    return fmt::format("{}:{:02}", whole_seconds / 60, whole_seconds % 60);
 }
 
 void to_stderr(const std::string& text) {
@@ -39,14 +40,14 @@ void to_stderr(const std::string& text) {
 
 }  // namespace
 
-std::string progress_line(std::string_view what, double done, double total, double seconds) {
-    const double part = total > 0 ? std::clamp(done / total, 0.0, 1.0) : 0;
+std::string progress_line(std::string_view what, double units, double total, double seconds) {
+    const double part = total > 0 ? std::clamp(units / total, 0.0, 1.0) : 0;
     const auto cells = static_cast<std::size_t>(std::lround(part * bar_cells));
     std::string line = fmt::format(
         "[{}{}] {:3.0f} %", std::string(cells, '#'), std::string(bar_cells - cells, '-'), std::floor(100 * part));
-    if (seconds > 0.2 && done > 0) {
-        line += fmt::format("  {:>9}", rate(done / seconds));
-        if (total > done) line += fmt::format("  {} left", minutes(seconds * (total - done) / done));
+    if (seconds > 0.2 && units > 0) {
+        line += fmt::format("  {:>9}", rate(units / seconds));
+        if (total > units) line += fmt::format("  {} left", minutes(seconds * (total - units) / units));
     }
     line += "  ";
     line += what;
@@ -55,8 +56,8 @@ std::string progress_line(std::string_view what, double done, double total, doub
 
 Progress::Style Progress::fitting() {
     const char* term = std::getenv("TERM");
-    const bool dumb = !term || std::string_view(term) == "dumb";
-    return ::isatty(STDERR_FILENO) && !dumb ? Style::bar : Style::lines;
+    const bool is_dumb = !term || std::string_view(term) == "dumb";
+    return ::isatty(STDERR_FILENO) && !is_dumb ? Style::bar : Style::lines;
 }
 
 double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -64,7 +65,7 @@ double Progress::seconds() const { return std::chrono::duration<double>(Clock::n
 void Progress::begin(std::string_view what, double total) {
     const std::lock_guard lock(drawing_);
     what_ = printable(what);
-    done_ = 0;
+    units_ = 0;
     total_ = total;
     start_ = Clock::now();
     if (style_ == Style::lines) print_to_stderr(what_ + "\n");
@@ -72,7 +73,7 @@ void Progress::begin(std::string_view what, double total) {
 }
 
 void Progress::advance(double units) {
-    done_.fetch_add(units, std::memory_order_relaxed);
+    units_.fetch_add(units, std::memory_order_relaxed);
     if (style_ != Style::bar) return;
     const std::int64_t now = Clock::now().time_since_epoch().count();
     if (now < next_draw_.load(std::memory_order_relaxed)) return;
@@ -84,8 +85,8 @@ void Progress::skip(double units) { total_.fetch_sub(units, std::memory_order_re
 
 void Progress::draw() {
     next_draw_ = (Clock::now() + interval).time_since_epoch().count();
-    to_stderr("\r" + progress_line(what_, done_, total_, seconds()) + "\x1b[K");
-    drawn_ = true;
+    to_stderr("\r" + progress_line(what_, units_, total_, seconds()) + "\x1b[K");
+    is_drawn_ = true;
 }
 
 void Progress::log(std::string_view line) {
@@ -102,8 +103,8 @@ void Progress::print_line(std::string_view line) {
 
 void Progress::clear() {
     const std::lock_guard lock(drawing_);
-    if (drawn_) to_stderr("\r\x1b[K");
-    drawn_ = false;
+    if (is_drawn_) to_stderr("\r\x1b[K");
+    is_drawn_ = false;
 }
 
 }  // namespace crescent::cli

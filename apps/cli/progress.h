@@ -37,15 +37,15 @@ private:
     double seconds() const;
 
     Style style_;
-    std::atomic<double> done_{0}, total_{0};
+    std::atomic<double> units_{0}, total_{0};
     std::atomic<std::int64_t> next_draw_{0};  // ns of Clock
     std::mutex drawing_;                      // guards what follows
     std::string what_;
     Clock::time_point start_ = Clock::now();
-    bool drawn_ = false;
+    bool is_drawn_ = false;
 };
 
 /// "[#####-----]  50 %  412 M/s  0:07 left  seed 3 of 16", at most 79 columns.
-std::string progress_line(std::string_view what, double done, double total, double seconds);
+std::string progress_line(std::string_view what, double units, double total, double seconds);
 
 }  // namespace crescent::cli

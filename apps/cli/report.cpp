@@ -23,8 +23,8 @@ std::string page_of_run(const Json& json, const std::string& file) {
 }
 
 std::string page_of_check(const Json& json, const std::string& file) {
-    const StoredResult stored = result_from_json(json, file);
-    return verdict_html(stored.result, stored.source);
+    const StoredResult stored_result = result_from_json(json, file);
+    return verdict_html(stored_result.result, stored_result.source);
 }
 
 std::string page_of_comparison(const Json& json, const std::string& file) {

@@ -117,26 +117,26 @@ private:
     }
     double solid_angle() const { return 2 * pi * (1 - lowest()); }
     /// Of the upper hemisphere, with the density cos / pi or uniform.
-    static std::vector<Vec3d> upper(bool cosine) {
+    static std::vector<Vec3d> upper(bool is_cosine) {
         RandomBits random(3);
         std::vector<Vec3d> out;
         while (out.size() < evaluations) {
-            const double u = uniform(random), z = cosine ? std::sqrt(1 - u) : u;
+            const double u = uniform(random), z = is_cosine ? std::sqrt(1 - u) : u;
             const double phi = 2 * pi * uniform(random), r = std::sqrt(1 - z * z);
             out.push_back({r * std::cos(phi), r * std::sin(phi), z});
         }
         return out;
     }
     /// The integral of g over the domain, from directions above the surface and their images below it.
-    Mean integrate(bool cosine, const std::function<std::vector<double>(std::span<const Vec3d>)>& g) const {
-        std::vector<Vec3d> w = upper(cosine);
+    Mean integrate(bool is_cosine, const std::function<std::vector<double>(std::span<const Vec3d>)>& g) const {
+        std::vector<Vec3d> w = upper(is_cosine);
         std::vector<double> out = g(w);
         for (Vec3d& v : w) v.z = -v.z;
         if (!hemisphere_) {
-            const std::vector<double> below = g(w);
-            for (std::size_t i = 0; i < out.size(); ++i) out[i] += below[i];
+            const std::vector<double> lower_values = g(w);
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] += lower_values[i];
         }
-        for (double& x : out) x *= cosine ? pi : 2 * pi;
+        for (double& x : out) x *= is_cosine ? pi : 2 * pi;
         return Mean(out);
     }
     /// The integral of f cos.
@@ -173,121 +173,122 @@ private:
     /// The first u for which the predicate holds, with as few digits as it needs.
     std::optional<PrimarySample> shortest_u(
         std::span<const PrimarySample> u, const std::function<bool(const Draw&)>& holds) const {
-        const std::vector<Draw> drawn = draw(u);
-        const auto at = std::ranges::find_if(drawn, holds);
-        if (at == drawn.end()) return {};
-        return with_few_digits(sampler_, wo_, u[static_cast<std::size_t>(at - drawn.begin())], traits_.numbers, holds);
+        const std::vector<Draw> draws = draw(u);
+        const auto match = std::ranges::find_if(draws, holds);
+        if (match == draws.end()) return {};
+        return with_few_digits(
+            sampler_, wo_, u[static_cast<std::size_t>(match - draws.begin())], traits_.numbers, holds);
     }
     /// Angles of as few digits as the predicate allows, near those of w.
     static Angles shortest_angles(Vec3d w, const std::function<bool(Vec3d)>& holds) {
-        const Angles found = angles_of(w);
+        const Angles angles = angles_of(w);
         for (const double step : {15.0, 5.0, 1.0, 0.1, 0.01, 1e-4}) {
-            const Angles round{std::round(found.theta / step) * step, std::round(found.phi / step) * step};
+            const Angles round{std::round(angles.theta / step) * step, std::round(angles.phi / step) * step};
             if (holds(round.direction())) return round;
         }
-        return found;
+        return angles;
     }
 
     std::optional<ShownFault> find_unusable() const {
         std::vector<PrimarySample> u;
         for (int corner = 0; corner < 1 << traits_.numbers; ++corner) {
-            PrimarySample at;
-            for (int k = 0; k < traits_.numbers; ++k) at[k] = corner >> k & 1 ? below_one : 0;
-            u.push_back(at);
+            PrimarySample vertex;
+            for (int k = 0; k < traits_.numbers; ++k) vertex[k] = corner >> k & 1 ? below_one : 0;
+            u.push_back(vertex);
         }
-        const std::vector<PrimarySample> more = numbers();
-        u.insert(u.end(), more.begin(), more.end());
-        if (const auto at = shortest_u(u, [](const Draw& d) { return !usable(d) && !(d.delta > 0); }))
-            return ShownFault{.kind = Kind::bad_draw, .size = 1, .u = *at};
+        const std::vector<PrimarySample> random_u = numbers();
+        u.insert(u.end(), random_u.begin(), random_u.end());
+        if (const auto bad_u = shortest_u(u, [](const Draw& d) { return !usable(d) && !(d.delta > 0); }))
+            return ShownFault{.kind = Kind::bad_draw, .size = 1, .u = *bad_u};
         const std::vector<Vec3d> w = directions();
-        const auto bad = [this](Vec3d v) { return !usable(pdf(std::span(&v, 1))[0]); };
+        const auto is_bad = [this](Vec3d v) { return !usable(pdf(std::span(&v, 1))[0]); };
         if (traits_.has_pdf) {
             const std::vector<double> p = pdf(w);
-            const auto at = std::ranges::find_if_not(p, [](double v) { return usable(v); });
-            if (at != p.end())
+            const auto bad_p = std::ranges::find_if_not(p, [](double v) { return usable(v); });
+            if (bad_p != p.end())
                 return ShownFault{.kind = Kind::bad_pdf,
                     .size = 1,
-                    .a = shortest_angles(w[static_cast<std::size_t>(at - p.begin())], bad)};
+                    .a = shortest_angles(w[static_cast<std::size_t>(bad_p - p.begin())], is_bad)};
         }
         if (!sampler_.has_f()) return {};
-        const std::vector<Vec3d> all = f(w);
+        const std::vector<Vec3d> values = f(w);
         for (int c = 0; c < traits_.channels; ++c) {
-            const auto at = std::ranges::find_if_not(all, [c](Vec3d v) { return usable(channel_of(v, c)); });
-            if (at == all.end()) continue;
-            const auto bad_f = [this, c](Vec3d v) { return !usable(channel_of(f(std::span(&v, 1))[0], c)); };
+            const auto bad_value = std::ranges::find_if_not(values, [c](Vec3d v) { return usable(channel_of(v, c)); });
+            if (bad_value == values.end()) continue;
+            const auto is_bad_f = [this, c](Vec3d v) { return !usable(channel_of(f(std::span(&v, 1))[0], c)); };
             return ShownFault{.kind = Kind::bad_f,
                 .size = 1,
-                .a = shortest_angles(w[static_cast<std::size_t>(at - all.begin())], bad_f),
+                .a = shortest_angles(w[static_cast<std::size_t>(bad_value - values.begin())], is_bad_f),
                 .channel = c};
         }
         return {};
     }
     std::optional<ShownFault> find_dark() const {
         if (!traits_.has_pdf || !sampler_.has_f()) return {};
-        const std::vector<Vec3d> w = directions(), of_f = f(w);
+        const std::vector<Vec3d> w = directions(), f_values = f(w);
         const std::vector<double> p = pdf(w);
         std::optional<std::size_t> best;
-        double lost = 0;
+        double lost_power = 0;
         for (std::size_t i = 0; i < w.size(); ++i) {
-            const double here = p[i] == 0 ? of_f[i].x * std::fabs(w[i].z) : 0;
-            if (here > 0) lost += here * solid_angle() / static_cast<double>(w.size());
-            if (here > 0 && (!best || here > of_f[*best].x * std::fabs(w[*best].z))) best = i;
+            const double f_cos = p[i] == 0 ? f_values[i].x * std::fabs(w[i].z) : 0;
+            if (f_cos > 0) lost_power += f_cos * solid_angle() / static_cast<double>(w.size());
+            if (f_cos > 0 && (!best || f_cos > f_values[*best].x * std::fabs(w[*best].z))) best = i;
         }
         if (!best) return {};
-        const auto dark = [this](Vec3d v) {
+        const auto is_dark = [this](Vec3d v) {
             return pdf(std::span(&v, 1))[0] == 0 && f(std::span(&v, 1))[0].x * std::fabs(v.z) > 0;
         };
-        return ShownFault{.kind = Kind::dark, .size = lost, .a = shortest_angles(w[*best], dark)};
+        return ShownFault{.kind = Kind::dark, .size = lost_power, .a = shortest_angles(w[*best], is_dark)};
     }
     /// The part of the draws that are directions.
     Mean drawn_share() const {
-        std::vector<double> drawn;
-        for (const Draw& d : draw(numbers())) drawn.push_back(d.pdf > 0 ? 1 : 0);
-        return Mean(drawn);
+        std::vector<double> indicators;
+        for (const Draw& d : draw(numbers())) indicators.push_back(d.pdf > 0 ? 1 : 0);
+        return Mean(indicators);
     }
     std::optional<ShownFault> find_integral() const {
         if (!traits_.has_pdf) return {};
-        const Mean integral = integrate(false, [&](std::span<const Vec3d> w) { return pdf(w); }), drawn = drawn_share();
-        const double size = std::fabs(integral.value - drawn.value);
-        if (!differ(integral.value, drawn.value, std::hypot(integral.error, 0.5 / std::sqrt(evaluations)))) return {};
+        const Mean integral = integrate(false, [&](std::span<const Vec3d> w) { return pdf(w); }), share = drawn_share();
+        const double size = std::fabs(integral.value - share.value);
+        if (!differ(integral.value, share.value, std::hypot(integral.error, 0.5 / std::sqrt(evaluations)))) return {};
         return ShownFault{.kind = Kind::integral, .size = size};
     }
     /// Bands of cos theta, sectors of phi, and their intersections, an eighth of the domain each way.
     std::optional<ShownFault> find_cell() const {
         if (!traits_.has_pdf) return {};
         constexpr std::size_t parts = 8;
-        std::array<std::array<double, parts>, parts> drawn{}, claimed{}, square{};
+        std::array<std::array<double, parts>, parts> draw_counts{}, pdf_sums{}, pdf_squares{};
         const auto part_of = [&](Vec3d w) {
-            const double across = (w.z - lowest()) / (1 - lowest()) * parts, about = angles_of(w).phi / 360 * parts;
+            const double height = (w.z - lowest()) / (1 - lowest()) * parts, turn = angles_of(w).phi / 360 * parts;
             const auto index = [](double x) {
                 return static_cast<std::size_t>(std::clamp(x, 0.0, static_cast<double>(parts) - 1));
             };
-            return std::pair(index(across), index(about));
+            return std::pair(index(height), index(turn));
         };
         const std::vector<Vec3d> w = directions();
         const std::vector<double> p = pdf(w);
-        double draws = 0, all = 0;
+        double draws = 0, pdf_total = 0;
         for (const Draw& d : draw(numbers()))
             if (d.pdf > 0 && (!hemisphere_ || d.wi.z > 0)) {
                 const auto [i, j] = part_of(d.wi);
-                drawn[i][j] += 1;
+                draw_counts[i][j] += 1;
                 draws += 1;
             }
         for (std::size_t k = 0; k < w.size(); ++k) {
             const auto [i, j] = part_of(w[k]);
-            claimed[i][j] += p[k];
-            square[i][j] += p[k] * p[k];
-            all += p[k];
+            pdf_sums[i][j] += p[k];
+            pdf_squares[i][j] += p[k] * p[k];
+            pdf_total += p[k];
         }
-        if (!(draws > 0 && all > 0)) return {};
+        if (!(draws > 0 && pdf_total > 0)) return {};
         ShownFault best{.kind = Kind::cell};
-        const auto look = [&](std::size_t i0, std::size_t i1, std::size_t j0, std::size_t j1) {
+        const auto try_cell = [&](std::size_t i0, std::size_t i1, std::size_t j0, std::size_t j1) {
             double s = 0, q = 0, variance = 0;
             for (std::size_t i = i0; i < i1; ++i)
                 for (std::size_t j = j0; j < j1; ++j) {
-                    s += drawn[i][j] / draws;
-                    q += claimed[i][j] / all;
-                    variance += square[i][j] / (all * all);
+                    s += draw_counts[i][j] / draws;
+                    q += pdf_sums[i][j] / pdf_total;
+                    variance += pdf_squares[i][j] / (pdf_total * pdf_total);
                 }
             const double error = std::sqrt(std::max(s, 1 / draws) / draws + variance);
             if (!differ(s, q, error) || std::fabs(s - q) <= best.size) return;
@@ -302,25 +303,25 @@ private:
                 .to_phi = static_cast<double>(j1) * sector};
         };
         for (std::size_t i = 0; i < parts; ++i) {
-            look(i, i + 1, 0, parts);
-            look(0, parts, i, i + 1);
-            for (std::size_t j = 0; j < parts; ++j) look(i, i + 1, j, j + 1);
+            try_cell(i, i + 1, 0, parts);
+            try_cell(0, parts, i, i + 1);
+            for (std::size_t j = 0; j < parts; ++j) try_cell(i, i + 1, j, j + 1);
         }
         return best.size > 0 ? std::optional(best) : std::nullopt;
     }
     std::optional<ShownFault> find_two_pdfs() const {
         if (!traits_.has_pdf) return {};
         double size = 0;
-        const auto two = [&](const Draw& d) {
+        const auto has_two_pdfs = [&](const Draw& d) {
             if (!(d.pdf > 0) || !usable(d)) return false;
             const double p = pdf(std::span(&d.wi, 1))[0];
             size = std::fabs(p - d.pdf) / d.pdf;
             return size > rounding;
         };
         const std::vector<PrimarySample> u = numbers();
-        const auto at = shortest_u(std::span(u).first(1024), two);
-        if (!at) return {};
-        return ShownFault{.kind = Kind::two_pdfs, .size = size, .u = *at};
+        const auto match = shortest_u(std::span(u).first(1024), has_two_pdfs);
+        if (!match) return {};
+        return ShownFault{.kind = Kind::two_pdfs, .size = size, .u = *match};
     }
     std::optional<ShownFault> find_physics() const {
         if (!sampler_.has_f()) return {};
@@ -331,32 +332,32 @@ private:
         }
         if (!traits_.reciprocal) return {};
         const std::vector<Vec3d> w = directions();
-        std::vector<Pair> there, back;
+        std::vector<Pair> pairs, swapped_pairs;
         for (std::size_t i = 0; i + 1 < w.size(); i += 2)
             if (w[i].z > 0.05 && w[i + 1].z > 0.05) {
-                there.push_back({w[i], w[i + 1]});
-                back.push_back({w[i + 1], w[i]});
+                pairs.push_back({w[i], w[i + 1]});
+                swapped_pairs.push_back({w[i + 1], w[i]});
             }
-        const std::vector<Vec3d> one = f(there), other = f(back);
+        const std::vector<Vec3d> values = f(pairs), swapped_values = f(swapped_pairs);
         std::optional<ShownFault> best;
-        for (std::size_t i = 0; i < there.size(); ++i)
+        for (std::size_t i = 0; i < pairs.size(); ++i)
             for (int c = 0; c < traits_.channels; ++c) {
-                const double a = channel_of(one[i], c), b = channel_of(other[i], c);
+                const double a = channel_of(values[i], c), b = channel_of(swapped_values[i], c);
                 const double size = std::fabs(a - b) / std::max({std::fabs(a), std::fabs(b), 1e-6});
                 if (size < 10 * rounding || (best && size <= best->size)) continue;
                 best = {.kind = Kind::not_reciprocal,
                     .size = size,
-                    .a = angles_of(there[i].wo),
-                    .b = angles_of(there[i].wi),
+                    .a = angles_of(pairs[i].wo),
+                    .b = angles_of(pairs[i].wi),
                     .channel = c};
             }
         if (!best) return {};
         for (const double step : {15.0, 5.0, 1.0, 0.1}) {
             const auto round = [step](double x) { return std::round(x / step) * step; };
             const Angles a{round(best->a.theta), round(best->a.phi)}, b{round(best->b.theta), round(best->b.phi)};
-            const Pair pair{a.direction(), b.direction()}, turned{b.direction(), a.direction()};
+            const Pair pair{a.direction(), b.direction()}, swapped_pair{b.direction(), a.direction()};
             const double x = channel_of(f(std::span(&pair, 1))[0], best->channel),
-                         y = channel_of(f(std::span(&turned, 1))[0], best->channel);
+                         y = channel_of(f(std::span(&swapped_pair, 1))[0], best->channel);
             if (std::fabs(x - y) < kept_size * best->size * std::max(std::fabs(x), std::fabs(y)) || a.theta >= 90 ||
                 b.theta >= 90 || x == y)
                 continue;
@@ -368,28 +369,28 @@ private:
     }
     std::optional<ShownFault> find_mean() const {
         if (!sampler_.has_f() || traits_.delta) return {};
-        std::optional<ShownFault> by_pdf;
-        if (traits_.has_pdf && !traits_.reciprocal_weight) by_pdf = find_mean_by_pdf();
-        return by_pdf ? by_pdf : find_mean_of_weights();
+        std::optional<ShownFault> fault;
+        if (traits_.has_pdf && !traits_.reciprocal_weight) fault = find_mean_by_pdf();
+        return fault ? fault : find_mean_of_weights();
     }
     std::optional<ShownFault> find_mean_by_pdf() const {
         std::vector<double> weights;
         std::vector<Vec3d> wi;
-        const std::vector<Draw> drawn = draw(numbers());
-        for (const Draw& d : drawn) wi.push_back(d.pdf > 0 ? d.wi : Vec3d{0, 0, 1});
-        const std::vector<Vec3d> at_draws = f(wi);
+        const std::vector<Draw> draws = draw(numbers());
+        for (const Draw& d : draws) wi.push_back(d.pdf > 0 ? d.wi : Vec3d{0, 0, 1});
+        const std::vector<Vec3d> f_values = f(wi);
         for (std::size_t i = 0; i < wi.size(); ++i)
-            weights.push_back(drawn[i].pdf > 0 ? at_draws[i].x * std::fabs(wi[i].z) / drawn[i].pdf : 0);
+            weights.push_back(draws[i].pdf > 0 ? f_values[i].x * std::fabs(wi[i].z) / draws[i].pdf : 0);
         const Mean integral = power(0), mean(weights);
         if (!differ(integral.value, mean.value, std::hypot(integral.error, mean.error))) return {};
         return ShownFault{.kind = Kind::mean, .size = std::fabs(integral.value - mean.value)};
     }
     /// The weights of the draws against the integral of f cos; W times the target against the integral of the target.
     std::optional<ShownFault> find_mean_of_weights() const {
-        const std::vector<Draw> drawn = draw(numbers());
-        if (std::ranges::none_of(drawn, [](const Draw& d) { return d.weight.has_value(); })) return {};
+        const std::vector<Draw> draws = draw(numbers());
+        if (std::ranges::none_of(draws, [](const Draw& d) { return d.weight.has_value(); })) return {};
         std::vector<Pair> pairs;
-        for (const Draw& d : drawn) pairs.push_back({wo_, d.pdf > 0 ? d.wi : Vec3d{0, 0, 1}});
+        for (const Draw& d : draws) pairs.push_back({wo_, d.pdf > 0 ? d.wi : Vec3d{0, 0, 1}});
         std::vector<double> factors(pairs.size(), 1);
         if (traits_.reciprocal_weight) {
             // The adapter returns W times a bounded function of the target, which is its f.
@@ -400,16 +401,16 @@ private:
         }
         std::vector<double> values(pairs.size());
         for (std::size_t i = 0; i < values.size(); ++i)
-            if (drawn[i].pdf > 0 && drawn[i].weight)
-                values[i] = factors[i] * (traits_.channels == 3 ? drawn[i].weights.x : *drawn[i].weight);
-        const auto of_target = [&](std::span<const Vec3d> w) {
-            std::vector<Pair> at;
-            for (const Vec3d v : w) at.push_back({wo_, v});
+            if (draws[i].pdf > 0 && draws[i].weight)
+                values[i] = factors[i] * (traits_.channels == 3 ? draws[i].weights.x : *draws[i].weight);
+        const auto evaluate_target = [&](std::span<const Vec3d> w) {
+            std::vector<Pair> target_pairs;
+            for (const Vec3d v : w) target_pairs.push_back({wo_, v});
             std::vector<double> out(w.size());
-            sampler_.target(at, out);
+            sampler_.target(target_pairs, out);
             return out;
         };
-        const Mean integral = traits_.reciprocal_weight ? integrate(false, of_target) : power(0), mean(values);
+        const Mean integral = traits_.reciprocal_weight ? integrate(false, evaluate_target) : power(0), mean(values);
         if (!differ(integral.value, mean.value, std::hypot(integral.error, mean.error))) return {};
         return ShownFault{.kind = Kind::weights, .size = std::fabs(integral.value - mean.value)};
     }
@@ -456,18 +457,18 @@ Reach reach_program(const std::string& program) {
 /// `word`: FILE.py, FILE.py:NAME or module:NAME.
 Reach reach_python(const std::string& word, const Traits& traits) {
     Reach out{.is_reservoir = traits.reciprocal_weight, .lines = import_lines(word)};
-    const char* given = traits.wo == Traits::WoDomain::none ? "" : "wo, ";
+    const char* wo_argument = traits.wo == Traits::WoDomain::none ? "" : "wo, ";
     out.lines += fmt::format(
         "\n\ndef sample(wo, u): return sampler.sample({0}u)[:2]\n"
         "def pdf(wo, wi): return sampler.pdf({0}wi)\n"
         "def f(wo, wi): return np.reshape(sampler.f({0}wi), (len(wi), -1))\n",
-        given);
+        wo_argument);
     out.lines += fmt::format(
         fmt::runtime(out.is_reservoir ? "def target(wo, wi): return sampler.target({0}wi)\n"
                                         "def weigh(wo, u): wi, w = sampler.sample({0}u); return w * target(wo, wi)\n"
                                       : "def weigh(wo, u): _, p, w = sampler.sample({0}u); "
                                         "return np.where(p > 0, w.reshape(len(u), -1)[:, 0], 0)\n"),
-        given);
+        wo_argument);
     return out;
 }
 
@@ -487,14 +488,14 @@ std::string lines_of(const ShownFault& fault, const Reach& reach, int numbers) {
     };
     const std::string uniform = directions("rng.random(n)"), cosine = directions("np.sqrt(rng.random(n))");
     // The sum over both sides of the surface, or one side alone.
-    const auto over_sides = [&](const std::string& value) {
+    const auto sum_sides = [&](const std::string& value) {
         return reach.hemisphere
             ? fmt::format(fmt::runtime(value), "w")
             : "sum(" + fmt::format(fmt::runtime(value), "w * [1, 1, side]") + " for side in (1, -1))";
     };
     const std::string power =
-        fmt::format("x = np.pi * {}\n", over_sides(fmt::format("f(wo, {{}})[:, {}]", fault.channel)));
-    const std::string many =
+        fmt::format("x = np.pi * {}\n", sum_sides(fmt::format("f(wo, {{}})[:, {}]", fault.channel)));
+    const std::string setup =
         fmt::format("n, rng = {}, np.random.default_rng(1)\nwo = np.repeat(wo, n, 0)\n", evaluations);
     const std::string draws = fmt::format("wi, p = sample(wo, rng.random((n, {}), np.float32).astype(float))\n{}",
         numbers, reach.hemisphere ? "p = np.where(wi[:, 2] > 0, p, 0)\n" : "");
@@ -531,16 +532,16 @@ std::string lines_of(const ShownFault& fault, const Reach& reach, int numbers) {
                 "wrong = abs(x - y) > {:g} * max(abs(x), abs(y))\n",
                 at_text(fault.a), at_text(fault.b), fault.channel, fault.channel, rounding);
         case Kind::integral:
-            return many + uniform + draws +
+            return setup + uniform + draws +
                 fmt::format(
                     "x = 2 * np.pi * {}\n"
                     "error = np.hypot(x.std(), 0.5) / n**0.5\n"
                     "print('pdf integrates to', x.mean(), '+-', error)\n"
                     "print('samples that draw a direction:', np.mean(p > 0))\n"
                     "wrong = abs(x.mean() - np.mean(p > 0)) > 5 * error\n",
-                    over_sides("pdf(wo, {})"));
+                    sum_sides("pdf(wo, {})"));
         case Kind::cell:
-            return many + uniform + (reach.hemisphere ? "" : "w[:, 2] *= rng.choice([-1, 1], n)\n") + draws +
+            return setup + uniform + (reach.hemisphere ? "" : "w[:, 2] *= rng.choice([-1, 1], n)\n") + draws +
                 fmt::format(
                     "def inside(w):\n"
                     "    phi = np.degrees(np.arctan2(w[:, 1], w[:, 0])) % 360\n"
@@ -551,18 +552,18 @@ std::string lines_of(const ShownFault& fault, const Reach& reach, int numbers) {
                     "wrong = abs(x - y) > 5 * np.hypot((max(x, 1 / n) / n)**0.5, np.sum((q * inside(w))**2)**0.5)\n",
                     fault.cell.from_cos, fault.cell.to_cos, fault.cell.from_phi, fault.cell.to_phi);
         case Kind::energy:
-            return many + cosine + power +
+            return setup + cosine + power +
                 "print('reflects', x.mean(), '+-', x.std() / n**0.5, 'expected at most 1')\n"
                 "wrong = x.mean() - 1 > 5 * x.std() / n**0.5\n";
         case Kind::mean:
-            return many + cosine + draws + power +
+            return setup + cosine + draws + power +
                 "wi = np.where(p[:, None] > 0, wi, [0, 0, 1])\n"
                 "y = np.where(p > 0, f(wo, wi)[:, 0] * np.abs(wi[:, 2]) / np.where(p > 0, p, 1), 0)\n"
                 "print('integral of f cos', x.mean(), 'and mean of the weights', y.mean())\n"
                 "wrong = abs(x.mean() - y.mean()) > 5 * np.hypot(x.std(), y.std()) / n**0.5\n";
         case Kind::weights:
-            return many + (reach.is_reservoir ? uniform : cosine) +
-                (reach.is_reservoir ? fmt::format("x = 2 * np.pi * {}\n", over_sides("target(wo, {})")) : power) +
+            return setup + (reach.is_reservoir ? uniform : cosine) +
+                (reach.is_reservoir ? fmt::format("x = 2 * np.pi * {}\n", sum_sides("target(wo, {})")) : power) +
                 fmt::format(
                     "y = weigh(wo, rng.random((n, {}), np.float32).astype(float))\n"
                     "print('integral of {}', x.mean(), 'and mean of the weights', y.mean())\n"
@@ -591,18 +592,18 @@ std::optional<std::string> repro_script(
             continue;
         }
         if (!reach) reach = flags.exec.empty() ? reach_python(flags.arm, traits) : reach_program(flags.exec);
-        const auto found = Bench(sampler, reach->hemisphere, worst->wo).find(finding.name);
-        if (!found) continue;
+        const auto fault = Bench(sampler, reach->hemisphere, worst->wo).find(finding.name);
+        if (!fault) continue;
         Angles wo = angles_of(worst->wo);
-        ShownFault shown = *found;
-        for (const Angles& round : rounder(wo)) {
-            const auto here = Bench(sampler, reach->hemisphere, round.direction()).find(finding.name);
-            if (!here || here->size < kept_size * found->size) continue;
-            wo = round;
-            shown = *here;
+        ShownFault shown_fault = *fault;
+        for (const Angles& angles : rounder(wo)) {
+            const auto round_fault = Bench(sampler, reach->hemisphere, angles.direction()).find(finding.name);
+            if (!round_fault || round_fault->size < kept_size * fault->size) continue;
+            wo = angles;
+            shown_fault = *round_fault;
             break;
         }
-        const std::string script = lines_of(shown, *reach, traits.numbers);
+        const std::string script = lines_of(shown_fault, *reach, traits.numbers);
         return fmt::format(
             "# {}: {}\n{}\n\n"
             "def at(theta, phi):  # degrees from n = +z, and about it from x\n"
@@ -618,7 +619,7 @@ std::optional<std::string> repro_script(
 namespace {
 
 std::string why_not_shown(const CheckFlags& flags, const Traits& traits, std::string_view verdict) {
-    const bool of_draws = verdict == "valid" || verdict == "physics";
+    const bool uses_draws_alone = verdict == "valid" || verdict == "physics";
     if (traits.number && verdict == "mean" && flags.estimates.empty())
         return "a script compares with a known value (--estimates), not with another estimator";
     if (traits.neighbours > 0)
@@ -626,7 +627,7 @@ std::string why_not_shown(const CheckFlags& flags, const Traits& traits, std::st
             "a draw merges the reservoirs of {} neighbours, which a script cannot supply", traits.neighbours);
     if (traits.reciprocal_weight && traits.domain)
         return "the weight of a draw is random and estimates 1/p; a script compares such weights of directions only";
-    if (!traits.has_pdf && !of_draws && (verdict != "mean" || traits.domain))
+    if (!traits.has_pdf && !uses_draws_alone && (verdict != "mean" || traits.domain))
         return "the sampler has no pdf that a script could compare the draws with";
     if (traits.delta && verdict == "mean") return "some draws belong to delta parts, which a script does not weigh";
     return "it does not show in 65,536 draws and points";
@@ -639,13 +640,13 @@ std::string why_no_repro(const CheckFlags& flags, std::span<const CheckCase> che
     for (const Finding& finding : findings_of(result)) {
         if (finding.state != State::wrong) continue;
         const auto worst = std::ranges::find(check_cases, finding.worst->check_case, &CheckCase::text);
-        std::string why = worst == check_cases.end() ? "it is a result of all w_o together, and a script has one"
-                                                     : why_not_shown(flags, worst->adapter->traits(), finding.name);
-        if (!reasons.empty() && reasons.back().second == why) reasons.back().first += ", " + finding.name;
-        else reasons.emplace_back(finding.name, std::move(why));
+        std::string reason = worst == check_cases.end() ? "it is a result of all w_o together, and a script has one"
+                                                        : why_not_shown(flags, worst->adapter->traits(), finding.name);
+        if (!reasons.empty() && reasons.back().second == reason) reasons.back().first += ", " + finding.name;
+        else reasons.emplace_back(finding.name, std::move(reason));
     }
     std::string out;
-    for (const auto& [names, why] : reasons) out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", names, why);
+    for (const auto& [names, reason] : reasons) out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", names, reason);
     return out.empty() ? "no verdict is wrong" : out;
 }
 

@@ -14,17 +14,17 @@ PrimarySample random_numbers(RandomBits& random, int count) {
     return out;
 }
 
-PrimarySample with_few_digits(const SamplerAdapter& sampler, Vec3d wo, const PrimarySample& found, int count,
+PrimarySample with_few_digits(const SamplerAdapter& sampler, Vec3d wo, const PrimarySample& u, int count,
     const std::function<bool(const Draw&)>& holds) {
     for (double scale = 10; scale < 1e8; scale *= 10) {
-        PrimarySample round = found;
+        PrimarySample round = u;
         for (int k = 0; k < count; ++k)
-            if (found[k] < below_one) round[k] = std::min(std::round(found[k] * scale) / scale, below_one);
+            if (u[k] < below_one) round[k] = std::min(std::round(u[k] * scale) / scale, below_one);
         Draw draw;
         sampler.sample(0, wo, {&round, 1}, {&draw, 1});
         if (holds(draw)) return round;
     }
-    return found;
+    return u;
 }
 
 }  // namespace crescent::cli

@@ -15,8 +15,8 @@ inline constexpr double below_one = 1 - 0x1p-24;  // the largest number of singl
 double uniform(RandomBits& random);
 /// Random numbers of one draw, of 24 bits each.
 PrimarySample random_numbers(RandomBits& random, int count);
-/// `found` with the fewest digits for which the draw at w_o has the property. count: of the numbers that are rounded.
-PrimarySample with_few_digits(const SamplerAdapter& sampler, Vec3d wo, const PrimarySample& found, int count,
+/// `u` with the fewest digits for which the draw at w_o has the property. count: of the numbers that are rounded.
+PrimarySample with_few_digits(const SamplerAdapter& sampler, Vec3d wo, const PrimarySample& u, int count,
     const std::function<bool(const Draw&)>& holds);
 
 }  // namespace crescent::cli

@@ -24,7 +24,7 @@ namespace of_points {
 using Kind = DomainPart::Kind;
 using Point = std::array<double, Domain::most_coordinates>;
 constexpr std::size_t count = 1u << 16;  // draws, and points
-constexpr double clear = 6;              // standard errors: hundreds of shares are compared
+constexpr double clear_errors = 6;       // standard errors: hundreds of shares are compared
 constexpr double rounding = 1e-3;        // relative: a difference that single precision does not explain
 
 /// The place and the scale of the draws on an infinite line.
@@ -73,8 +73,8 @@ struct UniformPart {
             return part.to - part.from;
         }
         if (std::isfinite(part.from) || std::isfinite(part.to)) {
-            const double far = line.scale * u / (1 - u);
-            to[0] = std::isfinite(part.from) ? part.from + far : part.to - far;
+            const double distance = line.scale * u / (1 - u);
+            to[0] = std::isfinite(part.from) ? part.from + distance : part.to - distance;
             return line.scale / ((1 - u) * (1 - u));
         }
         const double t = std::tan(pi * (u - 0.5));
@@ -87,7 +87,7 @@ struct UniformPart {
         std::string statements, columns, weight;
     };
     Lines lines(const std::string& suffix) const {
-        const auto name = [&](const char* of) { return of + suffix; };
+        const auto name = [&](const char* letter) { return letter + suffix; };
         const std::string r = name("r"), t = name("t"), z = name("z"), angle = "2 * np.pi * rng.random(n)";
         const auto direction = [&](const std::string& heights, const char* area) {
             return Lines{fmt::format("{}, {} = {}, {}\n{} = np.sqrt(1 - {}**2)\n", z, t, heights, angle, r, z),
@@ -158,15 +158,15 @@ private:
     Vec3d wo_;
     std::vector<PrimarySample> u_;
     std::vector<Draw> draws_;
-    std::vector<Point> drawn_, points_;   // of the draws that are points; random ones
-    std::vector<double> p_drawn_;         // of the draws, with them
-    std::vector<double> p_, reciprocal_;  // p of the points, and 1 / their own density
+    std::vector<Point> draw_points_, points_;  // of the draws that are points; random ones
+    std::vector<double> p_of_draws_;           // of the draws, with them
+    std::vector<double> p_, reciprocal_;       // p of the points, and 1 / their own density
     std::vector<UniformPart> parts_;
 
     std::size_t coordinates() const { return chart_.domain().coordinates(); }
-    std::span<const double> used(const Point& x) const { return std::span(x).first(coordinates()); }
-    const char* given() const { return traits_.wo == Traits::WoDomain::none ? "" : "wo, "; }
-    const char* given_each() const { return traits_.wo == Traits::WoDomain::none ? "" : "wo.repeat(n, 0), "; }
+    std::span<const double> coordinates_of(const Point& x) const { return std::span(x).first(coordinates()); }
+    const char* wo_argument() const { return traits_.wo == Traits::WoDomain::none ? "" : "wo, "; }
+    const char* repeated_wo() const { return traits_.wo == Traits::WoDomain::none ? "" : "wo.repeat(n, 0), "; }
 
     void draw() {
         RandomBits random(1);
@@ -176,9 +176,9 @@ private:
         sampler_.sample(0, wo_, u_, draws_);
         for (const Draw& d : draws_) {
             if (!(d.pdf > 0) || !std::isfinite(d.pdf + dot(d.wi, d.wi))) continue;
-            drawn_.emplace_back();
-            const double factor = chart_.point(d.wi, std::span(drawn_.back()).first(coordinates()));
-            p_drawn_.push_back(d.pdf / factor);
+            draw_points_.emplace_back();
+            const double factor = chart_.point(d.wi, std::span(draw_points_.back()).first(coordinates()));
+            p_of_draws_.push_back(d.pdf / factor);
         }
     }
     void make_points() {
@@ -202,18 +202,18 @@ private:
     /// To two digits, for the script.
     LineScale scale_of(const DomainPart& part, std::size_t coordinate) const {
         std::vector<double> x;
-        for (const Point& point : drawn_) x.push_back(point[coordinate]);
+        for (const Point& point : draw_points_) x.push_back(point[coordinate]);
         if (x.empty()) return {};
         const auto median = [&] {
             const auto middle = x.begin() + std::ssize(x) / 2;
             std::nth_element(x.begin(), middle, x.end());
             return *middle;
         };
-        const auto rounded = [](double v) { return v == 0 ? 0 : std::stod(fmt::format("{:.2g}", v)); };
+        const auto round_digits = [](double v) { return v == 0 ? 0 : std::stod(fmt::format("{:.2g}", v)); };
         LineScale out;
-        out.origin = std::isfinite(part.from) ? part.from : std::isfinite(part.to) ? part.to : rounded(median());
+        out.origin = std::isfinite(part.from) ? part.from : std::isfinite(part.to) ? part.to : round_digits(median());
         for (double& v : x) v = std::fabs(v - out.origin);
-        out.scale = rounded(median());
+        out.scale = round_digits(median());
         if (!(out.scale > 0)) out.scale = 1;
         return out;
     }
@@ -223,7 +223,7 @@ private:
         std::vector<Pair> pairs;
         std::vector<double> factors, out(points.size());
         for (const Point& x : points) {
-            const Vec3d w = chart_.direction(used(x), std::span(middle).first(chart_.spreads()));
+            const Vec3d w = chart_.direction(coordinates_of(x), std::span(middle).first(chart_.spreads()));
             Point image{};
             factors.push_back(chart_.point(w, std::span(image).first(coordinates())));
             pairs.push_back({wo_, w});
@@ -253,7 +253,7 @@ private:
 
     std::string lines_of_draws() const {
         return fmt::format("n, rng = {}, np.random.default_rng(1)\nx, p = sample({}rng.random((n, {}){}))\n", count,
-            given_each(), traits_.own_numbers(), traits_.u_bits == 53 ? "" : ", np.float32).astype(float");
+            repeated_wo(), traits_.own_numbers(), traits_.u_bits == 53 ? "" : ", np.float32).astype(float");
     }
     /// Random points y, and 1 / their density.
     std::string lines_of_points() const {
@@ -301,15 +301,15 @@ private:
         const auto is_bad = [](const Draw& d) {
             return !(d.pdf >= 0) || !std::isfinite(d.pdf) || (d.pdf > 0 && !std::isfinite(dot(d.wi, d.wi)));
         };
-        const auto bad = std::ranges::find_if(draws_, is_bad);
-        if (bad != draws_.end()) {
-            const PrimarySample u = shortest(u_[static_cast<std::size_t>(bad - draws_.begin())], is_bad);
+        const auto bad_draw = std::ranges::find_if(draws_, is_bad);
+        if (bad_draw != draws_.end()) {
+            const PrimarySample u = shortest(u_[static_cast<std::size_t>(bad_draw - draws_.begin())], is_bad);
             return fmt::format(
                 "x, p = sample({}{})\n"
                 "print('the point', x[0], 'with the density', p[0])\n"
                 "inside = {}\n"
                 "wrong = not (0 <= p[0] < np.inf and (inside[0] or p[0] == 0))\n",
-                given(), text_of_u(u), inside_domain());
+                wo_argument(), text_of_u(u), inside_domain());
         }
         const auto value = std::ranges::find_if(p_, [](double p) { return !(p >= 0) || !std::isfinite(p); });
         if (value == p_.end()) return "";
@@ -317,14 +317,14 @@ private:
         return fmt::format(
             "p = pdf({}np.array([[{:.17g}]]))[0]\nprint('pdf', p, 'expected a number >= 0')\n"
             "wrong = not 0 <= p < np.inf\n",
-            given(), fmt::join(used(x), ", "));
+            wo_argument(), fmt::join(coordinates_of(x), ", "));
     }
     std::string lines_of_integral() const {
         std::vector<double> x(count);
         for (std::size_t i = 0; i < count; ++i) x[i] = p_[i] * reciprocal_[i];
-        const double share = static_cast<double>(drawn_.size()) / static_cast<double>(count);
+        const double share = static_cast<double>(draw_points_.size()) / static_cast<double>(count);
         const auto [mean, error] = mean_of(x);
-        if (!(std::fabs(mean - share) > clear * std::hypot(error, 0.5 / std::sqrt(static_cast<double>(count)))))
+        if (!(std::fabs(mean - share) > clear_errors * std::hypot(error, 0.5 / std::sqrt(static_cast<double>(count)))))
             return "";
         return lines_of_draws() + lines_of_points() +
             fmt::format(
@@ -332,10 +332,10 @@ private:
                 "print('pdf integrates to', q.mean(), '+-', error)\n"
                 "print('samples that draw a point:', np.mean(p > 0))\n"
                 "wrong = abs(q.mean() - np.mean(p > 0)) > 5 * error\n",
-                given_each());
+                repeated_wo());
     }
     std::string lines_of_two_pdfs() const {
-        const std::size_t some = std::min<std::size_t>(draws_.size(), 1024);
+        const std::size_t draw_count = std::min<std::size_t>(draws_.size(), 1024);
         const auto differs = [&](const Draw& d) {
             if (!(d.pdf > 0) || !std::isfinite(d.pdf + dot(d.wi, d.wi))) return false;
             const Pair pair{wo_, d.wi};
@@ -343,20 +343,20 @@ private:
             sampler_.pdf(0, {&pair, 1}, {&p, 1});
             return std::fabs(p - d.pdf) > rounding * d.pdf;
         };
-        for (std::size_t i = 0; i < some; ++i)
+        for (std::size_t i = 0; i < draw_count; ++i)
             if (differs(draws_[i]))
                 return fmt::format(
                     "x, p = sample({0}{1})\nq = pdf({0}x)\n"
                     "print('pdf of the draw', p[0], 'and pdf(x)', q[0], 'expected the same')\n"
                     "wrong = abs(p[0] - q[0]) > {2:g} * p[0]\n",
-                    given(), text_of_u(shortest(u_[i], differs)), rounding);
+                    wo_argument(), text_of_u(shortest(u_[i], differs)), rounding);
         return "";
     }
     /// Entries of a set, or intervals with equal shares of the draws.
     std::vector<Band> bands_of(std::size_t coordinate, bool set, std::size_t parts) const {
         std::vector<Band> out;
         std::vector<double> x;
-        for (const Point& point : drawn_) x.push_back(point[coordinate]);
+        for (const Point& point : draw_points_) x.push_back(point[coordinate]);
         std::ranges::sort(x);
         constexpr std::size_t most_entries = 4096;
         if (set) {
@@ -372,12 +372,12 @@ private:
         return out;
     }
     struct Shares {
-        double drawn = 0, claimed = 0, error = 0;
-        double size() const { return std::fabs(drawn - claimed); }
+        double draw_share = 0, pdf_share = 0, error = 0;
+        double size() const { return std::fabs(draw_share - pdf_share); }
     };
     template <class Has> Shares shares(const Has& has) const {
-        double drawn = 0, sum = 0, total = 0, squares = 0;
-        for (const Point& x : drawn_) drawn += has(x);
+        double draw_count = 0, sum = 0, total = 0, squares = 0;
+        for (const Point& x : draw_points_) draw_count += has(x);
         for (std::size_t i = 0; i < count; ++i) {
             const double q = p_[i] * reciprocal_[i];
             total += q;
@@ -386,10 +386,11 @@ private:
                 squares += q * q;
             }
         }
-        const auto n = static_cast<double>(drawn_.size());
+        const auto n = static_cast<double>(draw_points_.size());
         if (!(n > 0 && total > 0)) return {};
-        const double share = drawn / n, claimed = sum / total;
-        return {share, claimed, std::sqrt(std::max({share, claimed, 1 / n}) / n + squares / (total * total))};
+        const double draw_share = draw_count / n, pdf_share = sum / total;
+        return {
+            draw_share, pdf_share, std::sqrt(std::max({draw_share, pdf_share, 1 / n}) / n + squares / (total * total))};
     }
     std::string lines_of_bands() const {
         std::vector<std::vector<Band>> single, coarse;
@@ -401,19 +402,19 @@ private:
             }
         std::vector<Band> best;
         double size = 0;
-        const auto look = [&](std::vector<Band> bands) {
+        const auto try_bands = [&](std::vector<Band> bands) {
             const Shares s = shares(
                 [&](const Point& x) { return std::ranges::all_of(bands, [&](const Band& b) { return b.has(x); }); });
-            if (s.size() < size || !(s.size() > clear * s.error)) return;
+            if (s.size() < size || !(s.size() > clear_errors * s.error)) return;
             size = s.size();
             best = std::move(bands);
         };
         for (const auto& bands : single)
-            for (const Band& band : bands) look({band});
+            for (const Band& band : bands) try_bands({band});
         for (std::size_t i = 0; i < coarse.size() && best.empty(); ++i)
             for (std::size_t j = i + 1; j < coarse.size(); ++j)
                 for (const Band& a : coarse[i])
-                    for (const Band& b : coarse[j]) look({a, b});
+                    for (const Band& b : coarse[j]) try_bands({a, b});
         if (best.empty()) return "";
         std::string condition;
         for (const Band& b : best)
@@ -427,7 +428,7 @@ private:
                 "a, b = np.mean(inside(x[p > 0])), np.sum(q * inside(y))\n"
                 "print('in this part: of the draws', a, 'and of pdf', b)\n"
                 "wrong = abs(a - b) > 5 * np.hypot((max(a, b, 1 / n) / n)**0.5, np.sum((q * inside(y))**2)**0.5)\n",
-                condition, given_each());
+                condition, repeated_wo());
     }
     std::string lines_of_dark() const {
         if (!sampler_.has_f()) return "";
@@ -437,7 +438,7 @@ private:
                 return fmt::format(
                     "x = np.array([[{1:.6g}]])\nprint('f', f({0}x)[0], 'and pdf', pdf({0}x)[0])\n"
                     "wrong = pdf({0}x)[0] == 0 and f({0}x)[0] > 0\n",
-                    given(), fmt::join(used(points_[i]), ", "));
+                    wo_argument(), fmt::join(coordinates_of(points_[i]), ", "));
         return "";
     }
     static std::pair<double, double> mean_of(std::span<const double> x) {
@@ -449,25 +450,25 @@ private:
     }
     std::string lines_of_mean() const {
         if (!sampler_.has_f()) return "";
-        std::vector<double> integral = integrands(points_), weights = integrands(drawn_);
+        std::vector<double> integral = integrands(points_), weights = integrands(draw_points_);
         for (std::size_t i = 0; i < count; ++i) integral[i] *= reciprocal_[i];
-        for (std::size_t i = 0; i < weights.size(); ++i) weights[i] /= p_drawn_[i];
+        for (std::size_t i = 0; i < weights.size(); ++i) weights[i] /= p_of_draws_[i];
         weights.resize(count);
         const auto [expected, error] = mean_of(integral);
         const auto [mean, error_of_mean] = mean_of(weights);
-        if (!(std::fabs(mean - expected) > clear * std::hypot(error, error_of_mean))) return "";
+        if (!(std::fabs(mean - expected) > clear_errors * std::hypot(error, error_of_mean))) return "";
         return lines_of_draws() + lines_of_points() +
             fmt::format(
                 "a, b = f({0}y) * size, np.zeros(n)\n"
                 "b[p > 0] = (f({0}x) / p)[p > 0]\n"
                 "print('integral of f', a.mean(), 'and mean of f / pdf', b.mean())\n"
                 "wrong = abs(a.mean() - b.mean()) > 5 * np.hypot(a.std(), b.std()) / n**0.5\n",
-                given_each());
+                repeated_wo());
     }
 };
 
 std::string reach_lines(const CheckFlags& flags, const Traits& traits, std::size_t coordinates) {
-    const char* given = traits.wo == Traits::WoDomain::none ? "" : "wo, ";
+    const char* wo_argument = traits.wo == Traits::WoDomain::none ? "" : "wo, ";
     if (flags.exec.empty())
         return import_lines(flags.arm) +
             fmt::format(
@@ -475,7 +476,7 @@ std::string reach_lines(const CheckFlags& flags, const Traits& traits, std::size
                 "np.broadcast_to(p, len(u))\n"
                 "def pdf({0}x): return np.broadcast_to(sampler.pdf({0}x{1}), len(x))\n"
                 "def f({0}x): return np.reshape(sampler.f({0}x{1}), (len(x), -1))[:, 0]\n",
-                given, coordinates == 1 ? "[:, 0]" : "");
+                wo_argument, coordinates == 1 ? "[:, 0]" : "");
     const Handshake hello = handshake_with(flags.exec);
     const auto verb = [&](const char* line, const char* block) { return hello.blocks() ? block : line; };
     return ask_lines(hello, flags.exec, coordinates + 1) +
@@ -483,7 +484,7 @@ std::string reach_lines(const CheckFlags& flags, const Traits& traits, std::size
             "\n\ndef sample({0}u): a = ask('{1}', {0}u); return a[:, :{2}], a[:, {2}]\n"
             "def pdf({0}x): return ask('{3}', {0}x)[:, 0]\n"
             "def f({0}x): return ask('{4}', {0}x)[:, 0]\n",
-            given, verb("sample", "smpl"), coordinates, verb("pdf", "pdf_"), verb("f", "f___"));
+            wo_argument, verb("sample", "smpl"), coordinates, verb("pdf", "pdf_"), verb("f", "f___"));
 }
 
 std::string script_of(const Finding& finding, const std::string& reach, const std::string& lines) {
@@ -519,8 +520,9 @@ std::optional<std::string> script_of_number(
         reach = ask_lines(hello, flags.exec, channels) +
             fmt::format("\n\ndef sample(u): return ask('{}', u)\n", hello.blocks() ? "smpl" : "sample");
     }
-    const std::string draws = fmt::format("rng = np.random.default_rng(1)\nvalues = sample(rng.random(({{}}, {}){}))\n",
-        traits.numbers, traits.u_bits == 53 ? "" : ", np.float32).astype(float");
+    const std::string draw_lines =
+        fmt::format("rng = np.random.default_rng(1)\nvalues = sample(rng.random(({{}}, {}){}))\n", traits.numbers,
+            traits.u_bits == 53 ? "" : ", np.float32).astype(float");
     constexpr std::size_t most_draws = 1u << 20;
     std::vector<PrimarySample> u;
     RandomBits random(1);
@@ -528,31 +530,31 @@ std::optional<std::string> script_of_number(
         if (finding.state != State::wrong) continue;
         for (std::size_t n = 1u << 16; n <= most_draws; n *= 4) {
             while (u.size() < n) u.push_back(random_numbers(random, traits.numbers));
-            std::vector<Draw> drawn(n);
-            estimator.sample(0, {0, 0, 1}, u, drawn);
-            bool bad = false;
+            std::vector<Draw> draws(n);
+            estimator.sample(0, {0, 0, 1}, u, draws);
+            bool has_bad_value = false;
             Vec3d mean{}, square{};
-            for (const Draw& d : drawn) {
+            for (const Draw& d : draws) {
                 const Vec3d v = channels == 3 ? d.weights : Vec3d{d.weight.value_or(0), 0, 0};
-                bad = bad || !std::isfinite(v.x + v.y + v.z);
+                has_bad_value = has_bad_value || !std::isfinite(v.x + v.y + v.z);
                 mean = mean + v * (1 / static_cast<double>(n));
                 square = square + Vec3d{v.x * v.x, v.y * v.y, v.z * v.z} * (1 / static_cast<double>(n));
             }
-            const bool invalid = finding.name == "valid";
-            if (invalid && bad)
+            const bool is_validity = finding.name == "valid";
+            if (is_validity && has_bad_value)
                 return of_points::script_of(finding, reach,
-                    fmt::format(fmt::runtime(draws), n) +
+                    fmt::format(fmt::runtime(draw_lines), n) +
                         "bad = ~np.isfinite(values).all(1)\nprint(bad.sum(), 'values are not finite')\nwrong = "
                         "bad.any()\n");
-            if (invalid || finding.name != "mean" || flags.estimates.empty()) continue;
+            if (is_validity || finding.name != "mean" || flags.estimates.empty()) continue;
             const std::array<double, 3> expected = expected_values(flags, traits.channels);
             for (std::size_t c = 0; c < channels; ++c) {
                 const double x = channel_of(mean, static_cast<int>(c)), e = expected[c];
                 const double error =
                     std::sqrt(std::max(channel_of(square, static_cast<int>(c)) - x * x, 0.0) / static_cast<double>(n));
-                if (!(std::fabs(x - e) > of_points::clear * error)) continue;
+                if (!(std::fabs(x - e) > of_points::clear_errors * error)) continue;
                 return of_points::script_of(finding, reach,
-                    fmt::format(fmt::runtime(draws), 2 * n) +
+                    fmt::format(fmt::runtime(draw_lines), 2 * n) +
                         fmt::format("x = values[:, {}]\nmean, error = x.mean(), x.std() / len(x)**0.5\n"
                                     "print('mean', mean, '+-', error, 'expected', {:.12g})\n"
                                     "wrong = abs(mean - {:.12g}) > 5 * error\n",

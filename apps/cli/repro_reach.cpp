@@ -23,12 +23,12 @@ std::string python_text(const std::string& text) { return nlohmann::json(text).d
 std::string replaced_import(const std::filesystem::path& file) {
     std::ifstream in(file);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    static const std::regex imported("(^|\\n)[ \\t]*(import|from)[ \\t]+crescent\\b");
-    static const std::regex more(
+    static const std::regex crescent_import("(^|\\n)[ \\t]*(import|from)[ \\t]+crescent\\b");
+    static const std::regex further_use(
         "crescent\\.(?!Sampler\\b)|import[ \\t]+crescent[ \\t]+as|from[ \\t]+crescent[ \\t]+import[ "
         "\\t]+(?!Sampler[ \\t]*(\\r?\\n|$))");
-    if (!std::regex_search(text, imported)) return "";
-    if (std::regex_search(text, more)) return "# The file of the sampler needs crescent.\n";
+    if (!std::regex_search(text, crescent_import)) return "";
+    if (std::regex_search(text, further_use)) return "# The file of the sampler needs crescent.\n";
     return "from types import SimpleNamespace as Space\n"
            "def put(sample, pdf=None, f=None, **more): return Space(sample=sample, pdf=pdf, f=f, **more)\n"
            "sys.modules['crescent'] = Space(Sampler=put)  # all that the file of the sampler uses of it\n";

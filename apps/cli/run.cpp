@@ -43,11 +43,11 @@ int show_preview(const Experiment& experiment, const RunOptions& options, Progre
 
 }  // namespace
 
-std::string experiment_file(const std::string& given) {
-    std::error_code none;
-    const bool name = given.find_first_of("/.") == std::string::npos && !std::filesystem::exists(given, none);
-    const std::string installed = name ? shared_file("experiments/" + given + ".toml") : "";
-    return installed.empty() ? given : installed;
+std::string experiment_file(const std::string& word) {
+    std::error_code ignored;
+    const bool is_name = word.find_first_of("/.") == std::string::npos && !std::filesystem::exists(word, ignored);
+    const std::string installed_file = is_name ? shared_file("experiments/" + word + ".toml") : "";
+    return installed_file.empty() ? word : installed_file;
 }
 
 int run(const RunFlags& flags) {
@@ -86,8 +86,8 @@ int run(const RunFlags& flags) {
 
 namespace {
 
-void only_with_gl(const char* flag, bool given) {
-    if (given) throw InputError({flag, 0, 0}, "expected together with --instrument gl");
+void only_with_gl(const char* flag, bool is_given) {
+    if (is_given) throw InputError({flag, 0, 0}, "expected together with --instrument gl");
 }
 
 }  // namespace
@@ -109,19 +109,19 @@ int join(const JoinFlags& flags) {
     std::string command = "crescent join";
     for (const std::string& part : flags.parts) command += " " + shell_word(part);
     for (const std::string& part : flags.parts) {
-        std::error_code unknown;
+        std::error_code ignored;
         std::filesystem::path folder = part;
-        if (!std::filesystem::is_directory(folder, unknown)) folder = folder.parent_path() / ".";
-        if (std::filesystem::equivalent(folder, flags.out, unknown))
+        if (!std::filesystem::is_directory(folder, ignored)) folder = folder.parent_path() / ".";
+        if (std::filesystem::equivalent(folder, flags.out, ignored))
             throw InputError({fmt::format("--out {}", flags.out), 0, 0},
                 fmt::format("expected another folder than that of the part {}", part));
     }
-    const Measured joined = crescent::join(flags.parts, command);
+    const Measured joined_run = crescent::join(flags.parts, command);
     ProgressMonitor monitor;
-    write_metrics(joined, flags.out, monitor);
-    print(terminal_summary(report_inputs(joined), {}, flags.out,
+    write_metrics(joined_run, flags.out, monitor);
+    print(terminal_summary(report_inputs(joined_run), {}, flags.out,
         {.metrics = true, .films = false, .plates = false, .report = false}, false, columns_of_summary()));
-    return joined.metrics.all_hold() ? passed : failed;
+    return joined_run.metrics.all_hold() ? passed : failed;
 }
 
 }  // namespace crescent::cli

@@ -14,9 +14,9 @@ namespace {
 
 /// Returns the line of the first match of a pattern from a line on; 0: there is none.
 unsigned line_with(const std::vector<std::string>& lines, const std::string& pattern, unsigned from = 1) {
-    const std::regex wanted(pattern);
+    const std::regex expression(pattern);
     for (unsigned k = from; k <= lines.size(); ++k)
-        if (std::regex_search(lines[k - 1], wanted)) return k;
+        if (std::regex_search(lines[k - 1], expression)) return k;
     return 0;
 }
 
@@ -48,12 +48,12 @@ void blank_comments(std::vector<std::string>& lines) {
     bool in_block = false;
     for (std::string& line : lines)
         for (std::size_t i = 0; i < line.size(); ++i) {
-            const std::string_view two = std::string_view(line).substr(i, 2);
-            if (!in_block && two == "//") {
+            const std::string_view pair = std::string_view(line).substr(i, 2);
+            if (!in_block && pair == "//") {
                 line.resize(i);
                 break;
             }
-            if (two == (in_block ? "*/" : "/*")) {
+            if (pair == (in_block ? "*/" : "/*")) {
                 in_block = !in_block;
                 line[i] = line[i + 1] = ' ';
                 ++i;
@@ -64,8 +64,8 @@ void blank_comments(std::vector<std::string>& lines) {
 /// Whether the text from this line and column on has a body before its first semicolon.
 bool is_definition(const std::vector<std::string>& lines, std::size_t k, std::size_t column) {
     for (; k < lines.size(); ++k, column = 0)
-        if (const std::size_t found = lines[k].find_first_of("{;", column); found != std::string::npos)
-            return lines[k][found] == '{';
+        if (const std::size_t position = lines[k].find_first_of("{;", column); position != std::string::npos)
+            return lines[k][position] == '{';
     return false;
 }
 
@@ -75,17 +75,17 @@ unsigned line_of_function(const std::vector<std::string>& lines, const std::stri
     const std::regex head(R"(^\s*(?!return\b|else\b)((fn|func)\s+|([A-Za-z_][\w<>:,\[\]]*\s+)+|(?=)" + name +
         R"(\b)))" + name + R"(\s*\()");
     const std::regex type(R"(^\s*[A-Za-z_][\w<>:,\[\]]*(\s+[\w<>:,\[\]]+)*\s*$)");
-    unsigned declared = 0;
+    unsigned declaration = 0;
     for (std::size_t k = 0; k < lines.size(); ++k) {
         std::smatch match;
         if (!std::regex_search(lines[k], match, head)) continue;
-        const bool bare = match[1].length() == 0;
-        if (bare && (k == 0 || !std::regex_match(lines[k - 1], type))) continue;
-        const auto line = static_cast<unsigned>(bare ? k : k + 1);
+        const bool is_bare = match[1].length() == 0;
+        if (is_bare && (k == 0 || !std::regex_match(lines[k - 1], type))) continue;
+        const auto line = static_cast<unsigned>(is_bare ? k : k + 1);
         if (is_definition(lines, k, static_cast<std::size_t>(match.length()))) return line;
-        if (declared == 0) declared = line;
+        if (declaration == 0) declaration = line;
     }
-    return declared;
+    return declaration;
 }
 
 /// The statements of `// crescent: sample = ...` in a shader.
@@ -97,11 +97,11 @@ std::string sample_comments(const std::vector<std::string>& lines) {
     return out;
 }
 
-/// The line that begins the definition of the first function that the statements call and the file defines. `given`:
-/// the statements of the command line; "": those in the file.
-unsigned line_in_shader(const std::string& file, const std::string& given) {
+/// The line that begins the definition of the first function that the statements call and the file defines.
+/// `flag_statements`: the statements of the command line; "": those in the file.
+unsigned line_in_shader(const std::string& file, const std::string& flag_statements) {
     std::vector<std::string> lines = lines_of(file);
-    const std::string statements = given.empty() ? sample_comments(lines) : given;
+    const std::string statements = flag_statements.empty() ? sample_comments(lines) : flag_statements;
     blank_comments(lines);
     const std::regex call(R"(([A-Za-z_][A-Za-z0-9_]*)\s*\()");
     for (std::sregex_iterator it(statements.begin(), statements.end(), call), end; it != end; ++it)
@@ -137,11 +137,11 @@ Place place_in_experiment(const CheckFlags& flags) {
     const Experiment experiment = load(flags.arm, flags.settings);
     for (const ArmPlan& arm : experiment.arms) {
         if (arm.name != flags.sampler) continue;
-        const Place found = arm.python ? place_in_python(*arm.python)
+        const Place place = arm.python ? place_in_python(*arm.python)
             : arm.exec                 ? place_in_command(*arm.exec)
                                        : Place{};
-        if (found.second > 0) return found;
-        return {flags.arm, arm.at.file == flags.arm ? arm.at.line : 0};
+        if (place.second > 0) return place;
+        return {flags.arm, arm.location.file == flags.arm ? arm.location.line : 0};
     }
     return {flags.arm, 0};
 }

@@ -17,16 +17,16 @@ namespace crescent::cli {
 
 namespace {
 
-std::atomic<ProgressMonitor*> watched{nullptr};
-std::atomic<bool> let_finish{false};
-std::atomic<Outputs> left_behind{Outputs::untouched};  // by work that is no longer watched
-constexpr itimerval grace_period{{}, {0, 500'000}};    // a large process needs time to end
-constexpr itimerval moving_grace_period{{}, {5, 0}};   // outputs being moved are completed, if the disk is fast enough
+std::atomic<ProgressMonitor*> watched_monitor{nullptr};
+std::atomic<bool> may_finish{false};
+std::atomic<Outputs> last_outputs{Outputs::untouched};  // by work that is no longer watched
+constexpr itimerval grace_period{{}, {0, 500'000}};     // a large process needs time to end
+constexpr itimerval moving_grace_period{{}, {5, 0}};    // outputs being moved are completed, if the disk is fast enough
 
 /// Returns the state of the outputs when the process ends here.
 const char* last_message() {
-    const ProgressMonitor* monitor = watched.load();
-    switch (monitor ? monitor->outputs.load() : left_behind.load()) {
+    const ProgressMonitor* monitor = watched_monitor.load();
+    switch (monitor ? monitor->outputs.load() : last_outputs.load()) {
         case Outputs::moving:
             return "crescent: interrupted; the outputs are either all of the earlier run or all of this run\n";
         case Outputs::complete: return "crescent: interrupted; the outputs of this run are complete\n";
@@ -44,13 +44,13 @@ extern "C" void end_now(int) {
 }
 
 extern "C" void time_is_up(int signal) {
-    const ProgressMonitor* monitor = watched.load();
-    if (!monitor || monitor->outputs == Outputs::untouched || let_finish.exchange(true)) end_now(signal);
+    const ProgressMonitor* monitor = watched_monitor.load();
+    if (!monitor || monitor->outputs == Outputs::untouched || may_finish.exchange(true)) end_now(signal);
     else ::setitimer(ITIMER_REAL, &moving_grace_period, nullptr);
 }
 
 extern "C" void request_stop(int signal) {
-    ProgressMonitor* monitor = watched.load();
+    ProgressMonitor* monitor = watched_monitor.load();
     if (!monitor || monitor->stop.exchange(true)) end_now(signal);
     else ::setitimer(ITIMER_REAL, &grace_period, nullptr);
 }
@@ -66,9 +66,10 @@ void handle(int signal, void (*handler)(int)) {
 }  // namespace
 
 void end_on_signals() {
-    struct sigaction before{};
+    struct sigaction previous_action{};
     for (const int signal : {SIGINT, SIGTERM}) handle(signal, end_now);
-    if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(SIGHUP, end_now);  // nohup
+    if (::sigaction(SIGHUP, nullptr, &previous_action) == 0 && previous_action.sa_handler != SIG_IGN)
+        handle(SIGHUP, end_now);  // nohup
 }
 
 // Installed before the constructors of all libraries run, so that a signal in the first milliseconds also ends with
@@ -78,24 +79,25 @@ void end_on_signals() {
 #define __has_feature(x) 0
 #endif
 #if !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer) && !__has_feature(memory_sanitizer)
-[[gnu::section(".preinit_array"), gnu::used]] void (*before_all)() = end_on_signals;
+[[gnu::section(".preinit_array"), gnu::used]] void (*preinit_entry)() = end_on_signals;
 #endif
 #endif
 
 StopOnSignal::StopOnSignal(ProgressMonitor& monitor) {
-    watched = &monitor;
+    watched_monitor = &monitor;
     handle(SIGALRM, time_is_up);
-    struct sigaction before{};
+    struct sigaction previous_action{};
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) handle(signal, request_stop);
+        if (::sigaction(signal, nullptr, &previous_action) == 0 && previous_action.sa_handler != SIG_IGN)
+            handle(signal, request_stop);
 }
 
 StopOnSignal::~StopOnSignal() {
-    left_behind = watched.load()->outputs.load();
+    last_outputs = watched_monitor.load()->outputs.load();
     end_on_signals();
     const itimerval never{};
     ::setitimer(ITIMER_REAL, &never, nullptr);
-    watched = nullptr;
+    watched_monitor = nullptr;
 }
 
 }  // namespace crescent::cli

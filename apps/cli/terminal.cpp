@@ -31,8 +31,8 @@ const char* colour_of(State state) {
 }
 
 std::size_t columns_of_environment() {
-    const char* given = std::getenv("COLUMNS");
-    const std::string_view text = given ? given : "";
+    const char* variable = std::getenv("COLUMNS");
+    const std::string_view text = variable ? variable : "";
     std::size_t columns = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), columns);
     return error == std::errc{} && end == text.data() + text.size() && columns >= least_columns ? columns : 0;
@@ -43,10 +43,10 @@ std::size_t columns_of_environment() {
 Terminal terminal_of_stdout() {
     if (!::isatty(STDOUT_FILENO)) return {columns_of_environment(), false};
     winsize size{};
-    const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    const bool has_size = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
     const char* term = std::getenv("TERM");
     const char* no_colour = std::getenv("NO_COLOR");
-    return {std::clamp<std::size_t>(known ? size.ws_col : 80, least_columns, most_columns),
+    return {std::clamp<std::size_t>(has_size ? size.ws_col : 80, least_columns, most_columns),
         term && std::string_view(term) != "dumb" && !(no_colour && *no_colour)};
 }
 
@@ -59,8 +59,8 @@ void print_marked(std::span<const ScreenLine> lines, const Terminal& terminal) {
     std::string out;
     for (const ScreenLine& line : lines) {
         const std::string head = (line.state ? std::string(mark_of(*line.state)) + " " : "") + printable(line.head);
-        const bool coloured = line.state && terminal.colours;
-        out += coloured ? fmt::format("\x1b[{}m{}\x1b[0m", colour_of(*line.state), head) : head;
+        const bool has_colour = line.state && terminal.colours;
+        out += has_colour ? fmt::format("\x1b[{}m{}\x1b[0m", colour_of(*line.state), head) : head;
         out += printable_lines(line.text) + "\n";
     }
     print_as_it_is(out);

@@ -30,7 +30,7 @@ std::vector<Caption> within(const Timeline& timeline, const Part& part) {
     return out;
 }
 
-std::string entities(const std::string& plain) { return plates::escaped(plain); }
+std::string entities(const std::string& text) { return plates::escaped(text); }
 
 std::string in_ffmetadata(const std::string& text) {
     std::string out;
@@ -69,9 +69,9 @@ std::string transcript(const Timeline& timeline, const Part& part) {
     for (std::size_t k = 0; k < timeline.shots().size(); ++k) {
         if (timeline.begin(k + 1) <= part.first || timeline.begin(k) >= part.last) continue;
         const Shot& shot = timeline.shots()[k];
-        const long at = std::lround(std::max(0.0, double(timeline.begin(k)) / frames_a_second - start_of(part)));
-        text += fmt::format("{}{}:{:02}  {}\n\n", text.empty() ? "" : "\n", at / 60, at % 60, shot.title.plain());
-        text += "[Seen: " + shot.seen.plain() + "]\n\n";
+        const long start = std::lround(std::max(0.0, double(timeline.begin(k)) / frames_a_second - start_of(part)));
+        text += fmt::format("{}{}:{:02}  {}\n\n", text.empty() ? "" : "\n", start / 60, start % 60, shot.title.plain());
+        text += "[Seen: " + shot.description.plain() + "]\n\n";
         for (const Caption& c : captions)
             if (c.shot == k) text += one_line(c.words.plain()) + "\n";
     }

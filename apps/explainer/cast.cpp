@@ -16,14 +16,14 @@ const ArmPlan* by_sampler(const Experiment& e, const std::string& sampler) {
 }
 
 /// Returns the arm with this sampler; if there is none, reports an error with the nearest that the experiment has.
-std::string needed(const Experiment& e, const std::string& sampler, std::vector<Diagnostic>& wrong) {
+std::string needed(const Experiment& e, const std::string& sampler, std::vector<Diagnostic>& diagnostics) {
     if (const ArmPlan* arm = by_sampler(e, sampler)) return arm->name;
-    std::vector<std::string> there;
-    for (const ArmPlan& arm : e.arms) there.push_back(arm.sampler);
-    const std::string near = nearest(sampler, there);
-    wrong.push_back({e.place_of("arms"),
+    std::vector<std::string> samplers;
+    for (const ArmPlan& arm : e.arms) samplers.push_back(arm.sampler);
+    const std::string suggestion = nearest(sampler, samplers);
+    diagnostics.push_back({e.place_of("arms"),
         fmt::format("the film compares 'cosine' with 'phong', and no arm here samples by '{}'{}; expected [arms.{}]",
-            sampler, near.empty() ? "" : " (nearest: '" + near + "')", sampler)});
+            sampler, suggestion.empty() ? "" : " (nearest: '" + suggestion + "')", sampler)});
     return "";
 }
 
@@ -31,9 +31,9 @@ std::string needed(const Experiment& e, const std::string& sampler, std::vector<
 std::string added(Experiment& e, const std::string& sampler, const std::vector<std::uint64_t>& sample_counts) {
     for (ArmPlan& arm : e.arms) {
         if (arm.sampler != sampler) continue;
-        std::vector<std::uint64_t> all;
-        std::ranges::set_union(arm.n, sample_counts, std::back_inserter(all));
-        arm.n = all;
+        std::vector<std::uint64_t> counts;
+        std::ranges::set_union(arm.n, sample_counts, std::back_inserter(counts));
+        arm.n = counts;
         return arm.name;
     }
     std::string name = sampler;
@@ -43,37 +43,38 @@ std::string added(Experiment& e, const std::string& sampler, const std::vector<s
 }
 
 std::vector<std::uint64_t> shared(const ArmPlan& a, const ArmPlan& b) {
-    std::vector<std::uint64_t> both;
-    std::ranges::set_intersection(a.n, b.n, std::back_inserter(both));
-    return both;
+    std::vector<std::uint64_t> counts;
+    std::ranges::set_intersection(a.n, b.n, std::back_inserter(counts));
+    return counts;
 }
 
 }  // namespace
 
 Cast cast_of(Experiment& e) {
     Cast c;
-    std::vector<Diagnostic> wrong;
-    c.cosine = needed(e, "cosine", wrong);
-    c.phong = needed(e, "phong", wrong);
+    std::vector<Diagnostic> diagnostics;
+    c.cosine = needed(e, "cosine", diagnostics);
+    c.phong = needed(e, "phong", diagnostics);
     if (const ArmPlan* arm = by_sampler(e, "uniform")) c.uniform = arm->name;
     if (!c.cosine.empty() && !c.phong.empty()) {
         c.sample_counts = shared(*e.find_arm(c.cosine), *e.find_arm(c.phong));
         if (c.sample_counts.size() < 2)
-            wrong.push_back({e.place_of("arms." + c.phong),
+            diagnostics.push_back({e.place_of("arms." + c.phong),
                 fmt::format("the film follows '{}' and '{}' up one ladder; expected two n or more that both have",
                     c.cosine, c.phong)});
     }
     if (e.regions.size() < 2)
-        wrong.push_back({e.place_of("regions"), "the film needs two regions: the highlight first, then the surround"});
+        diagnostics.push_back(
+            {e.place_of("regions"), "the film needs two regions: the highlight first, then the surround"});
     if (all_lights(e).empty())
-        wrong.push_back(
+        diagnostics.push_back(
             {e.place_of("disks"), "the film needs a light other than the fill, which a cosine sample rarely meets"});
-    const bool lobe = std::ranges::any_of(
+    const bool has_lobe = std::ranges::any_of(
         e.shapes, [](const Shape& s) { return s.material.rho_s > 0 && s.material.brdf == lobe_named("phong"); });
-    if (!lobe)
-        wrong.push_back(
+    if (!has_lobe)
+        diagnostics.push_back(
             {e.place_of("shapes"), "the film needs a shape with a Phong lobe: rho_s above 0 and brdf = \"phong\""});
-    if (!wrong.empty()) throw InputError(std::move(wrong));
+    if (!diagnostics.empty()) throw InputError(std::move(diagnostics));
 
     c.highlight = e.regions.front().name;
     const auto area = [](const Region& r) { return r.box.width() * r.box.height(); };

@@ -29,14 +29,14 @@ RunKey Data::key(const std::string& arm, std::uint64_t n, double s) const {
 }
 
 const Film* Data::film(const RunKey& key) const {
-    const auto found = std::ranges::find(films, key, &std::pair<RunKey, Film>::first);
-    return found == films.end() ? nullptr : &found->second;
+    const auto match = std::ranges::find(films, key, &std::pair<RunKey, Film>::first);
+    return match == films.end() ? nullptr : &match->second;
 }
 
 const ReferenceFilm& Data::reference(double s) const {
-    const auto found = std::ranges::find(references, s > 0 ? s : cast.s, &ReferenceFilm::s);
-    ensure(found != references.end(), "there is a reference for every exponent of the run");
-    return *found;
+    const auto match = std::ranges::find(references, s > 0 ? s : cast.s, &ReferenceFilm::s);
+    ensure(match != references.end(), "there is a reference for every exponent of the run");
+    return *match;
 }
 
 const RunMetrics* Data::metric(const RunKey& key) const { return metrics.find(key.arm, key.n, key.s, key.seed); }
@@ -47,9 +47,9 @@ const RegionMetrics* Data::region(const RunKey& key, const std::string& region) 
 }
 
 const Box& Data::box(const std::string& region) const {
-    const Region* found = experiment.find_region(region);
-    ensure(found != nullptr, "the film uses regions of the experiment");
-    return found->box;
+    const Region* match = experiment.find_region(region);
+    ensure(match != nullptr, "the film uses regions of the experiment");
+    return match->box;
 }
 
 Number Data::rmse(const RunKey& key, const std::string& name, int digits) const {
@@ -63,8 +63,8 @@ Number Data::s_of(const RunKey& key) const { return number(key.s, 4, "s of " + t
 Number Data::arm(const std::string& arm) const { return {plates::arm_name(arm, experiment), "name of an arm"}; }
 
 plates::Colour Data::ink(const std::string& arm) const {
-    const auto at = std::ranges::find(experiment.arms, arm, &ArmPlan::name);
-    return plates::series[std::size_t(at - experiment.arms.begin()) % plates::series_count];
+    const auto match = std::ranges::find(experiment.arms, arm, &ArmPlan::name);
+    return plates::series[std::size_t(match - experiment.arms.begin()) % plates::series_count];
 }
 
 plates::Block photograph_of(const Data& data, const plates::View& view, const Box& box) {
@@ -74,12 +74,12 @@ plates::Block photograph_of(const Data& data, const plates::View& view, const Bo
     return plates::photograph_block(view, box, fit, data.experiment.exposure);
 }
 
-Box around(const Data& data, const Box& of, int w, int h) {
+Box around(const Data& data, const Box& box, int w, int h) {
     const Image& image = data.experiment.image;
     w = std::min(w, image.width);
     h = std::min(h, image.height);
-    const int x0 = std::clamp((of.x0 + of.x1 + 1 - w) / 2, 0, image.width - w);
-    const int y0 = std::clamp((of.y0 + of.y1 + 1 - h) / 2, 0, image.height - h);
+    const int x0 = std::clamp((box.x0 + box.x1 + 1 - w) / 2, 0, image.width - w);
+    const int y0 = std::clamp((box.y0 + box.y1 + 1 - h) / 2, 0, image.height - h);
     return {x0, y0, x0 + w - 1, y0 + h - 1};
 }
 
@@ -89,16 +89,16 @@ Data collect(const Experiment& experiment, const RunOptions& options, ProgressMo
     data.experiment_hash = fmt::format("{:016x}", hash(experiment));
     data.cast = cast_of(data.experiment);
     data.experiment.note_evidence = true;  // two shots show it if it can be measured
-    Measured measured = measure_in_memory(data.experiment, options, monitor);
-    data.metrics = std::move(measured.metrics);
-    data.evidence = std::move(measured.evidence);
-    data.provenance = std::move(measured.provenance);
-    data.shapes = std::move(measured.shapes);
-    data.films = std::move(measured.films);
+    Measured result = measure_in_memory(data.experiment, options, monitor);
+    data.metrics = std::move(result.metrics);
+    data.evidence = std::move(result.evidence);
+    data.provenance = std::move(result.provenance);
+    data.shapes = std::move(result.shapes);
+    data.films = std::move(result.films);
     const ReferenceKind kind = data.experiment.reference.kind;
-    data.references = std::move(kind == ReferenceKind::quadrature ? measured.quadrature
-            : kind == ReferenceKind::paired                       ? measured.paired
-                                                                  : measured.monte_carlo);
+    data.references = std::move(kind == ReferenceKind::quadrature ? result.quadrature
+            : kind == ReferenceKind::paired                       ? result.paired
+                                                                  : result.monte_carlo);
     data.opening = opening_of(data.experiment, data.cast, options.isa, monitor);
     data.measures = std::make_shared<const Measures>(take_measures(data, options.isa, monitor));
     return data;

@@ -43,8 +43,8 @@ struct Data {
 
 /// Returns `box` of a film as a tone-mapped photograph, one byte triple per pixel of the film.
 plates::Block photograph_of(const Data& data, const plates::View& view, const Box& box);
-/// Returns a box of w x h around the middle of `of`, moved into the image.
-Box around(const Data& data, const Box& of, int w, int h);
+/// Returns a box of w x h around the middle of `box`, moved into the image.
+Box around(const Data& data, const Box& box, int w, int h);
 
 /// Runs the experiment in memory, with the arms and sample counts that the video adds. InputError if it lacks what the
 /// video needs.

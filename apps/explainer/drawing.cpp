@@ -8,13 +8,13 @@
 
 namespace crescent::explainer {
 
-Closeup close_up(const Data& data, const Box& of, const Rect& slot, double margin) {
+Closeup close_up(const Data& data, const Box& box, const Rect& slot, double margin) {
     const auto times_for = [&](double w, double h) {
         return std::clamp(static_cast<int>(std::min(slot.w / w, slot.h / h)), 1, 12);
     };
     Closeup c;
-    c.times = times_for(margin * of.width(), margin * of.height());
-    c.box = around(data, of, static_cast<int>(slot.w) / c.times, static_cast<int>(slot.h) / c.times);
+    c.times = times_for(margin * box.width(), margin * box.height());
+    c.box = around(data, box, static_cast<int>(slot.w) / c.times, static_cast<int>(slot.h) / c.times);
     c.times = times_for(c.box.width(), c.box.height());
     return c;
 }
@@ -29,9 +29,9 @@ Rect show(Frame& f, const Block& block, int times, const Rect& slot, double alph
     return f.picture(block, std::floor(slot.x + (slot.w - double(block.width) * times) / 2), slot.y, times, alpha);
 }
 
-Rect on_picture(const Rect& r, const Box& shown, const Box& box) {
-    const double times = r.w / shown.width();
-    return {r.x + double(box.x0 - shown.x0) * times, r.y + double(shown.y1 - box.y1) * times,
+Rect on_picture(const Rect& r, const Box& visible_box, const Box& box) {
+    const double times = r.w / visible_box.width();
+    return {r.x + double(box.x0 - visible_box.x0) * times, r.y + double(visible_box.y1 - box.y1) * times,
         double(box.width()) * times, double(box.height()) * times};
 }
 
@@ -40,12 +40,12 @@ void mark(Frame& f, const Rect& r, Colour ink, double alpha) {
     f.outline(r.inset(-2), ink, 4, alpha);
 }
 
-void tag(Frame& f, Point at, const Words& words, Colour ink, double alpha) {
-    Text how = with(with(with(label_text, ground), Align::centre), Weight::semibold);
-    const double w = f.measure(words, how).w + 28, h = 48;
-    const Rect box{at.x, at.y - h, w, h};
+void tag(Frame& f, Point corner, const Words& words, Colour ink, double alpha) {
+    Text style = with(with(with(label_text, ground), Align::centre), Weight::semibold);
+    const double w = f.measure(words, style).w + 28, h = 48;
+    const Rect box{corner.x, corner.y - h, w, h};
     f.fill(box, ink, alpha);
-    f.text(box.inset(2), words, how, alpha);
+    f.text(box.inset(2), words, style, alpha);
 }
 
 std::vector<double> residuals(const Film& film, const ReferenceFilm& reference, const Box& box) {
@@ -74,19 +74,19 @@ Point LogPlot::at(double x, double y) const {
 }
 
 void LogPlot::axes(
-    Frame& f, const std::vector<std::uint64_t>& at_x, const Words& x_name, const Words& y_name, double alpha) const {
+    Frame& f, const std::vector<std::uint64_t>& x_ticks, const Words& x_name, const Words& y_name, double alpha) const {
     f.line({plot.x, plot.bottom()}, {plot.right(), plot.bottom()}, muted, 2, alpha);
     f.line({plot.x, plot.y}, {plot.x, plot.bottom()}, muted, 2, alpha);
-    const Text below = with(small_text, Align::centre), beside = with(small_text, Align::right);
-    for (const std::uint64_t n : at_x) {
+    const Text x_style = with(small_text, Align::centre), y_style = with(small_text, Align::right);
+    for (const std::uint64_t n : x_ticks) {
         const Point p = at(double(n), y0);
         f.line({p.x, p.y}, {p.x, p.y + 8}, muted, 2, alpha);
-        f.text({p.x - 60, p.y + 12, 120, 36}, Words(count(n, "axis")), below, alpha);
+        f.text({p.x - 60, p.y + 12, 120, 36}, Words(count(n, "axis")), x_style, alpha);
     }
     for (const double v : log_ticks(y0, y1)) {
         const Point p = at(x0, v);
         f.line({p.x, p.y}, {plot.right(), p.y}, rule, 1, alpha);
-        f.text({p.x - 130, p.y - 18, 116, 36}, Words(number(v, 3, "axis")), beside, alpha);
+        f.text({p.x - 130, p.y - 18, 116, 36}, Words(number(v, 3, "axis")), y_style, alpha);
     }
     f.text({plot.x + 10, plot.bottom() + 48, plot.w - 10, 40}, x_name, with(small_text, Align::right), alpha);
     f.text({plot.x - 120, plot.y - 56, plot.w, 42}, y_name, with(label_text, Weight::semibold), alpha);
@@ -96,7 +96,7 @@ std::vector<Point> begun(const std::vector<Point>& path, double part) {
     double length = 0;
     for (std::size_t k = 1; k < path.size(); ++k)
         length += math::hypot(path[k].x - path[k - 1].x, path[k].y - path[k - 1].y);
-    double left = part * length;
+    double remainder = part * length;
     std::vector<Point> out;
     for (std::size_t k = 0; k < path.size(); ++k) {
         if (k == 0) {
@@ -105,18 +105,18 @@ std::vector<Point> begun(const std::vector<Point>& path, double part) {
         }
         const Point a = path[k - 1], b = path[k];
         const double step = math::hypot(b.x - a.x, b.y - a.y);
-        if (step >= left) {
-            if (step > 0) out.push_back({a.x + (b.x - a.x) * left / step, a.y + (b.y - a.y) * left / step});
+        if (step >= remainder) {
+            if (step > 0) out.push_back({a.x + (b.x - a.x) * remainder / step, a.y + (b.y - a.y) * remainder / step});
             break;
         }
         out.push_back(b);
-        left -= step;
+        remainder -= step;
     }
     return out;
 }
 
-Rect column_of(double x, double w, double between, std::size_t k) {
-    return {x + double(k) * (w + between), stage.y, w, stage.h};
+Rect column_of(double x, double w, double gap, std::size_t k) {
+    return {x + double(k) * (w + gap), stage.y, w, stage.h};
 }
 
 Order order_of(const Data& data, const RunKey& a, const RunKey& b, const std::string& region) {
@@ -151,37 +151,37 @@ std::vector<Tick> decades(const Axis& axis, int step) {
     return out;
 }
 
-std::vector<Tick> round_values(const Axis& axis, int most) {
-    const double step = round_up((axis.high - axis.low) / most);
+std::vector<Tick> round_values(const Axis& axis, int limit) {
+    const double step = round_up((axis.high - axis.low) / limit);
     std::vector<Tick> out;
     const int first = static_cast<int>(std::ceil(axis.low / step - 1e-9));
     for (int k = first; k * step <= axis.high * (1 + 1e-9); ++k) out.push_back(tick(k * step, 3));
     return out;
 }
 
-std::vector<Tick> values(const std::vector<double>& at, int digits) {
+std::vector<Tick> values(const std::vector<double>& positions, int digits) {
     std::vector<Tick> out;
-    for (const double v : at) out.push_back(tick(v, digits));
+    for (const double v : positions) out.push_back(tick(v, digits));
     return out;
 }
 
-void Axes::draw(Frame& f, const std::vector<Tick>& below, const std::vector<Tick>& left, const Words& across_name,
-    const Words& up_name, double alpha) const {
+void Axes::draw(Frame& f, const std::vector<Tick>& x_ticks, const std::vector<Tick>& y_ticks, const Words& x_name,
+    const Words& y_name, double alpha) const {
     constexpr double room = 150, line = 36;
     f.line({box.x, box.y}, {box.x, box.bottom()}, muted, 2, alpha);
     f.line({box.x, box.bottom()}, {box.right(), box.bottom()}, muted, 2, alpha);
-    for (const Tick& t : below) {
-        const double at = x(t.at);
-        f.line({at, box.bottom()}, {at, box.bottom() + 10}, muted, 2, alpha);
-        f.text({at - room / 2, box.bottom() + 12, room, line}, t.words, with(small_text, Align::centre), alpha);
+    for (const Tick& t : x_ticks) {
+        const double position = x(t.position);
+        f.line({position, box.bottom()}, {position, box.bottom() + 10}, muted, 2, alpha);
+        f.text({position - room / 2, box.bottom() + 12, room, line}, t.words, with(small_text, Align::centre), alpha);
     }
-    for (const Tick& t : left) {
-        const double at = y(t.at);
-        f.line({box.x - 10, at}, {box.x, at}, muted, 2, alpha);
-        f.text({box.x - 18 - room, at - line / 2, room, line}, t.words, with(small_text, Align::right), alpha);
+    for (const Tick& t : y_ticks) {
+        const double position = y(t.position);
+        f.line({box.x - 10, position}, {box.x, position}, muted, 2, alpha);
+        f.text({box.x - 18 - room, position - line / 2, room, line}, t.words, with(small_text, Align::right), alpha);
     }
-    f.text({box.x, box.bottom() + 52, box.w, line}, across_name, with(small_text, Align::centre), alpha);
-    f.text({box.x - 110, box.y - 58, box.w + 110, line}, up_name, small_text, alpha);
+    f.text({box.x, box.bottom() + 52, box.w, line}, x_name, with(small_text, Align::centre), alpha);
+    f.text({box.x - 110, box.y - 58, box.w + 110, line}, y_name, small_text, alpha);
 }
 
 }  // namespace crescent::explainer

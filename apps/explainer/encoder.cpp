@@ -13,7 +13,7 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
-void append(Arguments& to, const Arguments& more) { to.insert(to.end(), more.begin(), more.end()); }
+void append(Arguments& to, const Arguments& additions) { to.insert(to.end(), additions.begin(), additions.end()); }
 
 const Arguments colour = {
     "-color_range", "tv", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"};
@@ -98,10 +98,10 @@ void Encoder::take(const Raster& raster, const ProgressMonitor& monitor) {
 
 void Encoder::finish(const ProgressMonitor& monitor) {
     if (const ProcessEnd end = process_.wait(monitor); !end.well()) fail("it ended with " + end.text());
-    std::error_code missing;
-    if (const auto size = std::filesystem::file_size(in_.mp4, missing); missing || size == 0)
+    std::error_code error;
+    if (const auto size = std::filesystem::file_size(in_.mp4, error); error || size == 0)
         fail(fmt::format("it ended with exit code 0, and {} is {}", std::filesystem::path(in_.mp4).filename().string(),
-            missing ? "not there" : "empty"));
+            error ? "not there" : "empty"));
 }
 
 }  // namespace crescent::explainer

@@ -13,12 +13,12 @@ struct EstimatorTerms {
     Term average, f, light, cosine, density;
 };
 
-/// Sets it with its left end at `at`, the fraction's bar at at.y.
-void draw_estimator(Frame& frame, Point at, double px, const EstimatorTerms& terms);
+/// Sets it with its left end at `origin`, the fraction's bar at origin.y.
+void draw_estimator(Frame& frame, Point origin, double px, const EstimatorTerms& terms);
 
 /// Returns a colour between two colours.
 Colour mixed(const Colour& a, const Colour& b, double t);
 /// Draws a term's words in a box, with a background if it is highlighted.
-void draw_term(Frame& frame, const Rect& box, const Words& words, Text how, const Term& term);
+void draw_term(Frame& frame, const Rect& box, const Words& words, Text style, const Term& term);
 
 }  // namespace crescent::explainer

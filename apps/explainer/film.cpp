@@ -156,12 +156,12 @@ private:
 };
 
 std::string make(const Experiment& experiment, const ExplainerOptions& options, ProgressMonitor& monitor) {
-    const bool pictures = !options.still.empty() || options.stills;
+    const bool makes_pictures = !options.still.empty() || options.stills;
     Experiment cast = experiment;
     cast_of(cast);  // missing roles are reported before the work
-    Staging staging(options.out, pictures ? "stills" : "film");
+    Staging staging(options.out, makes_pictures ? "stills" : "film");
     const Canvas font(16, 16, plates::ground);
-    if (!pictures) require_ffmpeg(staging.scratch(), monitor);
+    if (!makes_pictures) require_ffmpeg(staging.scratch(), monitor);
 
     RunOptions run;
     run.out = options.out;

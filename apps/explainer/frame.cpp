@@ -35,11 +35,11 @@ bool Frame::same_at(double t) const {
         queries_.begin(), queries_.end(), [t](const TimeQuery& q) { return evaluate(q, t) == q.result; });
 }
 
-Rect Frame::text(const Rect& box, const Words& words, Text how, double alpha) {
+Rect Frame::text(const Rect& box, const Words& words, Text style, double alpha) {
     if (alpha <= 0) return {box.x, box.y, 0, 0};
-    how.ink = faded(how.ink, alpha);
+    style.ink = faded(style.ink, alpha);
     texts_.push_back(words);
-    return canvas_.text(box, words.markup(), how);
+    return canvas_.text(box, words.markup(), style);
 }
 
 Rect Frame::field(const Block& block, double x, double y, int times, double alpha) {
@@ -73,11 +73,11 @@ void Frame::polyline(const std::vector<Point>& points, Colour c, double line, do
 void Frame::polygon(const std::vector<Point>& points, Colour c, double alpha) {
     if (alpha > 0) canvas_.polygon(points, faded(c, alpha));
 }
-void Frame::dot(Point at, double radius, Colour c, double alpha) {
-    if (alpha > 0) canvas_.dot(at.x, at.y, radius, faded(c, alpha));
+void Frame::dot(Point centre, double radius, Colour c, double alpha) {
+    if (alpha > 0) canvas_.dot(centre.x, centre.y, radius, faded(c, alpha));
 }
-void Frame::circle(Point at, double radius, Colour c, double line, double alpha, double dash) {
-    if (alpha > 0) canvas_.circle(at.x, at.y, radius, faded(c, alpha), line, dash);
+void Frame::circle(Point centre, double radius, Colour c, double line, double alpha, double dash) {
+    if (alpha > 0) canvas_.circle(centre.x, centre.y, radius, faded(c, alpha), line, dash);
 }
 void Frame::arrow(Point from, Point to, Colour c, double line, double alpha) {
     if (alpha > 0) canvas_.arrow(from, to, faded(c, alpha), line);

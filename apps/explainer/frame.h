@@ -34,10 +34,10 @@ public:
     double ramp(double from, double to) { return query({Kind::ramp, from, to}); }
     /// The same with a smooth start and end: 3x^2 - 2x^3.
     double ease(double from, double to) { return query({Kind::ease, from, to}); }
-    bool after(double at) { return query({Kind::after, at, at}) > 0; }
-    /// Returns 1 between the two, eased over `over` seconds on either side.
-    double during(double from, double to, double over = 0.4) {
-        return ease(from - over, from) * (1 - ease(to, to + over));
+    bool after(double time) { return query({Kind::after, time, time}) > 0; }
+    /// Returns 1 between the two, eased over `fade` seconds on either side.
+    double during(double from, double to, double fade = 0.4) {
+        return ease(from - fade, from) * (1 - ease(to, to + fade));
     }
     /// Returns 0 .. n: how many of n equal steps from `from` to `to` are complete.
     int steps(double from, double to, int n) {
@@ -45,8 +45,8 @@ public:
     }
 
     /// Sets words in a box; For `alpha` 0 nothing is drawn. Returns their extents.
-    Rect text(const Rect& box, const Words& words, Text how, double alpha = 1);
-    Rect measure(const Words& words, const Text& how) { return canvas_.measure(words.markup(), how); }
+    Rect text(const Rect& box, const Words& words, Text style, double alpha = 1);
+    Rect measure(const Words& words, const Text& style) { return canvas_.measure(words.markup(), style); }
     /// Paints a block of pixels enlarged `times` times, its corner at whole units, with a hairline around it.
     Rect picture(const Block& block, double x, double y, int times, double alpha = 1);
     /// The same one to one without the hairline, for a block whose edge is the ground.
@@ -58,8 +58,8 @@ public:
     void line(Point a, Point b, Colour c, double line, double alpha = 1, double dash = 0);
     void polyline(const std::vector<Point>& points, Colour c, double line, double alpha = 1, double dash = 0);
     void polygon(const std::vector<Point>& points, Colour c, double alpha = 1);
-    void dot(Point at, double radius, Colour c, double alpha = 1);
-    void circle(Point at, double radius, Colour c, double line, double alpha = 1, double dash = 0);
+    void dot(Point centre, double radius, Colour c, double alpha = 1);
+    void circle(Point centre, double radius, Colour c, double line, double alpha = 1, double dash = 0);
     void arrow(Point from, Point to, Colour c, double line, double alpha = 1);
     void clip(const Rect& r) { canvas_.clip(r); }
     void unclip() { canvas_.unclip(); }

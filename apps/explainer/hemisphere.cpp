@@ -23,12 +23,12 @@ Vec3d direction(double theta_deg, double phi_deg) {
 Hemisphere::Hemisphere(Point centre, double radius, double elevation_deg, Vec3d right)
     : centre_(centre),
       radius_(radius),
-      up_(math::sin(elevation_deg * degree)),
-      away_(math::cos(elevation_deg * degree)) {
-    const double across = math::hypot(right.x, right.y);
-    if (across > 1e-9) {
-        cos_ = right.x / across;
-        sin_ = right.y / across;
+      sin_elevation_(math::sin(elevation_deg * degree)),
+      cos_elevation_(math::cos(elevation_deg * degree)) {
+    const double length = math::hypot(right.x, right.y);
+    if (length > 1e-9) {
+        cos_ = right.x / length;
+        sin_ = right.y / length;
     }
 }
 
@@ -37,26 +37,28 @@ Vec3d Hemisphere::unturned(Vec3d w) const { return {cos_ * w.x - sin_ * w.y, sin
 
 Point Hemisphere::at(Vec3d w, double reach) const {
     const Vec3d d = turned(w);
-    return {centre_.x + reach * radius_ * d.x, centre_.y - reach * radius_ * (d.z * away_ + d.y * up_)};
+    return {
+        centre_.x + reach * radius_ * d.x, centre_.y - reach * radius_ * (d.z * cos_elevation_ + d.y * sin_elevation_)};
 }
 
 Point Hemisphere::rim(double turns) const { return at(unturned(direction(90, 360 * turns))); }
 
 bool Hemisphere::visible(Vec3d w) const {
     const Vec3d d = turned(w);
-    return d.z * up_ - d.y * away_ >= -1e-9;
+    return d.z * sin_elevation_ - d.y * cos_elevation_ >= -1e-9;
 }
 
 Point Hemisphere::corner() const { return {std::round(centre_.x - radius_), std::round(centre_.y - radius_)}; }
 
 Block Hemisphere::field(const std::function<Srgb8(Vec3d)>& colour) const {
     const int r = static_cast<int>(std::lround(radius_));
-    Block block(2 * r, static_cast<int>(std::ceil(r * (1 + up_))));
+    Block block(2 * r, static_cast<int>(std::ceil(r * (1 + sin_elevation_))));
     for (int j = 0; j < block.height; ++j) {
         for (int i = 0; i < block.width; ++i) {
             const double u = (i + 0.5) / r - 1, v = 1 - (j + 0.5) / r, w2 = 1 - u * u - v * v;
             const double w = w2 > 0 ? std::sqrt(w2) : 0;
-            const Vec3d d{u, v * up_ - w * away_, v * away_ + w * up_};  // towards the viewer: (0, -away, up)
+            const Vec3d d{u, v * sin_elevation_ - w * cos_elevation_,
+                v * cos_elevation_ + w * sin_elevation_};  // towards the viewer: (0, -away, up)
             block.set(i, j, w2 > 0 && d.z >= 0 ? colour(unturned(d)) : plates::ground_bytes);
         }
     }
@@ -98,9 +100,9 @@ void Hemisphere::grid(Frame& f, double alpha) const {
 void Hemisphere::arrow(Frame& f, Vec3d w, double reach, const Words& words, Colour ink, double alpha) const {
     const Point tip = at(w, reach);
     f.arrow(at(w), tip, ink, 4, alpha);
-    const Text how = with(with(label_text, ink), Align::centre);
-    const Rect size = f.measure(words, how);
-    f.text({tip.x - size.w / 2 - 2, tip.y - size.h - 4, size.w + 4, size.h}, words, how, alpha);
+    const Text style = with(with(label_text, ink), Align::centre);
+    const Rect size = f.measure(words, style);
+    f.text({tip.x - size.w / 2 - 2, tip.y - size.h - 4, size.w + 4, size.h}, words, style, alpha);
 }
 
 }  // namespace crescent::explainer

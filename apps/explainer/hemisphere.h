@@ -39,8 +39,8 @@ private:
     Vec3d turned(Vec3d w) const;    // local -> drawing frame
     Vec3d unturned(Vec3d w) const;  // and back
     Point centre_;
-    double radius_, up_, away_;  // sine and cosine of the elevation
-    double cos_ = 1, sin_ = 0;   // of the turn about n
+    double radius_, sin_elevation_, cos_elevation_;  // sine and cosine of the elevation
+    double cos_ = 1, sin_ = 0;                       // of the turn about n
 };
 
 /// Returns the unit direction at angles in degrees from n and about it from the local x axis.

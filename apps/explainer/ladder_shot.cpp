@@ -13,7 +13,7 @@ namespace crescent::explainer {
 
 namespace {
 
-constexpr double first = 5, each = 2;  // s: when the first sample count appears, and the duration of each
+constexpr double first = 5, interval = 2;  // s: when the first sample count appears, and the duration of each
 
 std::vector<Point> points_of(const Ladder& ladder, const LogPlot& plot) {
     std::vector<Point> out;
@@ -65,21 +65,21 @@ Line line_of(const Data& data, const std::string& arm, const LogPlot& plot) {
 }
 
 /// Draws the line of an earlier shot.
-void draw_dim(Frame& f, const Line& earlier) {
+void draw_dim(Frame& f, const Line& earlier_line) {
     const double in = f.ease(0.6, 1.2);
-    f.polyline(earlier.points, earlier.ink, 4, 0.55 * in);
-    for (const Point& p : earlier.points) f.dot(p, 7, earlier.ink, 0.55 * in);
-    f.text({earlier.points.back().x - 250, earlier.points.back().y - 96, 270, 44}, earlier.name,
-        with(with(label_text, earlier.ink), Align::right), in);
+    f.polyline(earlier_line.points, earlier_line.ink, 4, 0.55 * in);
+    for (const Point& p : earlier_line.points) f.dot(p, 7, earlier_line.ink, 0.55 * in);
+    f.text({earlier_line.points.back().x - 250, earlier_line.points.back().y - 96, 270, 44}, earlier_line.name,
+        with(with(label_text, earlier_line.ink), Align::right), in);
 }
 
 }  // namespace
 
 const Ladder& ladder_of(const Data& data, const std::string& arm) {
-    const auto found = std::ranges::find_if(data.metrics.ladders,
+    const auto match = std::ranges::find_if(data.metrics.ladders,
         [&](const Ladder& l) { return l.arm == arm && l.region == data.cast.highlight && l.s == data.cast.s; });
-    ensure(found != data.metrics.ladders.end(), "both arms of the film have a ladder");
-    return *found;
+    ensure(match != data.metrics.ladders.end(), "both arms of the film have a ladder");
+    return *match;
 }
 
 Words slope_words(const Ladder& l) {
@@ -103,24 +103,24 @@ Shot ladder_shot(const Data& data, const LadderShotText& text) {
         labels.push_back(Words("N\u00a0=\u00a0", data.n_of(key), ", off by ", data.rmse(key, data.cast.highlight)));
     }
     const Line line = line_of(data, text.arm, plot);
-    std::optional<Line> earlier;
-    if (!text.before.empty()) earlier = line_of(data, text.before, plot);
+    std::optional<Line> earlier_line;
+    if (!text.dimmed_arm.empty()) earlier_line = line_of(data, text.dimmed_arm, plot);
     const Words slope = slope_words(ladder);
     std::vector<std::uint64_t> ticks = ladder.n;
 
     Shot shot;
     shot.kind = Kind::photograph;
-    const double line_start = first + each * double(blocks.size());
+    const double line_start = first + interval * double(blocks.size());
     shot.cues = {{0.5, text.opening}};
-    for (std::size_t k = 0; k < text.after.size(); ++k)
-        shot.cues.push_back({line_start + 5.4 * double(k), text.after[k]});
-    shot.seconds = line_start + 5.4 * double(text.after.size());
+    for (std::size_t k = 0; k < text.closing.size(); ++k)
+        shot.cues.push_back({line_start + 5.4 * double(k), text.closing[k]});
+    shot.seconds = line_start + 5.4 * double(text.closing.size());
     shot.still = shot.seconds - 0.8;
     shot.draw = [=](Frame& f) {
         plot.axes(f, ticks, Words("samples a pixel, N"), Words("RMSE in the highlight"), f.ease(0.4, 1));
-        if (earlier && !earlier->points.empty()) draw_dim(f, *earlier);
+        if (earlier_line && !earlier_line->points.empty()) draw_dim(f, *earlier_line);
         for (std::size_t k = 0; k < blocks.size(); ++k) {
-            const double at = first + each * double(k), in = f.ease(at, at + 0.5);
+            const double time = first + interval * double(k), in = f.ease(time, time + 0.5);
             const double x = 90 + 430.0 * double(k % 2), y = 122 + 388.0 * double(k / 2);
             show(f, blocks[k], crop.times, {x, y, 380, 310}, in);
             f.text({x, y + 318, 380, 48}, labels[k], with(body_text, Vertical::middle), in);
@@ -128,8 +128,8 @@ Shot ladder_shot(const Data& data, const LadderShotText& text) {
         const int n = f.steps(first, line_start, static_cast<int>(line.points.size()));
         f.polyline(begun(line.points, f.ease(line_start, line_start + 1.5)), line.ink, 5);
         for (std::size_t k = 0; k < line.points.size(); ++k) {
-            const double at = first + each * double(blocks.size()) * double(k) / double(line.points.size());
-            f.dot(line.points[k], 11, line.ink, f.ease(at + 0.4, at + 0.9));
+            const double time = first + interval * double(blocks.size()) * double(k) / double(line.points.size());
+            f.dot(line.points[k], 11, line.ink, f.ease(time + 0.4, time + 0.9));
         }
         if (n == 0 && line.points.empty()) return;
         f.text({plot.plot.x + 30, plot.plot.bottom() - 116, plot.plot.w - 40, 48}, line.name,

@@ -8,9 +8,9 @@
 namespace crescent::explainer {
 
 struct LadderShotText {
-    std::string arm, before;   // `before`: the arm whose line is already shown, dimmed; "": none
-    Words opening;             // said first
-    std::vector<Words> after;  // said when the line is complete
+    std::string arm, dimmed_arm;  // `dimmed_arm`: the arm whose line is already shown, dimmed; "": none
+    Words opening;                // said first
+    std::vector<Words> closing;   // said when the line is complete
 };
 
 /// Returns pictures, chart and times; the caller sets name, title and description.

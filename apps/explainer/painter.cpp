@@ -17,11 +17,11 @@ void heading(Frame& f, const Shot& shot) {
     f.fill({bar.x, bar.y + 6, 7, bar.h - 12}, shot.kind == Kind::photograph ? photograph_accent : backend_accent, in);
     f.text({bar.x + 26, bar.y, 1200, bar.h}, shot.title, title_text, in);
     if (shot.kind == Kind::words) return;
-    const bool photograph = shot.kind == Kind::photograph;
+    const bool is_photograph = shot.kind == Kind::photograph;
     const Words label(
-        photograph ? "PHOTOGRAPH" : "INSTRUMENT", photograph ? ", without numbers" : ", from the float films");
-    Text how = with(with(small_text, photograph ? photograph_accent : backend_accent), Align::right);
-    f.text({bar.right() - 560, bar.y, 560, bar.h}, label, how, in);
+        is_photograph ? "PHOTOGRAPH" : "INSTRUMENT", is_photograph ? ", without numbers" : ", from the float films");
+    Text style = with(with(small_text, is_photograph ? photograph_accent : backend_accent), Align::right);
+    f.text({bar.right() - 560, bar.y, 560, bar.h}, label, style, in);
 }
 
 }  // namespace
@@ -32,9 +32,9 @@ Painter::Painter(const Timeline& timeline, int height)
 void Painter::caption(Frame& f, const Shot& shot) const {
     for (std::size_t k = 0; k < shot.cues.size(); ++k) {
         const Cue& cue = shot.cues[k];
-        const double end = k + 1 < shot.cues.size() ? shot.cues[k + 1].at : shot.seconds;
-        if (!f.after(cue.at) || f.after(end)) continue;
-        const double alpha = f.ease(cue.at, cue.at + 0.2);
+        const double end = k + 1 < shot.cues.size() ? shot.cues[k + 1].start : shot.seconds;
+        if (!f.after(cue.start) || f.after(end)) continue;
+        const double alpha = f.ease(cue.start, cue.start + 0.2);
         f.text(caption_band, broken(cue.words), cue.question ? with(caption_text, photograph_accent) : caption_text,
             alpha);
     }

@@ -43,18 +43,19 @@ std::shared_ptr<const Raster> raster_of(const Canvas& canvas) {
 void for_each_frame(const Timeline& timeline, int height, int first, int last, ProgressMonitor& monitor,
     const std::function<void(const Raster&)>& take) {
     tbb::enumerable_thread_specific<std::unique_ptr<ThreadPainter>> painters;
-    int next = first;
+    int next_frame = first;
     const auto next_chunk = [&](tbb::flow_control& control) {
-        if (next >= last || monitor.stop) control.stop();
-        return std::exchange(next, std::min(next + chunk, last));
+        if (next_frame >= last || monitor.stop) control.stop();
+        return std::exchange(next_frame, std::min(next_frame + chunk, last));
     };
     const auto draw = [&](int begin) {
-        std::unique_ptr<ThreadPainter>& own = painters.local();
-        if (!own) own.reset(new ThreadPainter{Painter(timeline, height), nullptr});
+        std::unique_ptr<ThreadPainter>& thread_painter = painters.local();
+        if (!thread_painter) thread_painter.reset(new ThreadPainter{Painter(timeline, height), nullptr});
         Chunk rasters;
         for (int frame = begin; frame < std::min(begin + chunk, last) && !monitor.stop; ++frame) {
-            if (own->painter.draw(frame) || !own->last) own->last = raster_of(own->painter.canvas());
-            rasters.push_back(own->last);
+            if (thread_painter->painter.draw(frame) || !thread_painter->last)
+                thread_painter->last = raster_of(thread_painter->painter.canvas());
+            rasters.push_back(thread_painter->last);
         }
         return rasters;
     };

@@ -12,10 +12,10 @@ namespace crescent::explainer {
 
 // ---- A shot as a value: its name, its duration, its captions, and its drawing at a time.
 
-/// A caption, from `at` (s from the shot's beginning) to the next one's beginning. A question is followed by 4 s
+/// A caption, from `start` (s from the shot's beginning) to the next one's beginning. A question is followed by 4 s
 /// without words.
 struct Cue {
-    double at = 0;
+    double start = 0;
     Words words;  // at most two lines of 42 characters
     bool question = false;
 };
@@ -27,7 +27,7 @@ struct Shot {
     std::string name;  // "columns": of its still, and of its chapter in messages
     Words title;       // of the chapter; shown at the top of the frame
     Kind kind = Kind::words;
-    Words seen;  // what is seen, for the transcript
+    Words description;  // what is seen, for the transcript
     double seconds = 0;
     double still = 0;  // the time of its still: everything visible, nothing moving
     std::vector<Cue> cues;

@@ -41,7 +41,7 @@ public:
 
 private:
     struct Hold {
-        double at = 0, seconds = 0;  // shot time
+        double time = 0, seconds = 0;  // shot time
     };
     void place(std::size_t shot);
 
@@ -54,6 +54,6 @@ private:
 /// Returns the words with one line break where the lines are most even; unchanged if one line holds them.
 Words broken(const Words& words);
 /// Returns the characters to read: code points of the plain text.
-std::size_t length(const std::string& plain);
+std::size_t length(const std::string& text);
 
 }  // namespace crescent::explainer

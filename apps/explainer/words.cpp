@@ -14,37 +14,38 @@ Number count(std::uint64_t value, const std::string& source) { return {plates::c
 Number percent(double part, int digits, const std::string& source) {
     return {plates::number(100 * part, digits) + " %", source};
 }
-Number name(const std::string& plain) { return {plates::escaped(plain), "name in the experiment"}; }
+Number name(const std::string& text) { return {plates::escaped(text), "name in the experiment"}; }
 
 namespace {
 
 template <class Visit> void outside_tags(std::string_view markup, Visit visit) {
-    bool tag = false;
+    bool in_tag = false;
     for (const char c : markup) {
-        if (c == '<') tag = true;
-        if (!tag) visit(c);
-        if (c == '>') tag = false;
+        if (c == '<') in_tag = true;
+        if (!in_tag) visit(c);
+        if (c == '>') in_tag = false;
     }
 }
 
-void replace_all(std::string& text, std::string_view what, std::string_view by) {
-    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-        text.replace(at, what.size(), by);
+void replace_all(std::string& text, std::string_view what, std::string_view replacement) {
+    for (auto position = text.find(what); position != std::string::npos;
+        position = text.find(what, position + replacement.size()))
+        text.replace(position, what.size(), replacement);
 }
 
 }  // namespace
 
 void Words::add(std::string_view words) {
-    bool digit = false;
-    outside_tags(words, [&](char c) { digit |= c >= '0' && c <= '9'; });
-    ensure(!digit, "words of the film are typed without digits: a number comes in as a Number");
+    bool has_digit = false;
+    outside_tags(words, [&](char c) { has_digit |= c >= '0' && c <= '9'; });
+    ensure(!has_digit, "words of the film are typed without digits: a number comes in as a Number");
     parts_.push_back({std::string(words), ""});
 }
 
 std::string Words::markup() const {
-    std::string all;
-    for (const Part& part : parts_) all += part.markup;
-    return all;
+    std::string text;
+    for (const Part& part : parts_) text += part.markup;
+    return text;
 }
 
 std::string plain_of(const std::string& markup) {
@@ -62,9 +63,9 @@ std::string Words::plain() const { return plain_of(markup()); }
 
 Words tinted(const Words& words, const plates::Colour& ink) {
     const auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
-    const std::string open =
+    const std::string tag =
         fmt::format("<span foreground='#{:02x}{:02x}{:02x}'>", byte(ink.r), byte(ink.g), byte(ink.b));
-    return Words(open.c_str(), words, "</span>");
+    return Words(tag.c_str(), words, "</span>");
 }
 
 Words strong(const Words& words) { return Words("<span weight='600'>", words, "</span>"); }

@@ -23,7 +23,7 @@ Number count(std::uint64_t value, const std::string& source);
 /// Formats 0.0669 as "6.7 %".
 Number percent(double part, int digits, const std::string& source);
 /// Returns a name of the experiment, escaped; may have digits.
-Number name(const std::string& plain);
+Number name(const std::string& text);
 
 /// A formula of the explainer or of a sampler: its digits are mathematics, not results.
 struct Formula {

@@ -19,9 +19,9 @@ DracoMesh read_draco(std::string_view bytes, const std::map<std::string, std::si
     draco::DecoderBuffer buffer;
     buffer.Init(bytes.data(), bytes.size());
     draco::Decoder decoder;
-    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) throw ModelError(fmt::format("Draco: {}", decoded.status().error_msg_string()));
-    const draco::Mesh& mesh = *decoded.value();
+    auto decoded_mesh = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!decoded_mesh.ok()) throw ModelError(fmt::format("Draco: {}", decoded_mesh.status().error_msg_string()));
+    const draco::Mesh& mesh = *decoded_mesh.value();
     DracoMesh out;
     out.count = mesh.num_points();
     for (const auto& [name, id] : ids) {

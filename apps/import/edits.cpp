@@ -11,14 +11,14 @@
 namespace crescent::importer {
 
 void select(Model& model, const std::string& name) {
-    std::set<std::string> known;
+    std::set<std::string> model_names;
     const auto has_name = [&](const std::vector<std::string>& names) {
-        known.insert(names.begin(), names.end());
+        model_names.insert(names.begin(), names.end());
         return std::ranges::find(names, name) != names.end();
     };
     const auto is_other = [&](Part& part) {
         const std::string& material = model.materials[part.material].name;
-        known.insert(material);
+        model_names.insert(material);
         if (has_name(part.names) || material == name) return false;
         if (part.copies.empty()) return true;
         std::erase_if(part.copies, [&](const Copy& copy) { return !has_name(copy.names); });
@@ -26,12 +26,12 @@ void select(Model& model, const std::string& name) {
     };
     std::erase_if(model.parts, is_other);
     if (!model.parts.empty()) return;
-    known.erase("");
+    model_names.erase("");
     constexpr std::size_t most_names = 20;
     std::string words;
     std::size_t count = 0;
-    for (const std::string& one : known)
-        if (++count <= most_names) words += fmt::format("{}'{}'", words.empty() ? "" : ", ", one);
+    for (const std::string& entry : model_names)
+        if (++count <= most_names) words += fmt::format("{}'{}'", words.empty() ? "" : ", ", entry);
     if (count > most_names) words += fmt::format(" or one of {} more", count - most_names);
     throw ModelError(fmt::format("no mesh, node or material has the name '{}'; expected {}", name,
         words.empty() ? "no --select, because none has a name" : words));
@@ -99,13 +99,13 @@ void smooth_part(Part& part, double least_cosine) {
     for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
         while (end < count && same_place(order[begin], order[end])) ++end;
         for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t one = order[k];
+            const std::size_t corner = order[k];
             Vec3d sum{};
             for (std::size_t j = begin; j < end; ++j)
-                if (dot(normals[one / 3], normals[order[j] / 3]) >= least_cosine) sum = sum + weighted[order[j]];
-            out.positions[one] = place(one);
-            out.normals[one] = narrow(unit(sum));
-            if (!part.uv.empty()) out.uv[one] = part.uv[part.triangles[one / 3][one % 3]];
+                if (dot(normals[corner / 3], normals[order[j] / 3]) >= least_cosine) sum = sum + weighted[order[j]];
+            out.positions[corner] = place(corner);
+            out.normals[corner] = narrow(unit(sum));
+            if (!part.uv.empty()) out.uv[corner] = part.uv[part.triangles[corner / 3][corner % 3]];
         }
     }
     for (std::uint32_t t = 0; t < part.triangles.size(); ++t) out.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});

@@ -33,10 +33,10 @@ std::string element_place(std::string_view list, std::size_t index) { return fmt
 }
 
 std::optional<std::size_t> whole_number(const Json& json, const char* key, const std::string& place) {
-    const auto found = json.find(key);
-    if (found == json.end()) return std::nullopt;
-    if (!found->is_number_unsigned()) fail(member_place(place, key), "expected a whole number");
-    return found->get<std::size_t>();
+    const auto member = json.find(key);
+    if (member == json.end()) return std::nullopt;
+    if (!member->is_number_unsigned()) fail(member_place(place, key), "expected a whole number");
+    return member->get<std::size_t>();
 }
 
 std::size_t needed(const Json& json, const char* key, const std::string& place) {
@@ -47,20 +47,21 @@ std::size_t needed(const Json& json, const char* key, const std::string& place) 
 
 template <std::size_t n>
 std::optional<std::array<double, n>> numbers(const Json& json, const char* key, const std::string& place) {
-    const auto found = json.find(key);
-    if (found == json.end()) return std::nullopt;
+    const auto member = json.find(key);
+    if (member == json.end()) return std::nullopt;
     std::array<double, n> out{};
-    if (!found->is_array() || found->size() != n) fail(member_place(place, key), fmt::format("expected {} numbers", n));
+    if (!member->is_array() || member->size() != n)
+        fail(member_place(place, key), fmt::format("expected {} numbers", n));
     for (std::size_t k = 0; k < n; ++k) {
-        if (!(*found)[k].is_number()) fail(member_place(place, key), fmt::format("expected {} numbers", n));
-        out[k] = (*found)[k].template get<double>();
+        if (!(*member)[k].is_number()) fail(member_place(place, key), fmt::format("expected {} numbers", n));
+        out[k] = (*member)[k].template get<double>();
     }
     return out;
 }
 
 std::string text(const Json& json, const char* key) {
-    const auto found = json.find(key);
-    return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+    const auto member = json.find(key);
+    return member != json.end() && member->is_string() ? member->get<std::string>() : "";
 }
 
 /// Replaces %XX by the character with this code (RFC 3986).
@@ -100,7 +101,7 @@ std::optional<std::string> base64_decoded(std::string_view text) {
 struct Container {
     std::string_view json;
     std::optional<std::string_view> buffer;
-    std::size_t other_parts = 0, rest = 0;  // rest: bytes behind the last one
+    std::size_t other_parts = 0, trailing_bytes = 0;  // trailing_bytes: bytes behind the last one
 };
 
 Container container_of(std::string_view file) {
@@ -122,7 +123,7 @@ Container container_of(std::string_view file) {
         else ++out.other_parts;
         place += 8 + (std::size_t{size} + 3) / 4 * 4;
     }
-    out.rest = file.size() - std::min(place, file.size());
+    out.trailing_bytes = file.size() - std::min(place, file.size());
     return out;
 }
 
@@ -200,7 +201,7 @@ public:
         for (std::size_t k = 0; k < size_of("materials"); ++k) add_material(k);
         place_scene();
         model.leave_out(container_.other_parts, "part[s] of the file of an unknown kind");
-        model.leave_out(container_.rest, "byte[s] after the last part of the file");
+        model.leave_out(container_.trailing_bytes, "byte[s] after the last part of the file");
         model.leave_out(points_and_lines_, "primitive[s] of points or lines, or without positions");
         model.leave_out(size_of("skins"), "skin[s]");
         model.leave_out(size_of("animations"), "animation[s]");
@@ -212,8 +213,8 @@ public:
 
 private:
     std::size_t size_of(const char* list) const {
-        const auto found = root_.find(list);
-        return found != root_.end() && found->is_array() ? found->size() : 0;
+        const auto member = root_.find(list);
+        return member != root_.end() && member->is_array() ? member->size() : 0;
     }
     const Json& element(const char* list, std::size_t index, const std::string& from) const {
         if (index >= size_of(list))
@@ -264,8 +265,8 @@ private:
     /// Adds how many objects of the file have each extension, to a depth that glTF does not reach.
     static void count_extensions(const Json& json, std::map<std::string, std::size_t>& to, int depth = 0) {
         if (!json.is_structured() || depth > 32) return;
-        if (const Json* found = json.is_object() ? object(json, "extensions") : nullptr)
-            for (const auto& [name, value] : found->items()) ++to[name];
+        if (const Json* extensions = json.is_object() ? object(json, "extensions") : nullptr)
+            for (const auto& [name, value] : extensions->items()) ++to[name];
         for (const auto& [key, value] : json.items())
             if (key != "extras") count_extensions(value, to, depth + 1);
     }
@@ -299,17 +300,17 @@ private:
     void add_metal(const Json& from, const std::string& place, Material& to) {
         to.rho_s = {0.04f, 0.04f, 0.04f};
         to.metal = to.alpha = 1;
-        const auto found = from.find("pbrMetallicRoughness");
-        if (found == from.end()) return;
+        const auto member = from.find("pbrMetallicRoughness");
+        if (member == from.end()) return;
         const std::string inner = member_place(place, "pbrMetallicRoughness");
-        if (!found->is_object()) fail(inner, "expected an object");
-        if (const auto colour = numbers<4>(*found, "baseColorFactor", inner))
+        if (!member->is_object()) fail(inner, "expected an object");
+        if (const auto colour = numbers<4>(*member, "baseColorFactor", inner))
             to.rho_d = narrow({(*colour)[0], (*colour)[1], (*colour)[2]});
-        to.metal = static_cast<float>(number(*found, "metallicFactor", 1, inner));
-        to.alpha = alpha_of(number(*found, "roughnessFactor", 1, inner));
-        if (const Json* texture = object(*found, "baseColorTexture"))
+        to.metal = static_cast<float>(number(*member, "metallicFactor", 1, inner));
+        to.alpha = alpha_of(number(*member, "roughnessFactor", 1, inner));
+        if (const Json* texture = object(*member, "baseColorTexture"))
             add_colours(*texture, member_place(inner, "baseColorTexture"), to);
-        if (const Json* texture = object(*found, "metallicRoughnessTexture")) {
+        if (const Json* texture = object(*member, "metallicRoughnessTexture")) {
             const std::string texture_place = member_place(inner, "metallicRoughnessTexture");
             const UvUse use = uv_use(*texture, texture_place);
             if (!to.colours) uv_uses_.back() = use;
@@ -336,18 +337,18 @@ private:
     }
 
     static const Json* object(const Json& json, const char* key) {
-        const auto found = json.find(key);
-        return found != json.end() && found->is_object() ? &*found : nullptr;
+        const auto member = json.find(key);
+        return member != json.end() && member->is_object() ? &*member : nullptr;
     }
     static const Json* extension(const Json& json, const char* name) {
         const Json* extensions = object(json, "extensions");
         return extensions ? object(*extensions, name) : nullptr;
     }
-    static double number(const Json& json, const char* key, double otherwise, const std::string& place) {
-        const auto found = json.find(key);
-        if (found == json.end()) return otherwise;
-        if (!found->is_number()) fail(member_place(place, key), "expected a number");
-        return found->get<double>();
+    static double number(const Json& json, const char* key, double fallback, const std::string& place) {
+        const auto member = json.find(key);
+        if (member == json.end()) return fallback;
+        if (!member->is_number()) fail(member_place(place, key), "expected a number");
+        return member->get<double>();
     }
     /// The square of a roughness, with its sign.
     static float alpha_of(double roughness) { return static_cast<float>(roughness * std::fabs(roughness)); }
@@ -414,14 +415,14 @@ private:
             out.bytes = std::move(*bytes);
         } else {
             std::string name = percent_decoded(uri);
-            std::optional<FoundFile> found = file_named(name, std::array{folder_}, folder_);
-            if (!found) found = file_named(uri, std::array{folder_}, folder_);
-            if (found && found->is_other)
+            std::optional<FoundFile> file = file_named(name, std::array{folder_}, folder_);
+            if (!file) file = file_named(uri, std::array{folder_}, folder_);
+            if (file && file->is_other)
                 model.assumed.push_back(
-                    fmt::format("'{}' is '{}' of another folder", found->path.filename().string(), name));
+                    fmt::format("'{}' is '{}' of another folder", file->path.filename().string(), name));
             // One that is not there is counted by who writes the images.
-            if (found) out.bytes = bytes_of(found->path);
-            out.name = found ? found->path.filename().string() : std::move(name);
+            if (file) out.bytes = bytes_of(file->path);
+            out.name = file ? file->path.filename().string() : std::move(name);
         }
         model.pictures.push_back(std::move(out));
         return picture->second;
@@ -430,21 +431,21 @@ private:
     // ---- Buffers.
 
     std::string_view buffer(std::size_t index, const std::string& from) {
-        const Json& one = element("buffers", index, from);
+        const Json& entry = element("buffers", index, from);
         const std::string place = element_place("buffers", index);
-        const std::size_t size = needed(one, "byteLength", place);
-        const auto [decoded, is_new] = buffers_.try_emplace(index);
-        if (is_new) decoded->second = bytes_of_buffer(one, index, place);
-        const std::string_view bytes = one.contains("uri") ? decoded->second : *container_.buffer;
+        const std::size_t size = needed(entry, "byteLength", place);
+        const auto [slot, is_new] = buffers_.try_emplace(index);
+        if (is_new) slot->second = bytes_of_buffer(entry, index, place);
+        const std::string_view bytes = entry.contains("uri") ? slot->second : *container_.buffer;
         if (bytes.size() < size) fail(place, fmt::format("expected {} bytes, found {}", size, bytes.size()));
         return bytes.substr(0, size);
     }
-    std::string bytes_of_buffer(const Json& one, std::size_t index, const std::string& place) const {
-        if (!one.contains("uri")) {
+    std::string bytes_of_buffer(const Json& entry, std::size_t index, const std::string& place) const {
+        if (!entry.contains("uri")) {
             if (index != 0 || !container_.buffer) fail(place, "expected 'uri'");
             return "";
         }
-        const std::string uri = text(one, "uri");
+        const std::string uri = text(entry, "uri");
         if (uri.starts_with("data:")) {
             const std::size_t comma = uri.find(";base64,");
             auto out = comma == uri.npos ? std::nullopt : base64_decoded(std::string_view(uri).substr(comma + 8));
@@ -461,67 +462,68 @@ private:
 
     /// The bytes of a view from an offset on, and its stride: 0 for none.
     std::pair<std::string_view, std::size_t> view(std::size_t index, std::size_t offset, const std::string& from) {
-        const Json& one = element("bufferViews", index, from);
+        const Json& entry = element("bufferViews", index, from);
         const std::string place = element_place("bufferViews", index);
-        const Json* packed = can_read_meshopt() ? extension(one, meshopt_name) : nullptr;
-        const std::string_view bytes =
-            packed ? unpacked_view(*packed, index, needed(one, "byteLength", place)) : bytes_of_view(one, place);
+        const Json* extension_json = can_read_meshopt() ? extension(entry, meshopt_name) : nullptr;
+        const std::string_view bytes = extension_json
+            ? unpacked_view(*extension_json, index, needed(entry, "byteLength", place))
+            : bytes_of_view(entry, place);
         const std::size_t size = bytes.size();
         if (offset > size) fail(from, fmt::format("byteOffset {} is beyond the {} bytes of its view", offset, size));
-        return {bytes.substr(offset), whole_number(one, "byteStride", place).value_or(0)};
+        return {bytes.substr(offset), whole_number(entry, "byteStride", place).value_or(0)};
     }
 
     /// The bytes of a view, or of the extension of one.
-    std::string_view bytes_of_view(const Json& one, const std::string& place) {
-        const std::string_view bytes = buffer(needed(one, "buffer", place), member_place(place, "buffer"));
-        const std::size_t begin = whole_number(one, "byteOffset", place).value_or(0),
-                          size = needed(one, "byteLength", place);
+    std::string_view bytes_of_view(const Json& entry, const std::string& place) {
+        const std::string_view bytes = buffer(needed(entry, "buffer", place), member_place(place, "buffer"));
+        const std::size_t begin = whole_number(entry, "byteOffset", place).value_or(0),
+                          size = needed(entry, "byteLength", place);
         if (begin > bytes.size() || size > bytes.size() - begin)
             fail(place, fmt::format("{} bytes from {} on are beyond the {} of its buffer", size, begin, bytes.size()));
         return bytes.substr(begin, size);
     }
 
     /// The bytes of a compressed view, decoded once. `size`: those that the view states.
-    std::string_view unpacked_view(const Json& packed, std::size_t index, std::size_t size) {
-        const auto [unpacked, is_new] = unpacked_views_.try_emplace(index);
-        if (!is_new) return unpacked->second;
+    std::string_view unpacked_view(const Json& extension_json, std::size_t index, std::size_t size) {
+        const auto [slot, is_new] = unpacked_views_.try_emplace(index);
+        if (!is_new) return slot->second;
         const std::string place =
             member_place(element_place("bufferViews", index), fmt::format("extensions.{}", meshopt_name));
-        MeshoptView as{.mode = text(packed, "mode"),
-            .count = needed(packed, "count", place),
-            .stride = needed(packed, "byteStride", place)};
-        if (packed.contains("filter")) as.filter = text(packed, "filter");
-        const std::string_view bytes = bytes_of_view(packed, place);
+        MeshoptView as{.mode = text(extension_json, "mode"),
+            .count = needed(extension_json, "count", place),
+            .stride = needed(extension_json, "byteStride", place)};
+        if (extension_json.contains("filter")) as.filter = text(extension_json, "filter");
+        const std::string_view bytes = bytes_of_view(extension_json, place);
         if (as.stride == 0 || size / as.stride != as.count || size % as.stride != 0)
             fail(place,
                 fmt::format("{} elements of {} bytes are not the {} bytes of the view", as.count, as.stride, size));
         try {
-            unpacked->second = read_meshopt(bytes, as);
+            slot->second = read_meshopt(bytes, as);
         } catch (const ModelError& error) { fail(place, error.what()); }
-        return unpacked->second;
+        return slot->second;
     }
 
     Array array(std::size_t index, const std::string& from, std::string_view expected) {
-        const Json& one = element("accessors", index, from);
+        const Json& entry = element("accessors", index, from);
         Array out;
         out.place = element_place("accessors", index);
-        out.type = needed(one, "componentType", out.place);
+        out.type = needed(entry, "componentType", out.place);
         const std::size_t size = bytes_of_type(out.type, out.place);
-        if (text(one, "type") != expected)
+        if (text(entry, "type") != expected)
             fail(member_place(out.place, "type"),
-                fmt::format("expected {} for {}, not '{}'", expected, from, text(one, "type")));
+                fmt::format("expected {} for {}, not '{}'", expected, from, text(entry, "type")));
         out.components = expected == "VEC3" ? 3 : expected == "VEC2" ? 2 : 1;
-        out.count = needed(one, "count", out.place);
-        out.normalized = one.value("normalized", Json(false)) == Json(true);
+        out.count = needed(entry, "count", out.place);
+        out.normalized = entry.value("normalized", Json(false)) == Json(true);
         out.stride = out.components * size;
-        if (const auto place = whole_number(one, "bufferView", out.place)) {
-            const auto [bytes, stride] = view(
-                *place, whole_number(one, "byteOffset", out.place).value_or(0), member_place(out.place, "bufferView"));
+        if (const auto place = whole_number(entry, "bufferView", out.place)) {
+            const auto [bytes, stride] = view(*place, whole_number(entry, "byteOffset", out.place).value_or(0),
+                member_place(out.place, "bufferView"));
             if (stride > 0) out.stride = stride;
             out.bytes = bytes;
             need_bytes(out.place, bytes.size(), out.count, out.stride, out.components * size);
         }
-        if (one.contains("sparse")) out.sparse = &one["sparse"];
+        if (entry.contains("sparse")) out.sparse = &entry["sparse"];
         return out;
     }
     static void need_unsigned(std::size_t type, const std::string& place) {
@@ -610,9 +612,9 @@ private:
         if (!json.contains(key)) return out;
         const std::string list = member_place(place, key);
         if (!json[key].is_array()) fail(list, "expected an array");
-        for (const Json& one : json[key]) {
-            if (!one.is_number_unsigned()) fail(list, "expected whole numbers");
-            out.push_back(one.get<std::size_t>());
+        for (const Json& entry : json[key]) {
+            if (!entry.is_number_unsigned()) fail(list, "expected whole numbers");
+            out.push_back(entry.get<std::size_t>());
         }
         return out;
     }
@@ -624,12 +626,12 @@ private:
             std::string from;
             std::vector<std::string> names;
         };
-        std::vector<Open> open, placed;  // placed: meshes with their transforms, in place of a node's
+        std::vector<Open> open_nodes, mesh_nodes;  // mesh_nodes: meshes with their transforms, in place of a node's
         if (size_of("scenes") > 0) {
             const std::size_t index = whole_number(root_, "scene", "").value_or(0);
             const std::string place = element_place("scenes", index);
             for (const std::size_t node : children(element("scenes", index, "scene"), "nodes", place))
-                open.push_back({node, {}, member_place(place, "nodes"), {}});
+                open_nodes.push_back({node, {}, member_place(place, "nodes"), {}});
         } else {
             std::vector<bool> has_parent(size_of("nodes"));
             for (std::size_t k = 0; k < has_parent.size(); ++k)
@@ -637,43 +639,45 @@ private:
                     children(element("nodes", k, "nodes"), "children", element_place("nodes", k)))
                     if (child < has_parent.size()) has_parent[child] = true;
             for (std::size_t k = 0; k < has_parent.size(); ++k)
-                if (!has_parent[k]) open.push_back({k, {}, "nodes", {}});
+                if (!has_parent[k]) open_nodes.push_back({k, {}, "nodes", {}});
         }
-        std::ranges::reverse(open);
+        std::ranges::reverse(open_nodes);
         std::vector<bool> visited(size_of("nodes"));
-        while (!open.empty()) {
-            const Open next = std::move(open.back());
-            open.pop_back();
-            const Json& node = element("nodes", next.node, next.from);
-            const std::string place = element_place("nodes", next.node);
-            if (visited[next.node]) fail(next.from, fmt::format("the node {} is placed twice", next.node));
-            visited[next.node] = true;
-            const Transform transform = next.parent.then(transform_of(node, place));
-            std::vector<std::string> names = next.names;
+        while (!open_nodes.empty()) {
+            const Open open_node = std::move(open_nodes.back());
+            open_nodes.pop_back();
+            const Json& node = element("nodes", open_node.node, open_node.from);
+            const std::string place = element_place("nodes", open_node.node);
+            if (visited[open_node.node])
+                fail(open_node.from, fmt::format("the node {} is placed twice", open_node.node));
+            visited[open_node.node] = true;
+            const Transform transform = open_node.parent.then(transform_of(node, place));
+            std::vector<std::string> names = open_node.names;
             if (const std::string name = text(node, "name"); !name.empty() && scope_.whole_scene) names.push_back(name);
             if (const auto mesh = whole_number(node, "mesh", place))
-                placed.push_back({*mesh, transform, member_place(place, "mesh"), names});
+                mesh_nodes.push_back({*mesh, transform, member_place(place, "mesh"), names});
             if (const auto camera = whole_number(node, "camera", place)) add_camera(*camera, transform, place);
             if (extension(node, "KHR_lights_punctual")) ++dropped_["light[s]"];
             std::vector<std::size_t> inner = children(node, "children", place);
             std::ranges::reverse(inner);
             for (const std::size_t child : inner)
-                open.push_back({child, transform, member_place(place, "children"), names});
+                open_nodes.push_back({child, transform, member_place(place, "children"), names});
         }
         for (std::size_t k = 0; k < visited.size(); ++k)
             dropped_["mesh[es] outside of the scene"] += !visited[k] && element("nodes", k, "nodes").contains("mesh");
         std::map<std::size_t, std::size_t> uses;
-        for (const Open& one : placed) ++uses[one.node];
-        std::map<std::size_t, std::pair<std::size_t, std::size_t>> shared;  // the parts of a mesh
-        for (const Open& one : placed) {
-            const bool is_copied = scope_.whole_scene && uses[one.node] > 1;
-            const auto [parts, is_new] = shared.try_emplace(one.node, model.parts.size(), model.parts.size());
-            if (!is_copied) add_mesh(one.node, one.parent, one.from, one.names);
-            else if (is_new) add_mesh(one.node, {}, one.from, {});
+        for (const Open& mesh_node : mesh_nodes) ++uses[mesh_node.node];
+        std::map<std::size_t, std::pair<std::size_t, std::size_t>> part_ranges;  // the parts of a mesh
+        for (const Open& mesh_node : mesh_nodes) {
+            const bool is_copied = scope_.whole_scene && uses[mesh_node.node] > 1;
+            const auto [parts, is_new] =
+                part_ranges.try_emplace(mesh_node.node, model.parts.size(), model.parts.size());
+            if (!is_copied) add_mesh(mesh_node.node, mesh_node.parent, mesh_node.from, mesh_node.names);
+            else if (is_new) add_mesh(mesh_node.node, {}, mesh_node.from, {});
             if (is_new) parts->second.second = model.parts.size();
             if (is_copied)
                 for (std::size_t k = parts->second.first; k < parts->second.second; ++k)
-                    model.parts[k].copies.push_back({one.parent, one.names});
+                    model.parts[k].copies.push_back({mesh_node.parent, mesh_node.names});
         }
     }
 
@@ -722,18 +726,19 @@ private:
         const std::string uv = uv_name(part.material);
         for (const auto& [name, index] : attributes.items())
             if (name != "POSITION" && name != "NORMAL" && name != uv) ++attributes_[name];
-        const std::optional<DracoMesh> packed = unpacked(from, place);
-        if (packed) mode = list;
-        const std::size_t count = add_vertices(attributes, transform, member_place(place, "attributes"), packed, part);
-        const std::vector<std::uint32_t> corners = packed ? packed->corners : corners_of(from, place, count);
+        const std::optional<DracoMesh> draco_mesh = unpacked(from, place);
+        if (draco_mesh) mode = list;
+        const std::size_t count =
+            add_vertices(attributes, transform, member_place(place, "attributes"), draco_mesh, part);
+        const std::vector<std::uint32_t> corners = draco_mesh ? draco_mesh->corners : corners_of(from, place, count);
         if (mode == list && corners.size() % 3 != 0)
             fail(place, fmt::format("expected three indices for each triangle, found {}", corners.size()));
-        const bool mirrored = transform.determinant() < 0;
+        const bool is_mirrored = transform.determinant() < 0;
         for (std::size_t k = 0; k + 2 < corners.size(); k += mode == list ? 3 : 1) {
             Triangle triangle{corners[k], corners[k + 1], corners[k + 2]};
             if (mode == strip && k % 2 == 1) std::swap(triangle[1], triangle[2]);
             if (mode == fan) triangle = {corners[k + 1], corners[k + 2], corners[0]};
-            if (mirrored) std::swap(triangle[1], triangle[2]);
+            if (is_mirrored) std::swap(triangle[1], triangle[2]);
             part.triangles.push_back(triangle);
         }
         model.parts.push_back(std::move(part));
@@ -768,15 +773,15 @@ private:
 
     /// Returns the number of vertices.
     std::size_t add_vertices(const Json& attributes, const Transform& transform, const std::string& place,
-        const std::optional<DracoMesh>& packed, Part& to) {
+        const std::optional<DracoMesh>& draco_mesh, Part& to) {
         const auto read = [&](const char* name, std::string_view type) -> std::optional<std::vector<double>> {
             const std::optional<std::size_t> index = whole_number(attributes, name, place);
             if (!index) return std::nullopt;
-            if (packed && packed->values.contains(name)) {
+            if (draco_mesh && draco_mesh->values.contains(name)) {
                 const std::size_t components = type == "VEC3" ? 3 : 2;
-                if (packed->values.at(name).size() != components * packed->count)
+                if (draco_mesh->values.at(name).size() != components * draco_mesh->count)
                     fail(member_place(place, name), fmt::format("expected {} numbers a vertex", components));
-                return packed->values.at(name);
+                return draco_mesh->values.at(name);
             }
             const Array array = this->array(*index, member_place(place, name), type);
             if (!to.positions.empty() && array.count != to.positions.size())

@@ -32,8 +32,8 @@ using namespace crescent;
 using namespace crescent::importer;
 using OrderedJson = nlohmann::ordered_json;
 
-void limit(int what, rlim_t most) {
-    const rlimit value{most, most};
+void limit(int what, rlim_t maximum) {
+    const rlimit value{maximum, maximum};
     setrlimit(what, &value);
 }
 
@@ -48,8 +48,8 @@ struct CornerHash {
 float length_of(Vec3f v) { return std::sqrt(dot(v, v)); }
 
 Transform transform_of(const ModelPlacement& placement) {
-    Transform out{.origin = -placement.by * placement.from};
-    for (Vec3d& column : out.columns) column = placement.by * column;
+    Transform out{.origin = -placement.scale * placement.from};
+    for (Vec3d& column : out.columns) column = placement.scale * column;
     return out;
 }
 
@@ -57,20 +57,20 @@ Transform transform_of(const ModelPlacement& placement) {
 class Gatherer {
 public:
     /// Adds the copies of a part where they are, or, if they are `shared`, the part once, as it is.
-    Gatherer(const std::vector<const Part*>& parts, const ModelPlacement& placement, bool shared = false) {
+    Gatherer(const std::vector<const Part*>& parts, const ModelPlacement& placement, bool is_shared = false) {
         for (const Part* part : parts) {
             has_normals_ = has_normals_ || is_smooth(*part);
             has_uv_ = has_uv_ || !part->uv.empty();
         }
         const Transform to_scene = transform_of(placement);
         for (const Part* part : parts) {
-            if (shared) add(*part, nullptr);
+            if (is_shared) add(*part, nullptr);
             else if (part->copies.empty()) {
                 placement_ = placement;
                 add(*part, nullptr);
                 placement_ = {};
             }
-            if (!shared)
+            if (!is_shared)
                 for (const Copy& copy : part->copies) {
                     const Transform to = to_scene.then(copy.to);
                     add(*part, &to);
@@ -111,13 +111,13 @@ private:
         }
     }
     std::uint32_t vertex(const Part& part, const Triangle& triangle, unsigned k, const Transform* to) {
-        const Vec3d at = part.positions[triangle[k]];
-        const Vec3f p = narrow(to ? to->placed(at) : placement_.placed(at));
+        const Vec3d position = part.positions[triangle[k]];
+        const Vec3f p = narrow(to ? to->placed(position) : placement_.placed(position));
         Vec3f n = has_normals_ ? normal_of(part, triangle, k) : Vec3f{};
         if (to && has_normals_) {
-            const Vec3d turned = to->turned_normal(widen(n));
-            const double length = std::sqrt(dot(turned, turned));
-            if (length > 0) n = narrow((1 / length) * turned);
+            const Vec3d normal = to->turned_normal(widen(n));
+            const double length = std::sqrt(dot(normal, normal));
+            if (length > 0) n = narrow((1 / length) * normal);
         }
         const Vec2<float> uv = has_uv_ && !part.uv.empty() ? part.uv[triangle[k]] : Vec2<float>{};
         // 0 is added, so that -0 becomes 0.
@@ -149,14 +149,14 @@ OrderedJson materials_of(const Model& model) {
     for (std::size_t m = 0; m < model.materials.size(); ++m) {
         if (triangles[m] == 0) continue;
         const importer::Material& from = model.materials[m];
-        OrderedJson one = {{"name", from.name}, {"index", m}, {"triangles", triangles[m]},
+        OrderedJson entry = {{"name", from.name}, {"index", m}, {"triangles", triangles[m]},
             {"rho_d", numbers_of(from.rho_d)}, {"emission", numbers_of(from.emission)},
             {"rho_s", numbers_of(from.rho_s)}, {"metal", number_of(from.metal)}, {"alpha", number_of(from.alpha)},
             {"two_sided", from.two_sided}};
-        if (!from.texture.empty()) one["texture"] = from.texture;
-        if (from.colours) one["colours"] = *from.colours;
-        if (from.surface) one["surface"] = *from.surface;
-        materials.push_back(std::move(one));
+        if (!from.texture.empty()) entry["texture"] = from.texture;
+        if (from.colours) entry["colours"] = *from.colours;
+        if (from.surface) entry["surface"] = *from.surface;
+        materials.push_back(std::move(entry));
     }
     return materials;
 }
@@ -227,28 +227,28 @@ OrderedJson write_meshes(
     OrderedJson out = OrderedJson::array();
     const Transform to_scene = transform_of(placement);
     std::map<std::pair<std::size_t, bool>, std::vector<const Part*>> of_material;
-    std::vector<const Part*> copied;
+    std::vector<const Part*> copied_parts;
     for (const Part* part : parts_of(model, material)) {
-        const bool shared = !part->copies.empty() && are_instances(part->copies, to_scene);
-        if (shared) copied.push_back(part);
+        const bool is_shared = !part->copies.empty() && are_instances(part->copies, to_scene);
+        if (is_shared) copied_parts.push_back(part);
         else of_material[{part->material, lacks_uv(model, *part)}].push_back(part);
     }
-    const auto add = [&](const std::vector<const Part*>& parts, bool shared) {
-        const Gatherer gathered(parts, placement, shared);
-        if (gathered.result.triangles.empty()) return;
-        OrderedJson one = written(end, mesh_file(gathered.result));
-        one["material"] = parts[0]->material;
-        if (shared) {
-            const std::vector<std::string>&own = parts[0]->names,
-                  &names = own.empty() ? parts[0]->copies[0].names : own;
-            one["name"] = names.empty() ? "" : names.front();
-            one["instances"] = OrderedJson::array();
-            for (const Copy& copy : parts[0]->copies) one["instances"].push_back(matrix_of(to_scene.then(copy.to)));
+    const auto add = [&](const std::vector<const Part*>& parts, bool is_shared) {
+        const Gatherer gatherer(parts, placement, is_shared);
+        if (gatherer.result.triangles.empty()) return;
+        OrderedJson entry = written(end, mesh_file(gatherer.result));
+        entry["material"] = parts[0]->material;
+        if (is_shared) {
+            const std::vector<std::string>&part_names = parts[0]->names,
+                  &names = part_names.empty() ? parts[0]->copies[0].names : part_names;
+            entry["name"] = names.empty() ? "" : names.front();
+            entry["instances"] = OrderedJson::array();
+            for (const Copy& copy : parts[0]->copies) entry["instances"].push_back(matrix_of(to_scene.then(copy.to)));
         }
-        out.push_back(std::move(one));
+        out.push_back(std::move(entry));
     };
     for (const auto& [key, parts] : of_material) add(parts, false);
-    for (const Part* part : copied) add({part}, true);
+    for (const Part* part : copied_parts) add({part}, true);
     return out;
 }
 
@@ -285,9 +285,9 @@ OrderedJson write_pictures(const Model& model, const OrderedJson& materials, std
             if (material.contains(key)) is_used[material[key].get<std::size_t>()] = true;
     OrderedJson out = OrderedJson::array();
     for (std::size_t k = 0; k < model.pictures.size(); ++k) {
-        OrderedJson one = written(end, is_used[k] ? std::string_view(model.pictures[k].bytes) : "");
-        one["name"] = model.pictures[k].name;
-        out.push_back(std::move(one));
+        OrderedJson entry = written(end, is_used[k] ? std::string_view(model.pictures[k].bytes) : "");
+        entry["name"] = model.pictures[k].name;
+        out.push_back(std::move(entry));
     }
     return out;
 }
@@ -298,9 +298,9 @@ OrderedJson camera_of(const ModelCamera& camera, const ModelPlacement& placement
 }
 
 OrderedJson import(const std::string& file, const OrderedJson& options) {
-    const bool folder = options.value("folder", false);
+    const bool is_folder = options.value("folder", false);
     const std::string material = options.value("material", "");
-    Model model = read_model(file, {.whole_scene = folder || options.contains("select"), .images = true});
+    Model model = read_model(file, {.whole_scene = is_folder || options.contains("select"), .images = true});
     list_unused_materials(model);
     if (options.contains("select")) select(model, options["select"].get<std::string>());
     turn_and_scale(model, options.value("up", "y") == "z", options.value("scale", 1.0));
@@ -311,13 +311,13 @@ OrderedJson import(const std::string& file, const OrderedJson& options) {
     OrderedJson out = {{"materials", materials_of(model)}, {"left_out", model.left_out}, {"assumed", model.assumed}};
     if (placement.is_needed()) {
         out["moved"] = {-placement.from.x, -placement.from.y, -placement.from.z};
-        out["scaled"] = placement.by;
+        out["scaled"] = placement.scale;
     }
     const auto none = [&] {
         return ModelError(
             material.empty() ? "found no triangle" : "found no triangle of the material '" + material + "'");
     };
-    if (folder) {
+    if (is_folder) {
         std::size_t end = 0;
         out["meshes"] = write_meshes(model, placement, material, end);
         if (out["meshes"].empty()) throw none();
@@ -325,16 +325,17 @@ OrderedJson import(const std::string& file, const OrderedJson& options) {
         if (model.camera) out["camera"] = camera_of(*model.camera, placement);
         return out;
     }
-    const Gatherer gathered(parts_of(model, material), placement);
-    if (gathered.result.triangles.empty()) throw none();
-    out["normals"] = !gathered.result.normals.empty();
-    out["uv"] = !gathered.result.uv.empty();
+    const Gatherer gatherer(parts_of(model, material), placement);
+    if (gatherer.result.triangles.empty()) throw none();
+    out["normals"] = !gatherer.result.normals.empty();
+    out["uv"] = !gatherer.result.uv.empty();
     std::size_t end = 0;
-    out["mesh"] = written(end, mesh_file(gathered.result));
-    OrderedJson used = OrderedJson::array();  // by the one material of the mesh, if it has one
-    for (const OrderedJson& one : out["materials"])
-        if (one["name"] == material || (material.empty() && out["materials"].size() == 1)) used.push_back(one);
-    out["pictures"] = write_pictures(model, used, end);
+    out["mesh"] = written(end, mesh_file(gatherer.result));
+    OrderedJson mesh_materials = OrderedJson::array();  // by the one material of the mesh, if it has one
+    for (const OrderedJson& entry : out["materials"])
+        if (entry["name"] == material || (material.empty() && out["materials"].size() == 1))
+            mesh_materials.push_back(entry);
+    out["pictures"] = write_pictures(model, mesh_materials, end);
     return out;
 }
 

@@ -41,10 +41,10 @@ std::string joined_lines(std::string_view text, bool backslash_continues) {
 }
 
 std::optional<Statement> Statements::next() {
-    while (!rest_.empty()) {
-        const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-        std::string_view line = rest_.substr(0, end);
-        rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    while (!text_.empty()) {
+        const std::size_t end = std::min(text_.find('\n'), text_.size());
+        std::string_view line = text_.substr(0, end);
+        text_.remove_prefix(std::min(end + 1, text_.size()));
         ++line_;
         const std::string_view key = take_word(line);
         if (!key.empty() && key[0] != '#') return Statement{line_, key, without_blanks_at_ends(line)};
@@ -77,10 +77,10 @@ std::string_view without_comment_of_name(std::string_view text) {
     return text;
 }
 
-std::string_view take_word(std::string_view& rest) {
-    rest.remove_prefix(std::min(rest.find_first_not_of(blanks), rest.size()));
-    const std::string_view word = rest.substr(0, rest.find_first_of(blanks));
-    rest.remove_prefix(word.size());
+std::string_view take_word(std::string_view& text) {
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    const std::string_view word = text.substr(0, text.find_first_of(blanks));
+    text.remove_prefix(word.size());
     return word;
 }
 

@@ -12,7 +12,7 @@ namespace crescent::importer {
 /// A statement: its first word, and what follows without blanks at the ends.
 struct Statement {
     std::size_t line = 0;  // from 1 on
-    std::string_view key, rest;
+    std::string_view key, value;
 };
 
 /// Returns the text without byte order mark, with '\n' as the end of each line. Lines that a backslash continues are
@@ -23,12 +23,12 @@ std::string joined_lines(std::string_view text, bool backslash_continues = true)
 /// Gives the statements of a text with joined lines, one after the other.
 class Statements {
 public:
-    explicit Statements(std::string_view text) : rest_(text) {}
+    explicit Statements(std::string_view text) : text_(text) {}
     /// The next one; nothing at the end.
     std::optional<Statement> next();
 
 private:
-    std::string_view rest_;
+    std::string_view text_;
     std::size_t line_ = 0;
 };
 
@@ -41,7 +41,7 @@ std::string_view without_comment(std::string_view text);
 /// Before '#' behind a blank: a name may have one within.
 std::string_view without_comment_of_name(std::string_view text);
 /// Takes the first word off.
-std::string_view take_word(std::string_view& rest);
+std::string_view take_word(std::string_view& text);
 std::vector<std::string_view> words_of(std::string_view text);
 /// The numbers that all words are; nothing if one of them is none.
 std::optional<std::vector<double>> numbers_of(std::string_view text);

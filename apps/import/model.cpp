@@ -46,24 +46,24 @@ bool is_inside(const fs::path& folder, const fs::path& file) {
 std::optional<FoundFile> file_named(std::string_view name, std::span<const fs::path> folders, const fs::path& outer) {
     std::string with_slashes(name);
     std::ranges::replace(with_slashes, '\\', '/');
-    const auto found_as = [&](const fs::path& wanted) -> std::optional<fs::path> {
-        std::error_code unknown;
+    const auto find_path = [&](const fs::path& path) -> std::optional<fs::path> {
+        std::error_code ignored;
         for (const fs::path& folder : folders)
-            if (const fs::path file = folder / wanted; fs::is_regular_file(file, unknown) && is_inside(outer, file))
+            if (const fs::path file = folder / path; fs::is_regular_file(file, ignored) && is_inside(outer, file))
                 return file;
         return std::nullopt;
     };
     if (name.empty() || name.find('\0') != name.npos) return std::nullopt;
-    for (const fs::path& wanted : {fs::path(name), fs::path(with_slashes)})
-        if (auto file = found_as(wanted)) return FoundFile{*std::move(file)};
-    if (auto file = found_as(fs::path(with_slashes).filename())) return FoundFile{*std::move(file), true};
+    for (const fs::path& path : {fs::path(name), fs::path(with_slashes)})
+        if (auto file = find_path(path)) return FoundFile{*std::move(file)};
+    if (auto file = find_path(fs::path(with_slashes).filename())) return FoundFile{*std::move(file), true};
     return std::nullopt;
 }
 
 void count_kind(Kinds& kinds, const std::string& name) {
     constexpr std::size_t most_kinds = 50, longest = 60;
-    const auto found = kinds.find(name);
-    if (found != kinds.end()) ++found->second;
+    const auto entry = kinds.find(name);
+    if (entry != kinds.end()) ++entry->second;
     else ++kinds[kinds.size() < most_kinds && name.size() <= longest ? name : other_kinds];
 }
 

@@ -25,10 +25,10 @@ constexpr std::array neutral_options = {Neutral{"-blendu", "on"}, Neutral{"-blen
     Neutral{"-clamp", "off"}, Neutral{"-mm", "0 1"}, Neutral{"-t", "0"}, Neutral{"-t", "0 0"}, Neutral{"-t", "0 0 0"}};
 
 bool is_neutral(const auto& table, std::string_view key, std::string_view value) {
-    return std::ranges::any_of(table, [&](const Neutral& one) {
-        if (one.key != key) return false;
+    return std::ranges::any_of(table, [&](const Neutral& entry) {
+        if (entry.key != key) return false;
         const auto numbers = numbers_of(value);
-        return numbers ? numbers == numbers_of(one.value) : value == one.value;
+        return numbers ? numbers == numbers_of(entry.value) : value == entry.value;
     });
 }
 
@@ -42,33 +42,33 @@ constexpr std::array image_options = {Option{"-o", 3}, Option{"-s", 3}, Option{"
     Option{"-cc", 0}, Option{"-clamp", 0}, Option{"-imfchan", 0}, Option{"-type", 0}};
 
 /// Takes the options of an image off; what is left is the name of its file.
-void read_image(std::string_view rest, MtlMaterial& to, Kinds& left_out) {
+void read_image(std::string_view text, MtlMaterial& to, Kinds& left_out) {
     to.uv = {};
     for (;;) {
-        std::string_view after = rest;
-        const std::string name = lower_case(take_word(after));
+        std::string_view option_text = text;
+        const std::string name = lower_case(take_word(option_text));
         const auto* const option = std::ranges::find(image_options, name, &Option::name);
         if (option == image_options.end()) break;
-        rest = after;
+        text = option_text;
         std::vector<double> numbers;
-        const std::size_t begin = rest.size();
-        const std::string_view values = rest;
-        if (option->most_numbers == 0) (void)take_word(rest);
+        const std::size_t begin = text.size();
+        const std::string_view values = text;
+        if (option->most_numbers == 0) (void)take_word(text);
         while (numbers.size() < option->most_numbers) {
-            std::string_view behind = rest;
-            const std::optional<double> number = number_in(take_word(behind));
+            std::string_view number_text = text;
+            const std::optional<double> number = number_in(take_word(number_text));
             if (!number) break;
             numbers.push_back(*number);
-            rest = behind;
+            text = number_text;
         }
-        Vec2<double>* const placed = name == "-s" ? &to.uv.scale : name == "-o" ? &to.uv.offset : nullptr;
-        if (placed && !numbers.empty()) {
-            placed->x = numbers[0];
-            if (numbers.size() > 1) placed->y = numbers[1];
-        } else if (!is_neutral(neutral_options, name, without_blanks_at_ends(values.substr(0, begin - rest.size()))))
+        Vec2<double>* const placement = name == "-s" ? &to.uv.scale : name == "-o" ? &to.uv.offset : nullptr;
+        if (placement && !numbers.empty()) {
+            placement->x = numbers[0];
+            if (numbers.size() > 1) placement->y = numbers[1];
+        } else if (!is_neutral(neutral_options, name, without_blanks_at_ends(values.substr(0, begin - text.size()))))
             ++left_out[name];
     }
-    to.image = without_quotes(without_blanks_at_ends(rest));
+    to.image = without_quotes(without_blanks_at_ends(text));
 }
 
 /// A colour: three numbers, or one for each channel. Nothing if it is none, or below 0.
@@ -92,16 +92,16 @@ public:
 
     explicit MtlReader(std::string_view text) {
         Statements statements(text);
-        while (const std::optional<Statement> one = statements.next()) read(*one);
+        while (const std::optional<Statement> statement = statements.next()) read(*statement);
         end_material();
     }
 
 private:
     void read(const Statement& statement) {
         const std::string key = lower_case(statement.key);
-        if (key == "newmtl") return begin_material(without_comment_of_name(statement.rest));
+        if (key == "newmtl") return begin_material(without_comment_of_name(statement.value));
         if (result.materials.empty()) ++result.before_first;
-        else if (!has_effect(key, statement.rest)) leave_out(key, statement);
+        else if (!has_effect(key, statement.value)) leave_out(key, statement);
     }
 
     void begin_material(std::string_view name) {
@@ -111,7 +111,7 @@ private:
         has_colour_ = has_image_of_emission_ = false;
         of_exponent_ = 1;  // Ns 0
         roughness_.reset();
-        left_out_.clear();
+        omissions_.clear();
     }
     void end_material() {
         if (result.materials.empty()) return;
@@ -127,12 +127,12 @@ private:
     }
 
     /// Reads a statement; false if it is not one of those that are read.
-    bool has_effect(const std::string& key, std::string_view rest) {
+    bool has_effect(const std::string& key, std::string_view value) {
         MtlMaterial& to = result.materials.back();
         const auto take_colour = [&](Vec3f& out) {
-            const std::optional<Vec3f> found = colour_in(without_comment(rest));
-            if (found) out = *found;
-            return found.has_value();
+            const std::optional<Vec3f> colour = colour_in(without_comment(value));
+            if (colour) out = *colour;
+            return colour.has_value();
         };
         if (key == "kd") {
             const bool is_colour = take_colour(to.material.rho_d);
@@ -142,12 +142,12 @@ private:
         if (key == "ks") return take_colour(to.material.rho_s);
         if (key == "ke") return take_colour(to.material.emission);
         if (key == "map_kd") {
-            read_image(rest, to, result.options);
+            read_image(value, to, result.options);
             return !to.image.empty();
         }
         has_image_of_emission_ = has_image_of_emission_ || key == "map_ke";
         if (key != "ns" && key != "pr" && key != "pm") return false;
-        const std::optional<float> number = number_in_statement(without_comment(rest));
+        const std::optional<float> number = number_in_statement(without_comment(value));
         if (!number) return false;
         if (key == "ns") of_exponent_ = std::sqrt(2 / (*number + 2));
         else if (key == "pr") roughness_ = number;
@@ -159,16 +159,16 @@ private:
     void leave_out(const std::string& key, const Statement& statement) {
         constexpr std::array with_numbers = {"ka", "kd", "ks", "ke", "tf", "ns", "ni", "d", "tr", "illum", "pr", "pm",
             "ps", "pc", "pcr", "aniso", "anisor", "sharpness"};
-        std::string_view rest = without_blanks_at_ends(without_comment(statement.rest));
-        if (is_neutral(neutral_statements, key, rest)) return;
+        std::string_view value = without_blanks_at_ends(without_comment(statement.value));
+        if (is_neutral(neutral_statements, key, value)) return;
         std::string name(statement.key);
         const bool is_number = std::ranges::find(with_numbers, key) != with_numbers.end();
-        if (const std::string_view word = take_word(rest); is_number && !(number_in(word) >= 0.0))
+        if (const std::string_view word = take_word(value); is_number && !(number_in(word) >= 0.0))
             name += word.empty() ? "" : " " + std::string(word);
-        if (left_out_.insert(name).second) count_kind(result.statements, name);
+        if (omissions_.insert(name).second) count_kind(result.statements, name);
     }
 
-    std::set<std::string> left_out_;  // of the present material
+    std::set<std::string> omissions_;  // of the present material
     bool has_colour_ = false, has_image_of_emission_ = false;
     float of_exponent_ = 1;
     std::optional<float> roughness_;

@@ -51,15 +51,15 @@ private:
 
     void read_numbers() {
         Statements statements(text_);
-        while (const std::optional<Statement> one = statements.next()) {
-            const auto kind = static_cast<std::size_t>(std::ranges::find(kinds, one->key) - kinds.begin());
-            if (kind < kinds.size()) add_numbers(kind, *one);
-            else if (one->key == "mtllib") libraries_.emplace_back(one->rest);
+        while (const std::optional<Statement> statement = statements.next()) {
+            const auto kind = static_cast<std::size_t>(std::ranges::find(kinds, statement->key) - kinds.begin());
+            if (kind < kinds.size()) add_numbers(kind, *statement);
+            else if (statement->key == "mtllib") libraries_.emplace_back(statement->value);
         }
     }
 
     void add_numbers(std::size_t kind, const Statement& statement) {
-        const auto numbers = numbers_of(without_comment(statement.rest));
+        const auto numbers = numbers_of(without_comment(statement.value));
         if (!numbers || numbers->size() < least_numbers[kind])
             throw ModelError(fmt::format("line {}: expected {} after '{}'", statement.line,
                 counted(least_numbers[kind], "number[s]"), kinds[kind]));
@@ -87,14 +87,14 @@ private:
     void read_library(std::string_view names) {
         if (open_library(without_quotes(names), false)) return;
         names = without_comment_of_name(names);
-        std::string_view rest = names;
-        while (!rest.empty()) {
-            const std::string_view before = rest;
+        std::string_view remainder = names;
+        while (!remainder.empty()) {
+            const std::string_view text = remainder;
             std::string word;
-            do word = lower_case(take_word(rest));
-            while (!rest.empty() && !word.ends_with(".mtl") && !word.ends_with(".mtl\""));
+            do word = lower_case(take_word(remainder));
+            while (!remainder.empty() && !word.ends_with(".mtl") && !word.ends_with(".mtl\""));
             const std::string_view name =
-                without_quotes(without_blanks_at_ends(before.substr(0, before.size() - rest.size())));
+                without_quotes(without_blanks_at_ends(text.substr(0, text.size() - remainder.size())));
             if (!name.empty() && !open_library(name, true))
                 model.left_out.push_back(fmt::format("the materials of '{}', which cannot be opened", name));
         }
@@ -102,22 +102,22 @@ private:
 
     /// `may_be_other`: the file may be in another folder than the name has.
     bool open_library(std::string_view name, bool may_be_other) {
-        const std::optional<FoundFile> found = file_named(name, std::array{folder_}, folder_);
-        if (!found || (found->is_other && !may_be_other)) return false;
-        note_other_name(*found, name);
-        Mtl read = read_mtl(bytes_of(found->path));
-        for (const auto& [statement, count] : read.statements) material_statements_[statement] += count;
-        before_materials_ += read.before_first;
-        for (const auto& [option, count] : read.options) image_options_[option] += count;
-        for (MtlMaterial& one : read.materials) {
-            const bool is_new = material_of_name_.try_emplace(one.material.name, model.materials.size()).second;
+        const std::optional<FoundFile> file = file_named(name, std::array{folder_}, folder_);
+        if (!file || (file->is_other && !may_be_other)) return false;
+        note_other_name(*file, name);
+        Mtl library = read_mtl(bytes_of(file->path));
+        for (const auto& [statement, count] : library.statements) material_statements_[statement] += count;
+        before_materials_ += library.before_first;
+        for (const auto& [option, count] : library.options) image_options_[option] += count;
+        for (MtlMaterial& entry : library.materials) {
+            const bool is_new = material_of_name_.try_emplace(entry.material.name, model.materials.size()).second;
             if (!is_new) {
-                ++taken_names_;
+                ++repeated_names_;
                 continue;
             }
-            if (!one.image.empty()) add_image(one, found->path.parent_path());
-            model.materials.push_back(std::move(one.material));
-            uv_placements_.push_back(one.uv);
+            if (!entry.image.empty()) add_image(entry, file->path.parent_path());
+            model.materials.push_back(std::move(entry.material));
+            uv_placements_.push_back(entry.uv);
         }
         return true;
     }
@@ -125,31 +125,30 @@ private:
     void add_image(MtlMaterial& to, const std::filesystem::path& folder_of_library) {
         const std::array folders = {folder_of_library, folder_};
         std::string name = to.image;
-        std::optional<FoundFile> found = file_named(name, folders, folder_);
-        if (!found) {
+        std::optional<FoundFile> file = file_named(name, folders, folder_);
+        if (!file) {
             name = without_comment_of_name(name);
-            found = file_named(name, folders, folder_);
+            file = file_named(name, folders, folder_);
         }
-        if (found) note_other_name(*found, name);
+        if (file) note_other_name(*file, name);
         std::ranges::replace(name, '\\', '/');
         to.material.texture = name;
         if (!scope_.images) return;
         const auto [picture, is_new] =
-            picture_of_file_.try_emplace(found ? found->path.string() : name, model.pictures.size());
+            picture_of_file_.try_emplace(file ? file->path.string() : name, model.pictures.size());
         to.material.colours = picture->second;
-        if (is_new) model.pictures.push_back({name, found ? bytes_of(found->path) : ""});
+        if (is_new) model.pictures.push_back({name, file ? bytes_of(file->path) : ""});
     }
 
-    void note_other_name(const FoundFile& found, std::string_view name) {
-        if (found.is_other)
-            model.assumed.push_back(
-                fmt::format("'{}' is '{}' of another folder", found.path.filename().string(), name));
+    void note_other_name(const FoundFile& file, std::string_view name) {
+        if (file.is_other)
+            model.assumed.push_back(fmt::format("'{}' is '{}' of another folder", file.path.filename().string(), name));
     }
 
     /// Of a name in `usemtl`; a grey one if no library has it.
     std::size_t material_named(std::string_view name) {
-        const auto found = material_of_name_.find(name);
-        if (found != material_of_name_.end()) return found->second;
+        const auto entry = material_of_name_.find(name);
+        if (entry != material_of_name_.end()) return entry->second;
         if (const std::string_view shorter = without_comment_of_name(name); shorter != name)
             return material_named(shorter);
         if (!name.empty()) unknown_materials_.emplace_back(name);
@@ -164,19 +163,19 @@ private:
 
     void read_faces() {
         Statements statements(text_);
-        while (const std::optional<Statement> one = statements.next()) {
-            const std::string_view key = one->key;
+        while (const std::optional<Statement> statement = statements.next()) {
+            const std::string_view key = statement->key;
             const auto kind = static_cast<std::size_t>(std::ranges::find(kinds, key) - kinds.begin());
             if (kind < kinds.size()) ++counts_[kind];
-            else if (key == "f" || key == "fo") add_face(*one);  // fo: before version 3.0
+            else if (key == "f" || key == "fo") add_face(*statement);  // fo: before version 3.0
             else if (key == "o" || key == "g") {
-                (key == "o" ? object_ : group_) = one->rest;
+                (key == "o" ? object_ : group_) = statement->value;
                 is_changed_ = true;
             } else if (key == "usemtl") {
-                material_ = one->rest;
+                material_ = statement->value;
                 is_changed_ = true;
             } else if (key == "s") {
-                const std::string_view word = without_blanks_at_ends(without_comment(one->rest));
+                const std::string_view word = without_blanks_at_ends(without_comment(statement->value));
                 is_smooth_ = !word.empty() && word != "off" && word != "0";
             } else if (key == "p" || key == "l") ++points_and_lines_;
             else if (key == "curv" || key == "curv2" || key == "surf") ++curves_;
@@ -185,10 +184,10 @@ private:
     }
 
     void add_face(const Statement& statement) {
-        std::string_view rest = without_comment(statement.rest);
+        std::string_view text = without_comment(statement.value);
         corners_.clear();
         bool has_uv = true, has_normals = true, has_some_uv = false;
-        for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
+        for (std::string_view word = take_word(text); !word.empty(); word = take_word(text)) {
             if (corners_.size() == most_corners)
                 throw ModelError(
                     fmt::format("line {}: expected a face of at most {} corners", statement.line, most_corners));
@@ -216,21 +215,21 @@ private:
     /// v, v/vt, v//vn or v/vt/vn; an index below 0 counts back from the last one above.
     Corner corner_of(std::string_view word, std::size_t line) const {
         Corner out{};
-        const auto bad = [&] {
+        const auto make_error = [&] {
             return ModelError(
                 fmt::format("line {}: expected an index, v, v/vt, v//vn or v/vt/vn, not '{}'", line, word));
         };
-        std::string_view rest = word;
+        std::string_view text = word;
         for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-            const std::string_view digits = rest.substr(0, rest.find('/'));
-            const bool is_last = digits.size() == rest.size();
-            rest.remove_prefix(std::min(digits.size() + 1, rest.size()));
-            if (digits.empty() && kind == 0) throw bad();
+            const std::string_view digits = text.substr(0, text.find('/'));
+            const bool is_last = digits.size() == text.size();
+            text.remove_prefix(std::min(digits.size() + 1, text.size()));
+            if (digits.empty() && kind == 0) throw make_error();
             if (!digits.empty()) out[kind] = index_in(digits, kind, line).value_or(0);
-            if (!digits.empty() && out[kind] == 0) throw bad();
+            if (!digits.empty() && out[kind] == 0) throw make_error();
             if (is_last) return out;
         }
-        if (!rest.empty() || std::ranges::count(word, '/') > 2) throw bad();
+        if (!text.empty() || std::ranges::count(word, '/') > 2) throw make_error();
         return out;
     }
     std::optional<std::uint64_t> index_in(std::string_view digits, std::size_t kind, std::size_t line) const {
@@ -239,14 +238,14 @@ private:
         std::int64_t index = 0;
         const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
         if (error != std::errc{} || end != digits.data() + digits.size() || index == 0) return std::nullopt;
-        const auto above = static_cast<std::int64_t>(counts_[kind]);
-        if (index < -above)
+        const auto count = static_cast<std::int64_t>(counts_[kind]);
+        if (index < -count)
             throw ModelError(fmt::format("line {}: the index {} of '{}', of which {} above", line, index, kinds[kind],
                 counts_[kind] == 1 ? "1 is" : fmt::format("{} are", counts_[kind])));
         if (index > static_cast<std::int64_t>(totals[kind]))
             throw ModelError(fmt::format("line {}: the index {} of '{}', of which there {}", line, index, kinds[kind],
                 totals[kind] == 1 ? "is 1" : fmt::format("are {}", totals[kind])));
-        return static_cast<std::uint64_t>(index > 0 ? index : above + index + 1);
+        return static_cast<std::uint64_t>(index > 0 ? index : count + index + 1);
     }
 
     /// The part of the present names and material, with or without texture coordinates.
@@ -280,10 +279,10 @@ private:
         if (corner[2] > 0) part.normals.push_back(normals_[corner[2] - 1]);
         else if (!part.normals.empty()) part.normals.emplace_back();
         if (corner[1] > 0) {
-            const UvPlacement& placed = uv_placements_[part.material];
+            const UvPlacement& placement = uv_placements_[part.material];
             const Vec2<float> uv = uv_[corner[1] - 1];
-            part.uv.push_back({static_cast<float>(placed.scale.x * static_cast<double>(uv.x) + placed.offset.x),
-                static_cast<float>(placed.scale.y * static_cast<double>(uv.y) + placed.offset.y)});
+            part.uv.push_back({static_cast<float>(placement.scale.x * static_cast<double>(uv.x) + placement.offset.x),
+                static_cast<float>(placement.scale.y * static_cast<double>(uv.y) + placement.offset.y)});
         }
         return index->second;
     }
@@ -296,7 +295,7 @@ private:
         model.leave_out(further_numbers_, "vert[ex|ices] with more numbers than are read");
         model.leave_out(half_textured_, "face[s] with texture coordinates at some corners alone: the coordinates");
         model.leave_out(unsmoothed_, "face[s] of smoothing groups without normals: the smoothing (--smooth DEG)");
-        model.leave_out(taken_names_, "material[s] with a name that another one has");
+        model.leave_out(repeated_names_, "material[s] with a name that another one has");
         model.leave_out(before_materials_, "statement[s] of libraries before their first material");
         if (const std::size_t count = unknown_materials_.size(); count > 0)
             model.left_out.push_back(fmt::format("{}, which no library has: grey in place of {}",
@@ -332,7 +331,7 @@ private:
     std::vector<std::uint32_t> vertices_;
     Kinds statements_, material_statements_, image_options_;
     std::size_t curves_ = 0, points_and_lines_ = 0, weights_ = 0, colours_ = 0, further_numbers_ = 0,
-                half_textured_ = 0, unsmoothed_ = 0, taken_names_ = 0, before_materials_ = 0;
+                half_textured_ = 0, unsmoothed_ = 0, repeated_names_ = 0, before_materials_ = 0;
 };
 
 }  // namespace

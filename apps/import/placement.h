@@ -5,13 +5,13 @@
 
 namespace crescent::importer {
 
-/// x' = by (x - from).
+/// x' = scale (x - from).
 struct ModelPlacement {
     Vec3d from{};
-    double by = 1;
+    double scale = 1;
 
-    Vec3d placed(Vec3d p) const { return by * (p - from); }
-    bool is_needed() const { return by != 1 || from.x != 0 || from.y != 0 || from.z != 0; }
+    Vec3d placed(Vec3d p) const { return scale * (p - from); }
+    bool is_needed() const { return scale != 1 || from.x != 0 || from.y != 0 || from.z != 0; }
 };
 
 /// Moves a model to the origin, and scales it by a power of two to a size of 1 to 2, if an experiment could not place

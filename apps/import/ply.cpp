@@ -62,37 +62,38 @@ Header read_header(std::string_view file) {
         if (end == file.npos) break;
         const std::vector<std::string_view> words = words_of(file.substr(out.size, end - out.size));
         out.size = end + (file.substr(end).starts_with("\r\n") ? 2 : 1);
-        const auto bad = [&](std::string_view expected) -> ModelError {
+        const auto make_error = [&](std::string_view expected) -> ModelError {
             return ModelError(fmt::format("line {}: expected {}", line, expected));
         };
         if (line == 1) {
-            if (words.size() != 1 || words[0] != "ply") throw bad("the word ply");
+            if (words.size() != 1 || words[0] != "ply") throw make_error("the word ply");
         } else if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
             out.images += words.size() > 2 && words[1] == "TextureFile";
         } else if (words[0] == "end_header") {
-            if (!has_format) throw bad("a line 'format ... 1.0' before end_header");
+            if (!has_format) throw make_error("a line 'format ... 1.0' before end_header");
             return out;
         } else if (words[0] == "format" && words.size() == 3) {
-            if (words[2] != "1.0") throw bad("the version 1.0 of the format");
+            if (words[2] != "1.0") throw make_error("the version 1.0 of the format");
             has_format = true;
             if (words[1] == "ascii") out.format = Format::ascii;
             else if (words[1] == "binary_little_endian") out.format = Format::little;
             else if (words[1] == "binary_big_endian") out.format = Format::big;
-            else throw bad("the format ascii, binary_little_endian or binary_big_endian");
+            else throw make_error("the format ascii, binary_little_endian or binary_big_endian");
         } else if (words[0] == "element" && words.size() == 3) {
             Element element{std::string(words[1]), 0, {}};
-            const auto [rest, error] =
+            const auto [stop, error] =
                 std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
-            if (error != std::errc{} || rest != words[2].data() + words[2].size()) throw bad("a number of elements");
+            if (error != std::errc{} || stop != words[2].data() + words[2].size())
+                throw make_error("a number of elements");
             out.elements.push_back(std::move(element));
         } else if (words[0] == "property" && !out.elements.empty() && words.size() == 3) {
             out.elements.back().properties.push_back({std::string(words[2]), &type_named(words[1], line), nullptr});
         } else if (words[0] == "property" && !out.elements.empty() && words.size() == 5 && words[1] == "list") {
             const Type& count = type_named(words[2], line);
-            if (count.kind == 'f') throw bad("a list whose length is an integer");
+            if (count.kind == 'f') throw make_error("a list whose length is an integer");
             out.elements.back().properties.push_back({std::string(words[4]), &type_named(words[3], line), &count});
         } else {
-            throw bad("a line of a PLY header");
+            throw make_error("a line of a PLY header");
         }
     }
     throw ModelError("expected the line end_header");
@@ -101,34 +102,35 @@ Header read_header(std::string_view file) {
 /// The numbers after the header, one after the other.
 class Numbers {
 public:
-    Numbers(std::string_view bytes, Format format) : rest_(bytes), format_(format) {}
+    Numbers(std::string_view bytes, Format format) : bytes_(bytes), format_(format) {}
 
     /// Throws ModelError if fewer bytes are left than so many rows need at least.
     void need_rows(const Element& element) const {
-        std::size_t least = 0;
+        std::size_t row_bytes = 0;
         for (const Property& property : element.properties)
-            least += format_ == Format::ascii ? 1 : (property.count_type ? property.count_type : property.type)->bytes;
-        if (element.count > 0 && (least == 0 || element.count > (rest_.size() + 1) / least))
+            row_bytes +=
+                format_ == Format::ascii ? 1 : (property.count_type ? property.count_type : property.type)->bytes;
+        if (element.count > 0 && (row_bytes == 0 || element.count > (bytes_.size() + 1) / row_bytes))
             throw ModelError(fmt::format(
                 "expected {} '{}', the file ends before", counted(element.count, "element[s]"), element.name));
     }
     /// Whether so many numbers of a type can still be there.
     bool has(std::size_t count, const Type& type) const {
-        return count <= (rest_.size() + 1) / (format_ == Format::ascii ? 1 : type.bytes);
+        return count <= (bytes_.size() + 1) / (format_ == Format::ascii ? 1 : type.bytes);
     }
 
     /// The number of bytes after the last number, but for spaces.
     std::size_t rest() const {
-        const bool is_blank = format_ == Format::ascii && rest_.find_first_not_of(" \t\r\n") == rest_.npos;
-        return is_blank ? 0 : rest_.size();
+        const bool is_blank = format_ == Format::ascii && bytes_.find_first_not_of(" \t\r\n") == bytes_.npos;
+        return is_blank ? 0 : bytes_.size();
     }
 
     std::optional<double> next(const Type& type) {
         if (format_ == Format::ascii) return next_word();
-        if (rest_.size() < type.bytes) return std::nullopt;
+        if (bytes_.size() < type.bytes) return std::nullopt;
         char bytes[8];
-        std::memcpy(bytes, rest_.data(), type.bytes);
-        rest_.remove_prefix(type.bytes);
+        std::memcpy(bytes, bytes_.data(), type.bytes);
+        bytes_.remove_prefix(type.bytes);
         if ((format_ == Format::big) != (std::endian::native == std::endian::big))
             std::reverse(bytes, bytes + type.bytes);
         return value_of(bytes, type);
@@ -148,15 +150,15 @@ private:
         return is_signed ? as<std::int32_t>(bytes) : as<std::uint32_t>(bytes);
     }
     std::optional<double> next_word() {
-        const std::size_t begin = rest_.find_first_not_of(" \t\r\n");
-        if (begin == rest_.npos) return std::nullopt;
-        rest_.remove_prefix(begin);
-        const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r\n"));
-        rest_.remove_prefix(word.size());
+        const std::size_t begin = bytes_.find_first_not_of(" \t\r\n");
+        if (begin == bytes_.npos) return std::nullopt;
+        bytes_.remove_prefix(begin);
+        const std::string_view word = bytes_.substr(0, bytes_.find_first_of(" \t\r\n"));
+        bytes_.remove_prefix(word.size());
         return number_in(word);
     }
 
-    std::string_view rest_;
+    std::string_view bytes_;
     Format format_;
 };
 
@@ -223,18 +225,18 @@ private:
     void read_vertices(const Element& element) {
         std::vector<int> meaning;
         bool has[8] = {};
-        std::string others;
+        std::string other_names;
         for (const Property& property : element.properties) {
-            const auto* known = std::ranges::find(
-                vertex_names, property.name, [](const auto& one) -> std::string_view { return one.first; });
-            const bool is_known = known != std::end(vertex_names) && !property.count_type;
-            meaning.push_back(is_known ? known->second : -1);
-            if (is_known) has[known->second] = true;
-            else others += (others.empty() ? "" : ", ") + property.name;
+            const auto* entry = std::ranges::find(
+                vertex_names, property.name, [](const auto& pair) -> std::string_view { return pair.first; });
+            const bool is_known = entry != std::end(vertex_names) && !property.count_type;
+            meaning.push_back(is_known ? entry->second : -1);
+            if (is_known) has[entry->second] = true;
+            else other_names += (other_names.empty() ? "" : ", ") + property.name;
         }
         if (!has[0] || !has[1] || !has[2]) throw ModelError("expected vertices with x, y and z");
-        if (!others.empty() && element.count > 0) model.left_out.push_back("of the vertices: " + others);
-        const bool normals = has[3] && has[4] && has[5], uv = has[6] && has[7];
+        if (!other_names.empty() && element.count > 0) model.left_out.push_back("of the vertices: " + other_names);
+        const bool has_normals = has[3] && has[4] && has[5], has_uv = has[6] && has[7];
         for (std::size_t row = 0; row < element.count; ++row) {
             double values[8] = {};
             for (std::size_t k = 0; k < meaning.size(); ++k) {
@@ -242,21 +244,22 @@ private:
                 if (meaning[k] >= 0) values[meaning[k]] = list[0];
             }
             part().positions.push_back({values[0], values[1], values[2]});
-            if (normals) part().normals.push_back(narrow({values[3], values[4], values[5]}));
-            if (uv) part().uv.push_back({static_cast<float>(values[6]), static_cast<float>(values[7])});
+            if (has_normals) part().normals.push_back(narrow({values[3], values[4], values[5]}));
+            if (has_uv) part().uv.push_back({static_cast<float>(values[6]), static_cast<float>(values[7])});
         }
     }
 
     void read_lists(const Element& element, std::vector<List>& to) {
-        std::string others;
-        bool found = false;
+        std::string other_names;
+        bool has_indices = false;
         for (const Property& property : element.properties) {
-            if (is_indices(property)) found = true;
-            else others += (others.empty() ? "" : ", ") + property.name;
+            if (is_indices(property)) has_indices = true;
+            else other_names += (other_names.empty() ? "" : ", ") + property.name;
         }
-        if (!found) throw ModelError(fmt::format("expected a list 'vertex_indices' of the element '{}'", element.name));
-        if (!others.empty() && element.count > 0)
-            model.left_out.push_back(fmt::format("of the elements '{}': {}", element.name, others));
+        if (!has_indices)
+            throw ModelError(fmt::format("expected a list 'vertex_indices' of the element '{}'", element.name));
+        if (!other_names.empty() && element.count > 0)
+            model.left_out.push_back(fmt::format("of the elements '{}': {}", element.name, other_names));
         for (std::size_t row = 0; row < element.count; ++row)
             for (const Property& property : element.properties) {
                 List list = read(property, element, row);
@@ -296,8 +299,9 @@ private:
             strip.push_back(checked(index, "tristrips", row));
             const std::size_t n = strip.size();
             if (n < 3) continue;
-            const bool odd = n % 2 == 0;
-            part().triangles.push_back({strip[n - (odd ? 2 : 3)], strip[n - (odd ? 3 : 2)], strip[n - 1]});
+            const bool is_flipped = n % 2 == 0;
+            part().triangles.push_back(
+                {strip[n - (is_flipped ? 2 : 3)], strip[n - (is_flipped ? 3 : 2)], strip[n - 1]});
         }
     }
 

@@ -38,41 +38,42 @@ std::vector<Vec2<double>> flattened(std::span<const Vec3d> positions, std::span<
 void triangulate(
     std::span<const Vec3d> positions, std::span<const std::uint32_t> corners, std::vector<Triangle>& triangles) {
     const std::vector<Vec2<double>> plane = flattened(positions, corners);
-    std::vector<std::size_t> left(corners.size());
-    for (std::size_t k = 0; k < left.size(); ++k) left[k] = k;
+    std::vector<std::size_t> remainder(corners.size());
+    for (std::size_t k = 0; k < remainder.size(); ++k) remainder[k] = k;
     // Also two corners at one place, as at the bridge to a hole.
-    const auto same = [&](std::size_t a, std::size_t b) {
+    const auto is_same_place = [&](std::size_t a, std::size_t b) {
         return plane[a].x == plane[b].x && plane[a].y == plane[b].y;
     };
-    const auto is_ear = [&](std::size_t before, std::size_t tip, std::size_t after) {
-        if (!(area(plane[before], plane[tip], plane[after]) > 0)) return false;
-        for (const std::size_t k : left) {
-            if (same(k, before) || same(k, tip) || same(k, after)) continue;
-            if (area(plane[before], plane[tip], plane[k]) >= 0 && area(plane[tip], plane[after], plane[k]) >= 0 &&
-                area(plane[after], plane[before], plane[k]) >= 0)
+    const auto is_ear = [&](std::size_t previous, std::size_t tip, std::size_t next) {
+        if (!(area(plane[previous], plane[tip], plane[next]) > 0)) return false;
+        for (const std::size_t k : remainder) {
+            if (is_same_place(k, previous) || is_same_place(k, tip) || is_same_place(k, next)) continue;
+            if (area(plane[previous], plane[tip], plane[k]) >= 0 && area(plane[tip], plane[next], plane[k]) >= 0 &&
+                area(plane[next], plane[previous], plane[k]) >= 0)
                 return false;
         }
         return true;
     };
     const auto cut = [&](std::size_t tip) {
-        const std::size_t n = left.size();
-        triangles.push_back({corners[left[(tip + n - 1) % n]], corners[left[tip]], corners[left[(tip + 1) % n]]});
-        left.erase(left.begin() + static_cast<std::ptrdiff_t>(tip));
+        const std::size_t n = remainder.size();
+        triangles.push_back(
+            {corners[remainder[(tip + n - 1) % n]], corners[remainder[tip]], corners[remainder[(tip + 1) % n]]});
+        remainder.erase(remainder.begin() + static_cast<std::ptrdiff_t>(tip));
     };
     std::size_t tip = 1;
-    for (std::size_t tried = 0; left.size() > 3;) {
-        const std::size_t n = left.size();
+    for (std::size_t tries = 0; remainder.size() > 3;) {
+        const std::size_t n = remainder.size();
         tip %= n;
         // A polygon that crosses itself may have no ear: the next corner is cut off.
-        if (tried < n && !is_ear(left[(tip + n - 1) % n], left[tip], left[(tip + 1) % n])) {
-            ++tried;
+        if (tries < n && !is_ear(remainder[(tip + n - 1) % n], remainder[tip], remainder[(tip + 1) % n])) {
+            ++tries;
             ++tip;
             continue;
         }
         cut(tip);
-        tried = 0;
+        tries = 0;
     }
-    triangles.push_back({corners[left[0]], corners[left[1]], corners[left[2]]});
+    triangles.push_back({corners[remainder[0]], corners[remainder[1]], corners[remainder[2]]});
 }
 
 }  // namespace crescent::importer

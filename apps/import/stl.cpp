@@ -62,50 +62,52 @@ Model read_ascii(std::string_view file, const ReadingScope& scope) {
     out.materials.emplace_back();
     std::vector<Vec3d> corners;
     std::size_t line = 0, begin_of_loop = 0;
-    const auto bad = [&](std::string_view expected) {
+    const auto make_error = [&](std::string_view expected) {
         return ModelError(fmt::format("line {}: expected {}", line, expected));
     };
     const std::string text = joined_lines(file, false);
     Statements statements(text);
-    while (const std::optional<Statement> one = statements.next()) {
-        line = one->line;
-        std::string key = lower_case(one->key);
-        std::string_view rest = one->rest;
+    while (const std::optional<Statement> statement = statements.next()) {
+        line = statement->line;
+        std::string key = lower_case(statement->key);
+        std::string_view words = statement->value;
         if (key == "solid") {
             begin_of_loop = 0;
             out.parts.emplace_back();
-            if (!rest.empty() && scope.whole_scene) out.parts.back().names.emplace_back(rest);
+            if (!words.empty() && scope.whole_scene) out.parts.back().names.emplace_back(words);
             continue;
         }
-        if (out.parts.empty()) throw bad("the word solid");
+        if (out.parts.empty()) throw make_error("the word solid");
         // Several statements of a facet may be on a line.
-        for (; !key.empty() && key != "endsolid"; key = lower_case(take_word(rest))) {
+        for (; !key.empty() && key != "endsolid"; key = lower_case(take_word(words))) {
             const auto numbers = [&] {
                 std::array<double, 3> x{};
                 for (double& value : x) {
-                    const std::optional<double> found = number_in(take_word(rest));
-                    if (!found) throw bad(fmt::format("three numbers after '{}'", key == "facet" ? "normal" : key));
-                    value = *found;
+                    const std::optional<double> number = number_in(take_word(words));
+                    if (!number)
+                        throw make_error(fmt::format("three numbers after '{}'", key == "facet" ? "normal" : key));
+                    value = *number;
                 }
                 return Vec3d{x[0], x[1], x[2]};
             };
             if (key == "facet") {
-                if (lower_case(take_word(rest)) != "normal") throw bad("'normal' after 'facet'");
+                if (lower_case(take_word(words)) != "normal") throw make_error("'normal' after 'facet'");
                 (void)numbers();
             } else if (key == "outer") {
-                if (lower_case(take_word(rest)) != "loop") throw bad("'loop' after 'outer'");
+                if (lower_case(take_word(words)) != "loop") throw make_error("'loop' after 'outer'");
                 corners.clear();
                 begin_of_loop = line;
             } else if (key == "vertex") {
-                if (begin_of_loop == 0) throw bad("'outer loop' before 'vertex'");
+                if (begin_of_loop == 0) throw make_error("'outer loop' before 'vertex'");
                 corners.push_back(numbers());
-                if (corners.size() > most_corners) throw bad(fmt::format("at most {} corners", most_corners));
+                if (corners.size() > most_corners) throw make_error(fmt::format("at most {} corners", most_corners));
             } else if (key == "endloop") {
-                if (corners.size() < 3) throw bad("three corners before 'endloop'");
+                if (corners.size() < 3) throw make_error("three corners before 'endloop'");
                 add_polygon(corners, out.parts.back());
                 begin_of_loop = 0;
             } else if (key != "endfacet") {
-                throw bad(fmt::format("facet, outer loop, vertex, endloop, endfacet or endsolid, not '{}'", key));
+                throw make_error(
+                    fmt::format("facet, outer loop, vertex, endloop, endfacet or endsolid, not '{}'", key));
             }
         }
     }

@@ -31,8 +31,8 @@ void respond(const ordered_json& answer);
 
 /// Bytes for the page, kept until the next call.
 template <class T> std::vector<T>& scratch() {
-    static std::vector<T> all;
-    return all;
+    static std::vector<T> buffer;
+    return buffer;
 }
 
 /// A sample count that is being computed, tile by tile.
@@ -56,9 +56,9 @@ struct Bench {
     std::vector<ShadingPoints> last;
     ReferenceFilm reference;
     std::unique_ptr<PixelQuadrature> quadrature;
-    ExternalSamplers outside;  // the sampler of the page, and combinations
+    ExternalSamplers external_samplers;  // the sampler of the page, and combinations
 
-    explicit Bench(Experiment opened);
+    explicit Bench(Experiment from);
     std::size_t width() const { return static_cast<std::size_t>(experiment.image.width); }
     std::size_t pixels() const { return width() * static_cast<std::size_t>(experiment.image.height); }
 };

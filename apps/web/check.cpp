@@ -12,11 +12,12 @@ namespace crescent::web {
 namespace {
 
 /// Returns those of a fault at the w_o nearest to theta, in degrees.
-std::vector<CheckCase> nearest_of(const std::vector<CheckCase>& all, double theta) {
-    const auto far = [&](const CheckCase& t) { return std::fabs(t.theta_deg - theta); };
-    const double least = far(*std::ranges::min_element(all, {}, far));
+std::vector<CheckCase> nearest_of(const std::vector<CheckCase>& check_cases, double theta) {
+    const auto distance_of = [&](const CheckCase& t) { return std::fabs(t.theta_deg - theta); };
+    const double least_distance = distance_of(*std::ranges::min_element(check_cases, {}, distance_of));
     std::vector<CheckCase> out;
-    std::ranges::copy_if(all, std::back_inserter(out), [&](const CheckCase& t) { return far(t) == least; });
+    std::ranges::copy_if(
+        check_cases, std::back_inserter(out), [&](const CheckCase& t) { return distance_of(t) == least_distance; });
     return out;
 }
 
@@ -48,18 +49,18 @@ CRESCENT_EXPORT(checked)()->void {
         settings.budget = check::CheckBudget::limited(query.at("evaluations").get<double>());
     const CheckResult result = run_checks(check_cases, settings, monitor);
     ordered_json out = {{"name", name}, {"state", word(State::right)}, {"cases", ordered_json::array()}};
-    bool wrong = false, doubt = false;
+    bool is_wrong = false, is_doubtful = false;
     for (const CheckCase& t : check_cases) {
-        ordered_json one = {{"surface", t.brdf}, {"case", t.text()}, {"verdicts", ordered_json::array()}};
+        ordered_json entry = {{"surface", t.brdf}, {"case", t.text()}, {"verdicts", ordered_json::array()}};
         for (const Verdict& v : result.verdicts) {
             if (t.baseline || v.check_case != t.text() || v.name == "efficiency") continue;
-            one["verdicts"].push_back(verdict_fields(v));
-            wrong = wrong || v.state == State::wrong;
-            doubt = doubt || v.state == State::inconclusive;
+            entry["verdicts"].push_back(verdict_fields(v));
+            is_wrong = is_wrong || v.state == State::wrong;
+            is_doubtful = is_doubtful || v.state == State::inconclusive;
         }
-        if (!one["verdicts"].empty()) out["cases"].push_back(std::move(one));
+        if (!entry["verdicts"].empty()) out["cases"].push_back(std::move(entry));
     }
-    out["state"] = word(wrong ? State::wrong : doubt ? State::inconclusive : State::right);
+    out["state"] = word(is_wrong ? State::wrong : is_doubtful ? State::inconclusive : State::right);
     respond(out);
 }
 
@@ -87,9 +88,9 @@ CRESCENT_EXPORT(density_disk)()->void {
     const CheckCase check_case =
         cases_named(query.at("sampler").get<std::string>(), query.at("theta").get<double>()).front();
     paint_disk(Disk({-check_case.wo.x, -check_case.wo.y, check_case.wo.z}), query.at("size").get<int>(), [&](Vec3d wi) {
-        const Pair at{check_case.wo, wi};
+        const Pair pair{check_case.wo, wi};
         double p = 0;
-        check_case.adapter->exact_pdf(0, {&at, 1}, {&p, 1});
+        check_case.adapter->exact_pdf(0, {&pair, 1}, {&p, 1});
         return p;
     });
 }

@@ -20,15 +20,15 @@ public:
     }
     /// Returns the point of a direction of the upper half in the unit disk.
     ordered_json place(Vec3d w) const {
-        const double by = 1 / std::sqrt(1 + std::max(w.z, 0.0));
-        return {(c_ * w.x + s_ * w.y) * by, (c_ * w.y - s_ * w.x) * by};
+        const double scale = 1 / std::sqrt(1 + std::max(w.z, 0.0));
+        return {(c_ * w.x + s_ * w.y) * scale, (c_ * w.y - s_ * w.x) * scale};
     }
     /// Returns the direction of a point; nothing outside the disk.
     std::optional<Vec3d> direction(double x, double y) const {
         const double r2 = x * x + y * y;
         if (r2 >= 1) return std::nullopt;
-        const double by = std::sqrt(2 - r2);
-        return Vec3d{(c_ * x - s_ * y) * by, (c_ * y + s_ * x) * by, 1 - r2};
+        const double scale = std::sqrt(2 - r2);
+        return Vec3d{(c_ * x - s_ * y) * scale, (c_ * y + s_ * x) * scale, 1 - r2};
     }
 
 private:

@@ -20,16 +20,17 @@ std::map<std::string, std::shared_ptr<const RgbImage>> images;
 bool is_mesh(const std::string& name) { return name.ends_with(".mesh"); }
 
 template <class T> std::shared_ptr<const T> given(
-    const std::map<std::string, std::shared_ptr<const T>>& all, const std::string& path, const char* kind) {
-    const auto found = all.find(std::filesystem::path(path).filename().string());
-    if (found != all.end()) return found->second;
+    const std::map<std::string, std::shared_ptr<const T>>& files, const std::string& path, const char* kind) {
+    const auto entry = files.find(std::filesystem::path(path).filename().string());
+    if (entry != files.end()) return entry->second;
     throw InputError({path, 0, 0}, fmt::format("expected an {} file among those given to the page, found none", kind));
 }
 
 std::shared_ptr<const RgbImage> image(const std::string& path, std::string (*why_not)(std::int64_t, std::int64_t)) {
-    const auto found = given(images, path, ".image");
-    if (const std::string why = why_not(found->width, found->height); !why.empty()) throw InputError({path, 0, 0}, why);
-    return found;
+    const auto picture = given(images, path, ".image");
+    if (const std::string reason = why_not(picture->width, picture->height); !reason.empty())
+        throw InputError({path, 0, 0}, reason);
+    return picture;
 }
 
 std::string_view given_bytes() {

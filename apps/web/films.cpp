@@ -15,17 +15,18 @@ TileBox box_of(int x0, int y0, int x1, int y1) { return {x0, y0, x1, y1}; }
 
 /// Rows of a box, from or to a plane of the image's width; 4 bytes per pixel.
 template <class Move> void each_row(const TileBox& box, std::size_t width, Move&& move) {
-    const std::size_t across = static_cast<std::size_t>(box.x1 - box.x0) * 4;
+    const std::size_t row_bytes = static_cast<std::size_t>(box.x1 - box.x0) * 4;
     for (int j = box.y0; j < box.y1; ++j)
-        move(static_cast<std::size_t>(j - box.y0) * across,
-            (static_cast<std::size_t>(j) * width + static_cast<std::size_t>(box.x0)) * 4, across);
+        move(static_cast<std::size_t>(j - box.y0) * row_bytes,
+            (static_cast<std::size_t>(j) * width + static_cast<std::size_t>(box.x0)) * 4, row_bytes);
 }
 
 /// The planes of a film as one block: those of the box, one after another.
 template <class F> void put_planes(F& film, const TileBox& box, const std::byte* from) {
     for (const std::span<std::byte> plane : film.planes()) {
-        each_row(box, static_cast<std::size_t>(film.width),
-            [&](std::size_t at, std::size_t to, std::size_t size) { std::memcpy(&plane[to], from + at, size); });
+        each_row(box, static_cast<std::size_t>(film.width), [&](std::size_t offset, std::size_t to, std::size_t size) {
+            std::memcpy(&plane[to], from + offset, size);
+        });
         from += pixels_of(box) * 4;
     }
 }
@@ -66,8 +67,9 @@ CRESCENT_EXPORT(reference_tile)(int x0, int y0, int x1, int y1)->const void* {
     std::vector<std::byte>& out = scratch<std::byte>();
     out.clear();
     for (const std::span<std::byte> plane : b.reference.planes())
-        each_row(box, b.width(), [&](std::size_t, std::size_t at, std::size_t size) {
-            out.insert(out.end(), plane.begin() + std::ptrdiff_t(at), plane.begin() + std::ptrdiff_t(at + size));
+        each_row(box, b.width(), [&](std::size_t, std::size_t offset, std::size_t size) {
+            out.insert(
+                out.end(), plane.begin() + std::ptrdiff_t(offset), plane.begin() + std::ptrdiff_t(offset + size));
         });
     return out.data();
 }
@@ -85,9 +87,9 @@ CRESCENT_EXPORT(film_buffer)(int index)->void {
     if (index < 0) {
         if (b.reference.size() != b.pixels()) b.reference = ReferenceFilm(width, height, b.scene.s());
     } else {
-        const auto at = static_cast<std::size_t>(index);
-        if (b.slots.size() <= at) b.slots.resize(at + 1);
-        if (b.slots[at].film.y.size() != b.pixels()) b.slots[at].film = Film(width, height, 0);
+        const auto position = static_cast<std::size_t>(index);
+        if (b.slots.size() <= position) b.slots.resize(position + 1);
+        if (b.slots[position].film.y.size() != b.pixels()) b.slots[position].film = Film(width, height, 0);
     }
     respond(ordered_json::object());
 }
@@ -95,13 +97,14 @@ CRESCENT_EXPORT(film_buffer)(int index)->void {
 /// Assigns film `index` to this arm at n; its old contents stay until tiles overwrite them.
 CRESCENT_EXPORT(begin)(int index, int arm, double n)->void {
     Bench& b = bench();
-    const auto at = static_cast<std::size_t>(index);
-    if (b.slots.size() <= at) b.slots.resize(at + 1);
+    const auto position = static_cast<std::size_t>(index);
+    if (b.slots.size() <= position) b.slots.resize(position + 1);
     const ArmPlan& plan = b.experiment.arms.at(static_cast<std::size_t>(arm));
-    Slot& s = b.slots[at];
+    Slot& s = b.slots[position];
     const auto samples = static_cast<std::uint64_t>(n);
-    const bool whole = std::ranges::all_of(s.film.planes(), [&](auto plane) { return plane.size() == 4 * b.pixels(); });
-    if (!whole) s.film = Film(b.experiment.image.width, b.experiment.image.height, samples);
+    const bool has_planes =
+        std::ranges::all_of(s.film.planes(), [&](auto plane) { return plane.size() == 4 * b.pixels(); });
+    if (!has_planes) s.film = Film(b.experiment.image.width, b.experiment.image.height, samples);
     s.film.n = samples;
     s.film.invalid = 0;
     const SampleCost cost = cost_of_sample(sampler_of(plan));
@@ -117,19 +120,19 @@ CRESCENT_EXPORT(put)(int index, int x0, int y0, int x1, int y1)->void {
     const TileBox box = box_of(x0, y0, x1, y1);
     const std::byte* from = scratch<std::byte>().data();
     put_planes(film, box, from);
-    const std::byte* rest = from + pixels_of(box) * 4 * film.planes().size();
+    const std::byte* shape_bytes = from + pixels_of(box) * 4 * film.planes().size();
     b.shapes.width = film.width;
     b.shapes.height = film.height;
     b.shapes.shape.resize(b.pixels(), -1);
     for (int j = y0; j < y1; ++j)
-        for (int i = x0; i < x1; ++i, rest += 4) {
+        for (int i = x0; i < x1; ++i, shape_bytes += 4) {
             std::int32_t shape = 0;
-            std::memcpy(&shape, rest, 4);
+            std::memcpy(&shape, shape_bytes, 4);
             b.shapes.shape[static_cast<std::size_t>(j) * b.width() + std::size_t(i)] = static_cast<std::int16_t>(shape);
         }
-    std::int32_t bad = 0;
-    std::memcpy(&bad, rest, 4);
-    film.invalid += static_cast<std::uint64_t>(bad);
+    std::int32_t invalid_count = 0;
+    std::memcpy(&invalid_count, shape_bytes, 4);
+    film.invalid += static_cast<std::uint64_t>(invalid_count);
 }
 
 CRESCENT_EXPORT(put_reference)(int x0, int y0, int x1, int y1)->void {

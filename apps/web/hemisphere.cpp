@@ -23,8 +23,8 @@ ordered_json largest_in_parts(const PixelSample& s, const OpenPixel& pixel) {
     if (s.weight != 1) out["weight"] = figures(s.weight);
     out["met"] = s.disk >= 0 && static_cast<std::size_t>(s.disk) < pixel.lights().size()
         ? pixel.lights()[static_cast<std::size_t>(s.disk)].name
-        : s.around ? "sky or mesh"
-                   : "fill";
+        : s.meets_surroundings ? "sky or mesh"
+                               : "fill";
     return out;
 }
 
@@ -45,48 +45,48 @@ std::string mean_chart(const std::vector<double>& mean, std::optional<double> re
 
 /// The response for a pixel.
 struct OpenPixelReply {
-    std::shared_ptr<const OpenPixel> open;
+    std::shared_ptr<const OpenPixel> pixel;
     Disk view;
     std::string css;
-    std::vector<PixelSample> all;
+    std::vector<PixelSample> samples;
     ordered_json out = {};
     const PixelSample* largest = nullptr;
-    std::uint64_t under = 0;
+    std::uint64_t lower_count = 0;
 
     void draw(const std::string& sampler, std::uint64_t n) {
-        all = open->samples(sampler, n, bench().experiment.seed);
-        const auto most = std::ranges::max_element(all, {}, &PixelSample::x);
-        if (most != all.end() && most->x > 0) largest = &*most;
-        const auto shape = static_cast<std::size_t>(open->shape());
-        out = {{"shape", bench().experiment.surface_name(shape)}, {"mirror", view.place(open->mirror())},
+        samples = pixel->samples(sampler, n, bench().experiment.seed);
+        const auto largest_sample = std::ranges::max_element(samples, {}, &PixelSample::x);
+        if (largest_sample != samples.end() && largest_sample->x > 0) largest = &*largest_sample;
+        const auto shape = static_cast<std::size_t>(pixel->shape());
+        out = {{"shape", bench().experiment.surface_name(shape)}, {"mirror", view.place(pixel->mirror())},
             {"draws", ordered_json::array()}};
     }
     void describe_draws() {
-        for (const PixelSample& s : all) {
-            if (s.wi.z <= 0) ++under;
-            ordered_json at = view.place({s.wi.x, s.wi.y, s.wi.z});
-            at.push_back(
+        for (const PixelSample& s : samples) {
+            if (s.wi.z <= 0) ++lower_count;
+            ordered_json entry = view.place({s.wi.x, s.wi.y, s.wi.z});
+            entry.push_back(
                 largest && s.x > 0 ? std::sqrt(double(s.x) / double(largest->x)) : 0);  // its area is its weight
-            at.push_back(s.wi.z > 0 ? s.disk : -2);
-            out["draws"].push_back(std::move(at));
+            entry.push_back(s.wi.z > 0 ? s.disk : -2);
+            out["draws"].push_back(std::move(entry));
         }
     }
     void describe_mean(const std::optional<double>& reference) {
-        const std::vector<double> mean = running_mean(all);
+        const std::vector<double> mean = running_mean(samples);
         out["mean"] = mean.empty() ? "0" : figures(mean.back());
         if (reference) out["reference"] = figures(*reference);
         out["chart"] = mean_chart(mean, reference, css);
     }
     void send() {
-        out["under"] = under;
+        out["under"] = lower_count;
         out["lights"] = ordered_json::array();
-        for (const PixelLight& light : open->lights()) {
+        for (const PixelLight& light : pixel->lights()) {
             ordered_json rim = ordered_json::array();
             for (const Vec3d& w : light.rim)
                 if (w.z > 0) rim.push_back(view.place(w));
             out["lights"].push_back({{"name", light.name}, {"rim", rim}, {"angle", light.angular_radius}});
         }
-        if (largest) out["largest"] = largest_in_parts(*largest, *open);
+        if (largest) out["largest"] = largest_in_parts(*largest, *pixel);
         respond(out);
     }
 };
@@ -98,14 +98,14 @@ struct OpenPixelReply {
 CRESCENT_EXPORT(pixel)()->void {
     const ordered_json query = request();
     const int i = query.at("i").get<int>(), j = query.at("j").get<int>();
-    const std::shared_ptr<const OpenPixel> open = open_pixel(i, j);
-    if (!open) return respond(ordered_json::object());
-    OpenPixelReply reply{open, Disk(open->mirror()), query.at("css").get<std::string>(), {}};
+    const std::shared_ptr<const OpenPixel> pixel = open_pixel(i, j);
+    if (!pixel) return respond(ordered_json::object());
+    OpenPixelReply reply{pixel, Disk(pixel->mirror()), query.at("css").get<std::string>(), {}};
     reply.draw(arm_of(query.at("arm").get<std::string>()).sampler, query.at("n").get<std::uint64_t>());
     reply.describe_draws();
-    const std::size_t at = static_cast<std::size_t>(j) * bench().width() + static_cast<std::size_t>(i);
-    const bool known = query.at("reference").get<bool>();
-    reply.describe_mean(known ? std::optional<double>(bench().reference.y.at(at)) : std::nullopt);
+    const std::size_t index = static_cast<std::size_t>(j) * bench().width() + static_cast<std::size_t>(i);
+    const bool has_reference = query.at("reference").get<bool>();
+    reply.describe_mean(has_reference ? std::optional<double>(bench().reference.y.at(index)) : std::nullopt);
     reply.send();
 }
 
@@ -113,13 +113,13 @@ CRESCENT_EXPORT(pixel)()->void {
 /// "pdf" the sampler's density (for two techniques, that of the first).
 CRESCENT_EXPORT(hemisphere)()->void {
     const ordered_json query = request();
-    const std::shared_ptr<const OpenPixel> open = open_pixel(query.at("i").get<int>(), query.at("j").get<int>());
+    const std::shared_ptr<const OpenPixel> pixel = open_pixel(query.at("i").get<int>(), query.at("j").get<int>());
     const int size = query.at("size").get<int>();
-    if (!open) return paint_disk(Disk({0, 0, 1}), size, [](Vec3d) { return 0; });
+    if (!pixel) return paint_disk(Disk({0, 0, 1}), size, [](Vec3d) { return 0; });
     const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
-    const bool pdf = query.at("what").get<std::string>() == "pdf";
-    paint_disk(Disk(open->mirror()), size, [&](Vec3d wi) {
-        return pdf ? open->pdf(sampler, wi) : open->f(wi, open->disk_met(wi)) * open->light(wi) * wi.z;
+    const bool shows_pdf = query.at("what").get<std::string>() == "pdf";
+    paint_disk(Disk(pixel->mirror()), size, [&](Vec3d wi) {
+        return shows_pdf ? pixel->pdf(sampler, wi) : pixel->f(wi, pixel->disk_met(wi)) * pixel->light(wi) * wi.z;
     });
 }
 

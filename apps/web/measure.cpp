@@ -26,38 +26,38 @@ struct Measuring {
     void add_reference(const TileBox& part) { reference_over(part, film); }
     void add_film(const TileBox& part, std::size_t seed) {
         const std::uint32_t first = bench().experiment.seed;
-        const Film found =
+        const Film part_film =
             film_over(part, sampler, n, seed == 0 ? first : seed_of(first, static_cast<std::uint32_t>(seed)));
         std::size_t from = 0;
         for (int j = part.y0; j < part.y1; ++j)
             for (int i = part.x0; i < part.x1; ++i, ++from) {
-                y[seed][at(i, j)] = double(found.y[from]);
+                y[seed][at(i, j)] = double(part_film.y[from]);
                 const std::size_t index = static_cast<std::size_t>(j) * bench().width() + std::size_t(i);
                 if (area.surface == any_surface || bench().shapes.shape[index] == area.surface)
-                    hits += found.light_hits[from];
+                    hits += part_film.light_hits[from];
             }
     }
     void send() const {
-        const AreaPixels measured(area, bench().shapes);
-        const bool paired = bench().experiment.reference.kind == ReferenceKind::paired;
-        const double error = paired ? rms(film.error, measured) : 0;
-        const auto difference = [&](const std::vector<double>& one, std::size_t index) {
+        const AreaPixels area_pixels(area, bench().shapes);
+        const bool is_paired = bench().experiment.reference.kind == ReferenceKind::paired;
+        const double error = is_paired ? rms(film.error, area_pixels) : 0;
+        const auto difference = [&](const std::vector<double>& values, std::size_t index) {
             const auto i = static_cast<int>(index % bench().width()), j = static_cast<int>(index / bench().width());
-            return one[at(i, j)] - double(film.y[index]);
+            return values[at(i, j)] - double(film.y[index]);
         };
         std::vector<double> rmse;
-        for (const std::vector<double>& one : y) {
-            const double mse = measured.mean([&](std::size_t index) {
-                const double d = difference(one, index);
+        for (const std::vector<double>& values : y) {
+            const double mse = area_pixels.mean([&](std::size_t index) {
+                const double d = difference(values, index);
                 return d * d;
             });
             rmse.push_back(std::sqrt(std::max(0.0, mse - error * error)));
         }
-        const auto pixels = static_cast<double>(measured.count());
+        const auto pixels = static_cast<double>(area_pixels.count());
         const double directions = pixels * double(n) * double(directions_per_sample(sampler)) * double(y.size());
         ordered_json out = {{"name", name}, {"n", n}, {"median", json_number(quantile(rmse, 0.5))},
             {"q05", json_number(quantile(rmse, 0.05))}, {"q95", json_number(quantile(rmse, 0.95))},
-            {"mean", json_number(measured.mean([&](std::size_t index) { return double(film.y[index]); }))},
+            {"mean", json_number(area_pixels.mean([&](std::size_t index) { return double(film.y[index]); }))},
             {"met", json_number(double(hits) / directions)}, {"rmse", ordered_json::array()}};
         for (const double x : rmse) out["rmse"].push_back(json_number(x));
         respond(out);
@@ -88,55 +88,57 @@ struct Largest {
 
     void look(const TileBox& part, const std::string& sampler, std::uint64_t n) {
         const Film film = film_over(part, sampler, n, bench().experiment.seed);
-        const auto at = static_cast<int>(std::ranges::max_element(film.largest) - film.largest.begin());
-        const int here_i = part.x0 + at % film.width, here_j = part.y0 + at / film.width;
-        const float here = film.largest[static_cast<std::size_t>(at)];
-        if (here > x || (here == x && std::pair(here_j, here_i) < std::pair(j, i))) {
-            x = here;
-            i = here_i;
-            j = here_j;
+        const auto index = static_cast<int>(std::ranges::max_element(film.largest) - film.largest.begin());
+        const int column = part.x0 + index % film.width, row = part.y0 + index / film.width;
+        const float largest = film.largest[static_cast<std::size_t>(index)];
+        if (largest > x || (largest == x && std::pair(row, column) < std::pair(j, i))) {
+            x = largest;
+            i = column;
+            j = row;
         }
     }
     void send(const std::string& sampler, std::uint64_t n) const {
         if (!(x > 0))
             return respond(ordered_json{{"answer", "none"}, {"kind", "none"}, {"lines", {"no sample met any light"}}});
-        const std::vector<PixelSample> all =
+        const std::vector<PixelSample> samples =
             OpenPixel(bench().scene, i, j).samples(sampler, n, bench().experiment.seed);
-        const PixelSample& s = *std::ranges::max_element(all, {}, &PixelSample::x);
+        const PixelSample& s = *std::ranges::max_element(samples, {}, &PixelSample::x);
         const std::vector<std::pair<std::string, double>> factors = {
             {"f", s.f}, {"L", s.light}, {"cos", s.cos}, {"1/p", 1 / double(s.pdf)}};
-        const auto& most = *std::ranges::max_element(factors, {}, &std::pair<std::string, double>::second);
+        const auto& largest_factor = *std::ranges::max_element(factors, {}, &std::pair<std::string, double>::second);
         const std::string line = fmt::format("pixel ({}, {}): X = {} of f = {}/sr, L = {}, cos = {}, 1/p = {} sr", i, j,
             figures(s.x), figures(s.f), figures(s.light), figures(s.cos), figures(1 / double(s.pdf)));
-        respond(ordered_json{{"answer", most.first}, {"kind", most.first}, {"lines", {line}}, {"pixel", {i, j}}});
+        respond(ordered_json{
+            {"answer", largest_factor.first}, {"kind", largest_factor.first}, {"lines", {line}}, {"pixel", {i, j}}});
     }
 };
 
 /// The results of the furnaces, one after another, and why the requested one deviates.
 struct Furnaces {
-    explicit Furnaces(std::string of) : name(std::move(of)) {}
+    explicit Furnaces(std::string furnace) : name(std::move(furnace)) {}
 
     void add(FurnacePlan plan, std::uint64_t n) {
         plan.n = n;
         ProgressMonitor monitor;
         describe(read_furnace(draw_furnace(bench().experiment, plan, "", monitor)));
     }
-    void send() const { respond(ordered_json{{"answer", why}, {"kind", why}, {"lines", lines}}); }
+    void send() const { respond(ordered_json{{"answer", cause}, {"kind", cause}, {"lines", lines}}); }
 
 private:
     void describe(const FurnaceResult& f) {
-        const double off = std::fabs(f.measured - f.expected), rounding = std::ldexp(f.expected * double(f.n), -24);
+        const double deviation = std::fabs(f.measured - f.expected),
+                     rounding = std::ldexp(f.expected * double(f.n), -24);
         std::string words = f.name;
         std::ranges::replace(words, '_', ' ');
         lines.push_back(fmt::format("{}: reads {} ± {}, expected {}{}", words, figures(f.measured), figures(f.se, 2),
             figures(f.expected),
             f.tail ? fmt::format(", tail k\u0302 {} ± {}", figures(f.tail->k, 2), figures(f.tail->se, 1)) : ""));
         if (f.name != name) return;
-        if (off <= rounding) why = "precision";
-        else if (f.tail && f.tail->heavy()) why = "tail";
-        else if (off > 4 * f.se) why = "bug";
+        if (deviation <= rounding) cause = "precision";
+        else if (f.tail && f.tail->heavy()) cause = "tail";
+        else if (deviation > 4 * f.se) cause = "bug";
     }
-    std::string name, why = "none";
+    std::string name, cause = "none";
     ordered_json lines = ordered_json::array();
 };
 
@@ -160,10 +162,10 @@ CRESCENT_EXPORT(firefly)()->void {
     const ordered_json query = request();
     const std::string sampler = arm_of(query.at("arm").get<std::string>()).sampler;
     const auto n = query.at("n").get<std::uint64_t>();
-    Largest most;
+    Largest largest;
     for (const TileBox& part : parts_of(tile_of(requested_box(query)), cost_of(sampler, n)))
-        most.look(part, sampler, n);
-    most.send(sampler, n);
+        largest.look(part, sampler, n);
+    largest.send(sampler, n);
 }
 
 /// {n, name} -> the value of that furnace of the experiment at n samples and why; a line for each furnace. tail: it
@@ -173,9 +175,9 @@ CRESCENT_EXPORT(firefly)()->void {
 CRESCENT_EXPORT(furnaces_of)()->void {
     const ordered_json query = request();
     const auto n = query.at("n").get<std::uint64_t>();
-    Furnaces found(query.at("name").get<std::string>());
-    for (const FurnacePlan& plan : bench().experiment.furnaces) found.add(plan, n);
-    found.send();
+    Furnaces furnaces(query.at("name").get<std::string>());
+    for (const FurnacePlan& plan : bench().experiment.furnaces) furnaces.add(plan, n);
+    furnaces.send();
 }
 
 }  // namespace crescent::web

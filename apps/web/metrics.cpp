@@ -14,32 +14,32 @@ namespace {
 
 ordered_json one_metric(const RunMetrics& run, const std::string& name) {
     const std::optional<Published>& figures = bench().experiment.figures;
-    const bool paired = bench().experiment.reference.kind == ReferenceKind::paired;
-    ordered_json out = {
-        {"value", json_number(metric_value(run, name))}, {"text", figures_of(name, metric_value(run, name), paired)}};
-    const bool same_seed = figures && (!figures->seed || *figures->seed == run.key.seed);
-    const auto published = same_seed ? figures->find(run.key.arm, run.key.n, run.key.s, name) : std::nullopt;
+    const bool is_paired = bench().experiment.reference.kind == ReferenceKind::paired;
+    ordered_json out = {{"value", json_number(metric_value(run, name))},
+        {"text", figures_of(name, metric_value(run, name), is_paired)}};
+    const bool has_same_seed = figures && (!figures->seed || *figures->seed == run.key.seed);
+    const auto published = has_same_seed ? figures->find(run.key.arm, run.key.n, run.key.s, name) : std::nullopt;
     if (published) out["published"] = figures_of(name, *published);
     return out;
 }
 
 std::string class_of(const std::string& arm) {
     const auto& arms = bench().experiment.arms;
-    const auto at = std::ranges::find(arms, arm, &ArmPlan::name) - arms.begin();
-    return fmt::format("c{}", at % 6);
+    const auto index = std::ranges::find(arms, arm, &ArmPlan::name) - arms.begin();
+    return fmt::format("c{}", index % 6);
 }
 
-void send_tail(const std::optional<Tail>& found) {
-    if (!found) return respond(ordered_json{{"words", "no tail: the samples do not spread"}});
+void send_tail(const std::optional<Tail>& tail) {
+    if (!tail) return respond(ordered_json{{"words", "no tail: the samples do not spread"}});
     // The mean is the integral and exists for any k; from k = 1 on the observed samples do not bound it.
-    const bool sure = std::fabs(found->k - 0.5) >= 2 * found->se;
-    const std::string_view words = found->k >= 1 ? "inconclusive: heavy tail, these samples do not bound even the mean"
-        : found->heavy() && sure                 ? "inconclusive: heavy tail, the variance looks infinite"
-        : found->heavy()                         ? "inconclusive: heavy tail, the variance may be infinite"
-        : sure                                   ? "the variance looks finite"
-                                                 : "the variance may be finite";
-    respond(ordered_json{{"k", found->k}, {"se", found->se}, {"heavy", found->heavy()},
-        {"text", fmt::format("{} ± {}", figures(found->k, 2), figures(found->se, 1))}, {"words", words}});
+    const bool is_sure = std::fabs(tail->k - 0.5) >= 2 * tail->se;
+    const std::string_view words = tail->k >= 1 ? "inconclusive: heavy tail, these samples do not bound even the mean"
+        : tail->heavy() && is_sure              ? "inconclusive: heavy tail, the variance looks infinite"
+        : tail->heavy()                         ? "inconclusive: heavy tail, the variance may be infinite"
+        : is_sure                               ? "the variance looks finite"
+                                                : "the variance may be finite";
+    respond(ordered_json{{"k", tail->k}, {"se", tail->se}, {"heavy", tail->heavy()},
+        {"text", fmt::format("{} ± {}", figures(tail->k, 2), figures(tail->se, 1))}, {"words", words}});
 }
 
 ordered_json metrics_of(const Slot& s) {
@@ -102,8 +102,8 @@ CRESCENT_EXPORT(ladder_chart)()->void {
     const double last = *std::ranges::max_element(ns);
     x.high *= 2.2;  // room for names at the ends of lines
     for (const auto& series : query.at("series"))
-        if (const auto& all = series.at("points"); !all.empty())
-            values.push_back(all[0].at(1).get<double>() * std::sqrt(all[0].at(0).get<double>() / last));
+        if (const auto& points = series.at("points"); !points.empty())
+            values.push_back(points[0].at(1).get<double>() * std::sqrt(points[0].at(0).get<double>() / last));
     const auto region = query.at("region").get<std::string>();
     Chart chart(420, 330, x, log_axis("RMSE of " + region, values), "RMSE against N in region " + region);
     for (const auto& series : query.at("series")) {
@@ -111,13 +111,13 @@ CRESCENT_EXPORT(ladder_chart)()->void {
         for (const auto& p : series.at("points")) points.push_back({p.at(0), p.at(1)});
         if (points.empty()) continue;
         const auto arm = series.at("arm").get<std::string>();
-        std::vector<double> at, low, high;
+        std::vector<double> positions, low, high;
         for (const auto& b : series.at("band")) {
-            at.push_back(b.at(0));
+            positions.push_back(b.at(0));
             low.push_back(b.at(1));
             high.push_back(b.at(2));
         }
-        if (at.size() > 1) chart.band(at, low, high, "band " + class_of(arm));
+        if (positions.size() > 1) chart.band(positions, low, high, "band " + class_of(arm));
         const Point first = points.front();
         if (first.y > 0) chart.line({first, {last, first.y * std::sqrt(first.x / last)}}, "dashed " + class_of(arm));
         chart.line(points, class_of(arm));

@@ -11,7 +11,7 @@ namespace crescent::web {
 
 namespace {
 
-std::unique_ptr<Bench> opened;
+std::unique_ptr<Bench> open_bench;
 
 /// A value that the page may change: its path for --set, and the range of its slider.
 ordered_json knob(
@@ -54,45 +54,45 @@ void add_light_knobs(const Light& light, ordered_json& to) {
 }
 
 ordered_json knobs(const Experiment& e) {
-    ordered_json all = ordered_json::array();
+    ordered_json entries = ordered_json::array();
     const std::optional<std::size_t> main = e.surface_of_s();
-    if (main) add_material_knobs(e.surface_name(*main), e.material(*main), all);
+    if (main) add_material_knobs(e.surface_name(*main), e.material(*main), entries);
     for (std::size_t k = 0; k < e.surface_count(); ++k)
         if (main != k && (e.material(k).rho_s > 0 || k >= e.shapes.size()))
-            add_material_knobs(e.surface_name(k), e.material(k), all);
+            add_material_knobs(e.surface_name(k), e.material(k), entries);
     const auto add = [&](ordered_json k, ordered_json value) {
         k["value"] = std::move(value);
-        all.push_back(std::move(k));
+        entries.push_back(std::move(k));
     };
-    for (const LightTable& table : all_lights(e)) add_light_knobs(table.light, all);
+    for (const LightTable& table : all_lights(e)) add_light_knobs(table.light, entries);
     if (e.sky) {
         add(knob("sky.rotation", "rotation of the sky", "°", -180, 180, false), e.sky->rotation);
         add(knob("sky.scale", "scale of the sky", "", 0.01, 100, true), e.sky->scale);
     } else add(knob("fill.radiance", "fill", "W/(sr m²)", 0, 4, false), e.fill);
     add(knob("firefly_k", "firefly k", "", 0.1, 100, true), e.firefly_k);
     add(knob("seed", "seed", "", 0, 4294967295.0, false), e.seed);
-    return all;
+    return entries;
 }
 
 ordered_json arms(const Bench& b) {
     const Experiment& e = b.experiment;
-    ordered_json all = ordered_json::array();
+    ordered_json entries = ordered_json::array();
     for (const ArmPlan& arm : e.arms) {
         const SamplerInfo* info = find_arm_info(arm.sampler);
         if (!info) {
             const SampleCost cost = cost_of_sample(sampler_of(arm));
-            all.push_back({{"name", arm.name}, {"sampler", ""}, {"n", arm.n}, {"techniques", cost.directions},
+            entries.push_back({{"name", arm.name}, {"sampler", ""}, {"n", arm.n}, {"techniques", cost.directions},
                 {"summary",
                     arm.is_combination() ? fmt::format("a combination of {}", fmt::join(arm.combination.of, ", "))
                                          : "the density of the code above"},
                 {"formula", ""}, {"misses", ""}});
             continue;
         }
-        all.push_back({{"name", arm.name}, {"sampler", arm.sampler}, {"n", arm.n}, {"techniques", info->techniques},
+        entries.push_back({{"name", arm.name}, {"sampler", arm.sampler}, {"n", arm.n}, {"techniques", info->techniques},
             {"summary", formula::html(info->summary)}, {"formula", formula::mathml(info->formula)},
             {"misses", missed_light(arm, e)}});
     }
-    return all;
+    return entries;
 }
 
 ordered_json described(const Bench& b) {
@@ -115,15 +115,15 @@ ordered_json described(const Bench& b) {
 
 Bench::Bench(Experiment from) : experiment(std::move(from)), scene(experiment) {
     for (const ArmPlan& arm : experiment.arms)
-        if (arm.is_external()) outside[arm.name] = page_sampler();
-    add_combinations(experiment, outside);
+        if (arm.is_external()) external_samplers[arm.name] = page_sampler();
+    add_combinations(experiment, external_samplers);
 }
 
-SamplerRef sampler_of(const ArmPlan& arm) { return {arm.sampler, external_of(bench().outside, arm.name)}; }
+SamplerRef sampler_of(const ArmPlan& arm) { return {arm.sampler, external_of(bench().external_samplers, arm.name)}; }
 
 Bench& bench() {
-    ensure(opened != nullptr, "an experiment was opened");
-    return *opened;
+    ensure(open_bench != nullptr, "an experiment was opened");
+    return *open_bench;
 }
 
 Slot& slot(int index) {
@@ -144,27 +144,29 @@ CRESCENT_EXPORT(open)()->void {
         query.at("set").get<std::vector<std::string>>());
     for (const ArmPlan& arm : e.arms)
         if (arm.is_external() && arm.exec != exec_of_page)
-            throw InputError(arm.at, "the arm '" + arm.name + "' is a program of its own, which a page cannot start");
+            throw InputError(
+                arm.location, "the arm '" + arm.name + "' is a program of its own, which a page cannot start");
     if (e.sky) load_sky(*e.sky);
     read_meshes(e);
     const std::string published = query.at("published").get<std::string>();
     if (e.published && !published.empty()) e.figures = parse_published(published, *e.published);
     std::vector<Slot> films;  // allocated memory is reused; two images of the largest size would not fit
-    if (opened && e.image.width == opened->experiment.image.width && e.image.height == opened->experiment.image.height)
-        films = std::move(opened->slots);
-    opened.reset();
-    opened = std::make_unique<Bench>(std::move(e));
-    opened->slots = std::move(films);
-    respond(described(*opened));
+    if (open_bench && e.image.width == open_bench->experiment.image.width &&
+        e.image.height == open_bench->experiment.image.height)
+        films = std::move(open_bench->slots);
+    open_bench.reset();
+    open_bench = std::make_unique<Bench>(std::move(e));
+    open_bench->slots = std::move(films);
+    respond(described(*open_bench));
 }
 
 /// The samplers that an arm may have, with one line about each.
 CRESCENT_EXPORT(samplers)()->void {
-    ordered_json all = ordered_json::array();
+    ordered_json entries = ordered_json::array();
     for (const SamplerInfo& info : sampler_infos())
-        all.push_back({{"name", info.name}, {"label", info.label}, {"summary", formula::html(info.summary)},
+        entries.push_back({{"name", info.name}, {"label", info.label}, {"summary", formula::html(info.summary)},
             {"needs_s", info.needs_s}});
-    respond(all);
+    respond(entries);
 }
 
 }  // namespace crescent::web

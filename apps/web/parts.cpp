@@ -27,15 +27,15 @@ std::uint32_t within(std::uint32_t pixel, const TileBox& box) {
 std::vector<ShadingPoints>& points_seen(const TileBox& box) {
     Bench& b = bench();
     const std::array key = {box.x0, box.y0, box.x1, box.y1};
-    if (const auto known = b.shading_points.find(key); known != b.shading_points.end()) return known->second;
+    if (const auto entry = b.shading_points.find(key); entry != b.shading_points.end()) return entry->second;
     if (b.points_last == key) return b.last;
     b.shapes.width = b.experiment.image.width;
     b.shapes.height = b.experiment.image.height;
     b.shapes.shape.resize(b.pixels());
-    std::vector<ShadingPoints> made = shading_points_of(b.scene, box, b.shapes.shape.data());
-    if (b.points_kept + pixels_of(box) > most_points) return b.points_last = key, b.last = std::move(made);
+    std::vector<ShadingPoints> points = shading_points_of(b.scene, box, b.shapes.shape.data());
+    if (b.points_kept + pixels_of(box) > most_points) return b.points_last = key, b.last = std::move(points);
     b.points_kept += pixels_of(box);
-    return b.shading_points[key] = std::move(made);
+    return b.shading_points[key] = std::move(points);
 }
 
 }  // namespace
@@ -63,13 +63,13 @@ const ShapeMap& all_shapes() {
 TileBox tile_of(const Box& box) { return {box.x0, box.y0, box.x1 + 1, box.y1 + 1}; }
 
 std::vector<TileBox> parts_of(const TileBox& box, std::uint64_t cost_of_pixel) {
-    const auto most = static_cast<int>(std::clamp<std::uint64_t>(most_of_part / cost_of_pixel, 1, 4096));
-    const int across = std::min({64, most, box.x1 - box.x0}), up = std::max(1, most / across);
-    std::vector<TileBox> all;
-    for (int y0 = box.y0; y0 < box.y1; y0 += up)
-        for (int x0 = box.x0; x0 < box.x1; x0 += across)
-            all.push_back({x0, y0, std::min(x0 + across, box.x1), std::min(y0 + up, box.y1)});
-    return all;
+    const auto most_pixels = static_cast<int>(std::clamp<std::uint64_t>(most_of_part / cost_of_pixel, 1, 4096));
+    const int width = std::min({64, most_pixels, box.x1 - box.x0}), height = std::max(1, most_pixels / width);
+    std::vector<TileBox> parts;
+    for (int y0 = box.y0; y0 < box.y1; y0 += height)
+        for (int x0 = box.x0; x0 < box.x1; x0 += width)
+            parts.push_back({x0, y0, std::min(x0 + width, box.x1), std::min(y0 + height, box.y1)});
+    return parts;
 }
 
 std::uint64_t cost_of(const SamplerRef& sampler, std::uint64_t n) {

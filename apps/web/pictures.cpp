@@ -18,15 +18,15 @@ constexpr double variance_decades = 6;  // of the map of variances, below its to
 Srgb8 two_hues(double t) {
     if (std::isnan(t)) return not_a_number_colour;
     const double k = std::sqrt(std::min(std::fabs(t), 1.0));
-    const Srgb8& far = t < 0 ? Srgb8{100, 184, 242} : Srgb8{243, 154, 77};
+    const Srgb8& hue = t < 0 ? Srgb8{100, 184, 242} : Srgb8{243, 154, 77};
     Srgb8 out;
     for (std::size_t c = 0; c < 3; ++c)
-        out[c] = static_cast<unsigned char>(std::lround(background[c] + k * (far[c] - background[c])));
+        out[c] = static_cast<unsigned char>(std::lround(background[c] + k * (hue[c] - background[c])));
     return out;
 }
 
-double residual(const Film& film, std::size_t at) {
-    return std::fabs(static_cast<double>(film.y[at]) - static_cast<double>(bench().reference.y[at]));
+double residual(const Film& film, std::size_t pixel) {
+    return std::fabs(static_cast<double>(film.y[pixel]) - static_cast<double>(bench().reference.y[pixel]));
 }
 
 void put(std::byte* to, const Srgb8& colour) {
@@ -44,26 +44,27 @@ template <class Colour> void each_pixel(const TileBox& box, std::byte* to, const
 
 template <class F> void photographed(const F& film, double times, const TileBox& box, std::byte* to) {
     const double exposure = bench().experiment.exposure * times;
-    each_pixel(box, to, [&](std::size_t at) { return photograph(Rgb{film.r[at], film.g[at], film.b[at]}, exposure); });
+    each_pixel(box, to,
+        [&](std::size_t pixel) { return photograph(Rgb{film.r[pixel], film.g[pixel], film.b[pixel]}, exposure); });
 }
 
 void mapped(Picture picture, int index, int other, double top, const TileBox& box, std::byte* to) {
-    const Film &film = slot(index).film, &beside = slot(picture == Picture::heat ? index : other).film;
-    each_pixel(box, to, [&](std::size_t at) {
-        const double a = residual(film, at);
-        return picture == Picture::heat ? turbo(a / top) : two_hues((residual(beside, at) - a) / top);
+    const Film &film = slot(index).film, &second_film = slot(picture == Picture::heat ? index : other).film;
+    each_pixel(box, to, [&](std::size_t pixel) {
+        const double a = residual(film, pixel);
+        return picture == Picture::heat ? turbo(a / top) : two_hues((residual(second_film, pixel) - a) / top);
     });
 }
 
 /// The variance of one sample of a pixel, (W/(sr m^2))^2.
-double sample_variance(const Slot& slot, std::size_t at) {
-    return static_cast<double>(slot.film.var[at]) * static_cast<double>(slot.film.n);
+double sample_variance(const Slot& slot, std::size_t pixel) {
+    return static_cast<double>(slot.film.var[pixel]) * static_cast<double>(slot.film.n);
 }
 
 void variances(int index, double top, const TileBox& box, std::byte* to) {
-    const Slot& shown = slot(index);
-    each_pixel(box, to, [&](std::size_t at) {
-        const double v = sample_variance(shown, at);
+    const Slot& film_slot = slot(index);
+    each_pixel(box, to, [&](std::size_t pixel) {
+        const double v = sample_variance(film_slot, pixel);
         return v > 0 ? turbo(std::clamp(1 + math::log10(v / top) / variance_decades, 0.0, 1.0)) : background;
     });
 }
@@ -72,14 +73,14 @@ std::vector<std::byte> disk_pixels;
 
 /// The 98th percentile of values over the geometry pixels of some films; 1 if there is none above 0.
 template <class Value> double end_of_scale(int films, const Value& value) {
-    std::vector<double> all;
+    std::vector<double> values;
     for (int film = 0; film < films; ++film)
-        for (std::size_t at = 0; at < bench().pixels(); ++at)
-            if (bench().shapes.shape[at] >= 0)
-                if (const double v = value(slot(film), at); std::isfinite(v)) all.push_back(v);
-    if (all.empty()) return 1;
-    const auto place = all.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(all.size() - 1));
-    std::ranges::nth_element(all, place);
+        for (std::size_t pixel = 0; pixel < bench().pixels(); ++pixel)
+            if (bench().shapes.shape[pixel] >= 0)
+                if (const double v = value(slot(film), pixel); std::isfinite(v)) values.push_back(v);
+    if (values.empty()) return 1;
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(values.size() - 1));
+    std::ranges::nth_element(values, place);
     return *place > 0 ? *place : 1;
 }
 
@@ -153,7 +154,7 @@ CRESCENT_EXPORT(paint)
 /// Returns the ends of the scales of maps of the first `count` films, {"top": |Y - Y_ref|, "variance": ...}: 98th
 /// percentiles over the geometry pixels.
 CRESCENT_EXPORT(scale)(int count)->void {
-    const auto error = [](const Slot& s, std::size_t at) { return residual(s.film, at); };
+    const auto error = [](const Slot& s, std::size_t pixel) { return residual(s.film, pixel); };
     respond(ordered_json{{"top", end_of_scale(count, error)}, {"variance", end_of_scale(count, sample_variance)}});
 }
 
@@ -163,22 +164,22 @@ CRESCENT_EXPORT(scale)(int count)->void {
 CRESCENT_EXPORT(pixel_values)()->void {
     const ordered_json query = request();
     const Bench& b = bench();
-    const std::size_t at = query.at("j").get<std::size_t>() * b.width() + query.at("i").get<std::size_t>();
-    const bool known = query.at("reference").get<bool>() && at < b.reference.size();
-    const int shape = at < b.shapes.shape.size() ? b.shapes.shape[at] : -1;
+    const std::size_t pixel = query.at("j").get<std::size_t>() * b.width() + query.at("i").get<std::size_t>();
+    const bool has_reference = query.at("reference").get<bool>() && pixel < b.reference.size();
+    const int shape = pixel < b.shapes.shape.size() ? b.shapes.shape[pixel] : -1;
     ordered_json out = {{"shape", shape < 0 ? "" : b.experiment.surface_name(static_cast<std::size_t>(shape))},
         {"films", ordered_json::array()}};
-    if (known) out["reference"] = figures(double(b.reference.y[at]));
+    if (has_reference) out["reference"] = figures(double(b.reference.y[pixel]));
     for (int k = 0; k < query.at("count").get<int>(); ++k) {
         const Film& film = slot(k).film;
-        if (film.y.size() != b.pixels() || at >= film.y.size()) continue;  // not begun yet; outside
+        if (film.y.size() != b.pixels() || pixel >= film.y.size()) continue;  // not begun yet; outside
         const double directions = static_cast<double>(film.n * film.directions);
-        ordered_json one = {{"y", figures(double(film.y.at(at)))}, {"n", film.n},
-            {"se", figures(std::sqrt(double(film.var.at(at))), 2)},
-            {"zero", figures(100 * double(film.horizon.at(at)) / directions, 3)},
-            {"met", figures(100 * double(film.light_hits.at(at)) / directions, 3)}};
-        if (known) one["error"] = figures(double(film.y[at]) - double(b.reference.y[at]), 3);
-        out["films"].push_back(std::move(one));
+        ordered_json entry = {{"y", figures(double(film.y.at(pixel)))}, {"n", film.n},
+            {"se", figures(std::sqrt(double(film.var.at(pixel))), 2)},
+            {"zero", figures(100 * double(film.horizon.at(pixel)) / directions, 3)},
+            {"met", figures(100 * double(film.light_hits.at(pixel)) / directions, 3)}};
+        if (has_reference) entry["error"] = figures(double(film.y[pixel]) - double(b.reference.y[pixel]), 3);
+        out["films"].push_back(std::move(entry));
     }
     respond(out);
 }

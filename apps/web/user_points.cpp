@@ -21,7 +21,7 @@ struct TakenPoints {
     int numbers = 2;     // random numbers of a draw
     bool integrand = false;
 };
-TakenPoints taken;
+TakenPoints point_setup;
 
 ordered_json picture_of(const LineHistogram& line) {
     return {{"kind", "line"}, {"axis", line.axis}, {"entries", line.entries}, {"edges", line.edges},
@@ -37,13 +37,14 @@ ordered_json picture_of(const BinHistogram& map) {
 }  // namespace
 
 std::shared_ptr<const SamplerAdapter> page_point_sampler() {
-    if (taken.domain.empty()) return nullptr;
-    PointSampler sampler{.domain = taken.domain,
-        .numbers = taken.numbers,
+    if (point_setup.domain.empty()) return nullptr;
+    PointSampler sampler{.domain = point_setup.domain,
+        .numbers = point_setup.numbers,
         .sample = [](std::span<const double> u,
                       std::span<double> x) { return api_point_drawn(u.data(), u.size(), x.data(), x.size()); },
         .pdf = [](std::span<const double> x) { return api_point_value(0, x.data(), x.size()); }};
-    if (taken.integrand) sampler.f = [](std::span<const double> x) { return api_point_value(1, x.data(), x.size()); };
+    if (point_setup.integrand)
+        sampler.f = [](std::span<const double> x) { return api_point_value(1, x.data(), x.size()); };
     return adapter_of(sampler, "your sampler");
 }
 
@@ -52,12 +53,12 @@ CRESCENT_EXPORT(user_takes_points)()->void {
     const ordered_json query = request();
     const std::string name = query.at("domain").get<std::string>();
     const std::optional<Domain> domain = Domain::read(name);
-    const auto refuse = [&](const std::string& why) {
-        throw InputError({"const domain", 0, 0}, fmt::format("'{}' is no domain of the page: {}", name, why));
+    const auto refuse = [&](const std::string& reason) {
+        throw InputError({"const domain", 0, 0}, fmt::format("'{}' is no domain of the page: {}", name, reason));
     };
     if (!domain) refuse(Domain::refusal(name));
     if (domain->is_direction()) refuse("its directions are those of 'hemisphere'; the program checks other ones");
-    taken = {name, query.at("numbers").get<int>(), query.at("integrand").get<bool>()};
+    point_setup = {name, query.at("numbers").get<int>(), query.at("integrand").get<bool>()};
 }
 
 /// {evaluations} -> the draws by bin and what the density expects: {kind: "line", axis, entries, edges,

@@ -79,8 +79,8 @@ private:
                 numbers_of_sample, wi.data(), pdf.data());
         });
         for (std::size_t i = 0; i < rows; ++i) {
-            const bool nothing = pdf[i] == 0 || (!query.scene && wi[3 * i + 2] <= 0 && pdf[i] >= 0);
-            out[i] = nothing ? Draw{{0, 0, 1}, 0} : Draw{{wi[3 * i], wi[3 * i + 1], wi[3 * i + 2]}, pdf[i]};
+            const bool draws_nothing = pdf[i] == 0 || (!query.scene && wi[3 * i + 2] <= 0 && pdf[i] >= 0);
+            out[i] = draws_nothing ? Draw{{0, 0, 1}, 0} : Draw{{wi[3 * i], wi[3 * i + 1], wi[3 * i + 2]}, pdf[i]};
         }
     }
     /// The page's function has one context for all rows, and is called once a run.
@@ -94,12 +94,13 @@ private:
                 const std::span<const Pair> of_run = query.pairs.subspan(first, scene.runs[k].rows);
                 for (const Pair& p : of_run)
                     if (p.wi.z > 0) pairs.insert(pairs.end(), {p.wo.x, p.wo.y, p.wo.z, p.wi.x, p.wi.y, p.wi.z});
-                const std::size_t asked = pairs.size() / 6;
-                std::vector<double> values(asked);
-                if (asked > 0) api_user_pdf(pairs.data(), asked, context.data(), context.size(), values.data());
-                std::size_t next = 0;
+                const std::size_t pair_count = pairs.size() / 6;
+                std::vector<double> values(pair_count);
+                if (pair_count > 0)
+                    api_user_pdf(pairs.data(), pair_count, context.data(), context.size(), values.data());
+                std::size_t position = 0;
                 for (std::size_t i = 0; i < of_run.size(); ++i)
-                    out[first + i] = of_run[i].wi.z > 0 ? values[next++] : 0;
+                    out[first + i] = of_run[i].wi.z > 0 ? values[position++] : 0;
                 first += of_run.size();
             }
         });
@@ -112,10 +113,10 @@ private:
 
 /// {surface: {lobe: a word or "", lambert, sharpness}, light}.
 CaseSetup setup_of(const ordered_json& query) {
-    const ordered_json& on = query.at("surface");
-    const std::string lobe = on.at("lobe").get<std::string>();
-    return case_setup(lobe.empty() ? LobeKind::none : lobe_named(lobe), on.at("lambert").get<bool>(),
-        query.at("light").get<std::string>(), on.at("sharpness").get<double>());
+    const ordered_json& surface = query.at("surface");
+    const std::string lobe = surface.at("lobe").get<std::string>();
+    return case_setup(lobe.empty() ? LobeKind::none : lobe_named(lobe), surface.at("lambert").get<bool>(),
+        query.at("light").get<std::string>(), surface.at("sharpness").get<double>());
 }
 
 /// {sampler: "" for that of the page, or a built-in one} at each w_o, [theta, azimuth] in degrees. A sampler of points
@@ -125,8 +126,8 @@ std::vector<CheckCase> cases_of(const ordered_json& query) {
     const CaseSetup setup = setup_of(query);
     const std::string built_in = query.value("sampler", "");
     std::vector<CheckCase> out;
-    for (const ordered_json& at : query.at("wo")) {
-        const double theta = at.at(0).get<double>(), azimuth = at.at(1).get<double>();
+    for (const ordered_json& angles : query.at("wo")) {
+        const double theta = angles.at(0).get<double>(), azimuth = angles.at(1).get<double>();
         out.push_back(make_case_on(
             setup, theta, azimuth, built_in.empty() ? "your sampler" : built_in, std::make_shared<PageSampler>(setup)));
         if (!built_in.empty()) out.back().adapter = sampler_on(built_in, out.back());
@@ -146,15 +147,15 @@ int rank(State state) {
     return 0;
 }
 
-Disk disk_of(const CheckCase& at) { return Disk({-at.wo.x, -at.wo.y, at.wo.z}); }
+Disk disk_of(const CheckCase& check_case) { return Disk({-check_case.wo.x, -check_case.wo.y, check_case.wo.z}); }
 
 /// The first n draws of a case.
-std::vector<Draw> draws_of(const CheckCase& at, std::size_t n) {
+std::vector<Draw> draws_of(const CheckCase& check_case, std::size_t n) {
     const std::uint32_t seed = seed_of(TestSettings::quick().seed, 0);
     std::vector<PrimarySample> u(n);
     for (std::size_t k = 0; k < n; ++k) u[k] = drawn_numbers(seed, 0, k, 0, PrimarySample::most_numbers);
     std::vector<Draw> draws(n);
-    at.adapter->sample(0, at.wo, u, draws);
+    check_case.adapter->sample(0, check_case.wo, u, draws);
     return draws;
 }
 
@@ -183,7 +184,7 @@ CRESCENT_EXPORT(user_checked)()->void {
     settings.budget = check::CheckBudget::limited(query.at("evaluations").get<double>());
     const CheckResult result = run_checks(cases, settings, monitor);
     ordered_json out = {{"state", ""}, {"evaluations", result.evaluations}, {"verdicts", ordered_json::array()}};
-    State all = State::right;
+    State state = State::right;
     for (std::size_t k = 0; k < verdict_names.size(); ++k) {
         if (verdict_names[k] == "efficiency") continue;  // depends on a clock
         const Verdict* worst = nullptr;
@@ -195,17 +196,17 @@ CRESCENT_EXPORT(user_checked)()->void {
                 worst = &v;
         }
         if (!worst) continue;
-        if (rank(worst->state) > rank(all)) all = worst->state;
-        ordered_json one = {{"name", worst->name}, {"question", verdict_questions[k]}, {"state", word(worst->state)},
+        if (rank(worst->state) > rank(state)) state = worst->state;
+        ordered_json entry = {{"name", worst->name}, {"question", verdict_questions[k]}, {"state", word(worst->state)},
             {"message", worst->message()}, {"cause", worst->cause}, {"states", states}, {"evidence", worst->evidence},
             {"hidden", ordered_json::object()}};
-        for (const auto& [fault, size] : worst->hidden) one["hidden"][fault] = json_number(size);
-        const auto at = worst->wo.value_or(std::pair(cases[0].theta_deg, cases[0].azimuth_deg));
-        one["theta"] = at.first;
-        one["azimuth"] = at.second;
-        out["verdicts"].push_back(std::move(one));
+        for (const auto& [fault, size] : worst->hidden) entry["hidden"][fault] = json_number(size);
+        const auto angles = worst->wo.value_or(std::pair(cases[0].theta_deg, cases[0].azimuth_deg));
+        entry["theta"] = angles.first;
+        entry["azimuth"] = angles.second;
+        out["verdicts"].push_back(std::move(entry));
     }
-    out["state"] = word(all);
+    out["state"] = word(state);
     respond(out);
 }
 
@@ -213,29 +214,29 @@ CRESCENT_EXPORT(user_checked)()->void {
 /// below: how many drew nothing or fell below the horizon, seconds: of those draws}.
 CRESCENT_EXPORT(user_drawn)()->void {
     const ordered_json query = request();
-    const CheckCase at = cases_of(query).front();
-    const std::vector<Draw> draws = draws_of(at, query.at("n").get<std::size_t>());
-    const Disk disk = disk_of(at);
+    const CheckCase check_case = cases_of(query).front();
+    const std::vector<Draw> draws = draws_of(check_case, query.at("n").get<std::size_t>());
+    const Disk disk = disk_of(check_case);
     std::vector<double> weight;
     for (const Draw& d : draws) {
-        const Pair pair{at.wo, d.wi};
+        const Pair pair{check_case.wo, d.wi};
         double f = 0;
-        if (d.pdf > 0) at.adapter->f({&pair, 1}, {&f, 1});
-        weight.push_back(d.pdf > 0 && d.wi.z > 0 ? f * at.light(d.wi) * d.wi.z / d.pdf : 0);
+        if (d.pdf > 0) check_case.adapter->f({&pair, 1}, {&f, 1});
+        weight.push_back(d.pdf > 0 && d.wi.z > 0 ? f * check_case.light(d.wi) * d.wi.z / d.pdf : 0);
     }
     const double largest = weight.empty() ? 0 : *std::ranges::max_element(weight);
-    ordered_json out = {{"case", at.text()}, {"draws", ordered_json::array()}};
-    std::size_t below = 0;
+    ordered_json out = {{"case", check_case.text()}, {"draws", ordered_json::array()}};
+    std::size_t lower_count = 0;
     for (std::size_t k = 0; k < draws.size(); ++k) {
         if (!(draws[k].pdf > 0 && draws[k].wi.z > 0)) {
-            ++below;
+            ++lower_count;
             continue;
         }
-        ordered_json one = disk.place(draws[k].wi);
-        one.push_back(largest > 0 && std::isfinite(weight[k]) ? std::sqrt(weight[k] / largest) : 0);
-        out["draws"].push_back(std::move(one));
+        ordered_json point = disk.place(draws[k].wi);
+        point.push_back(largest > 0 && std::isfinite(weight[k]) ? std::sqrt(weight[k] / largest) : 0);
+        out["draws"].push_back(std::move(point));
     }
-    out["below"] = below;
+    out["below"] = lower_count;
     respond(out);
 }
 
@@ -244,29 +245,29 @@ CRESCENT_EXPORT(user_drawn)()->void {
 /// density implies.
 CRESCENT_EXPORT(user_disk)()->void {
     const ordered_json query = request();
-    const CheckCase at = cases_of(query).front();
+    const CheckCase check_case = cases_of(query).front();
     const std::string what = query.at("what").get<std::string>();
     const int size = query.at("size").get<int>();
-    const Disk disk = disk_of(at);
+    const Disk disk = disk_of(check_case);
     const auto pdf = [&](const std::vector<Vec3d>& wi) {  // in one call: a graphics processor takes as long for one
         std::vector<Pair> pairs;
-        for (const Vec3d w : wi) pairs.push_back({at.wo, w});
+        for (const Vec3d w : wi) pairs.push_back({check_case.wo, w});
         std::vector<double> p(wi.size());
-        at.adapter->exact_pdf(0, pairs, p);
+        check_case.adapter->exact_pdf(0, pairs, p);
         return p;
     };
     const auto f = [&](Vec3d wi) {
-        const Pair pair{at.wo, wi};
+        const Pair pair{check_case.wo, wi};
         double value = 0;
-        at.adapter->f({&pair, 1}, {&value, 1});
-        return value * at.light(wi) * wi.z;
+        check_case.adapter->f({&pair, 1}, {&value, 1});
+        return value * check_case.light(wi) * wi.z;
     };
     if (what == "ratio") {
         constexpr int bins = 24;
         constexpr std::size_t n = std::size_t{1} << 17;
         std::vector<double> counts(bins * bins), due(bins * bins);
         const auto bin = [](double x) { return std::clamp(static_cast<int>((x + 1) / 2 * bins), 0, bins - 1); };
-        for (const Draw& d : draws_of(at, n)) {
+        for (const Draw& d : draws_of(check_case, n)) {
             if (!(d.pdf > 0 && d.wi.z > 0)) continue;
             const ordered_json place = disk.place(d.wi);
             ++counts[static_cast<std::size_t>(bin(place[1].get<double>()) * bins + bin(place[0].get<double>()))];
@@ -296,11 +297,11 @@ CRESCENT_EXPORT(user_disk)()->void {
         return 0.0;
     });
     const std::vector<double> p = pdf(points);
-    std::size_t next = 0;
+    std::size_t position = 0;
     paint_disk(disk, size, [&](Vec3d wi) {
-        const double here = p[next++];
-        if (what == "pdf") return here;
-        return here > 0 ? 0 : f(wi);
+        const double density = p[position++];
+        if (what == "pdf") return density;
+        return density > 0 ? 0 : f(wi);
     });
 }
 

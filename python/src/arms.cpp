@@ -18,9 +18,9 @@ using Out = nb::ndarray<nb::numpy, double>;
 
 /// An array that Python owns.
 Out made(std::vector<double> values, std::initializer_list<std::size_t> shape) {
-    auto* kept = new std::vector<double>(std::move(values));
-    const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-    return Out(kept->data(), shape, owner);
+    auto* data = new std::vector<double>(std::move(values));
+    const nb::capsule owner(data, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+    return Out(data->data(), shape, owner);
 }
 
 Vec3d row(const In& a, std::size_t i) { return {a(i, 0), a(i, 1), a(i, 2)}; }
@@ -77,7 +77,7 @@ nb::typed<nb::tuple, Out, Out> sample(const ListedArm& arm, const In& wo, const 
     alike(n, u.shape(0));
     std::vector<double> wi(3 * n), pdf(n);
     {
-        const Work here;
+        const Work work_scope;
         each_row(arm, wo, [&](const SamplerAdapter& adapter, std::size_t i) {
             const PrimarySample numbers(u(i, 0), u(i, 1));
             Draw d;
@@ -96,10 +96,10 @@ Out pdf(const ListedArm& arm, const In& wo, const In& wi) {
     alike(n, wi.shape(0));
     std::vector<double> p(n);
     {
-        const Work here;
+        const Work work_scope;
         each_row(arm, wo, [&](const SamplerAdapter& adapter, std::size_t i) {
-            const Pair at{row(wo, i), row(wi, i)};
-            adapter.pdf(0, {&at, 1}, {&p[i], 1});
+            const Pair pair{row(wo, i), row(wi, i)};
+            adapter.pdf(0, {&pair, 1}, {&p[i], 1});
         });
     }
     return made(std::move(p), {n});
@@ -116,12 +116,13 @@ Out f(const ListedArm& arm, const In& wo, const In& wi) {
 /// Returns (k, se, exceedances) of the largest of `weights`.
 std::optional<std::tuple<double, double, std::uint64_t>> tail_of(
     const nb::ndarray<const double, nb::ndim<1>, nb::device::cpu>& weights) {
-    std::vector<double> all(weights.shape(0));
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = weights(i);
-    const std::size_t many = std::min(tail_length(all.size()) + 1, all.size());
-    std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(many), all.end(), std::greater<>());
-    all.resize(many);
-    const std::optional<Tail> tail = fit_tail(std::span<const double>(all));
+    std::vector<double> values(weights.shape(0));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = weights(i);
+    const std::size_t count = std::min(tail_length(values.size()) + 1, values.size());
+    std::partial_sort(
+        values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count), values.end(), std::greater<>());
+    values.resize(count);
+    const std::optional<Tail> tail = fit_tail(std::span<const double>(values));
     if (!tail) return {};
     return std::tuple(tail->k, tail->se, tail->exceedances);
 }

@@ -13,8 +13,8 @@ namespace {
 using Rows = nb::ndarray<const double, nb::ndim<2>, nb::device::cpu>;
 using Column = nb::ndarray<const double, nb::ndim<1>, nb::device::cpu>;
 
-void must_be(std::size_t n, std::size_t wanted) {
-    if (n != wanted) throw nb::value_error("crescent._arrays let an array of another length through");
+void must_be(std::size_t n, std::size_t expected) {
+    if (n != expected) throw nb::value_error("crescent._arrays let an array of another length through");
 }
 
 Draw draw_of(
@@ -65,7 +65,7 @@ void CallableSampler::call(const nb::object& callable, const SamplerQuery& query
     std::vector<Table> tables;
     if (query.scene) tables = context_of(*query.scene, query.rows(), c_.uses);
     if (query.kind == Kind::weigh) tables.push_back(densities_of(query));
-    const Locked held;
+    const Locked python_lock;
     try {
         if (query.scene) {
             nb::dict context;
@@ -85,9 +85,9 @@ void CallableSampler::call(const nb::object& callable, const SamplerQuery& query
 }
 
 void CallableSampler::draw_rows(const SamplerQuery& query, std::span<Draw> out) const {
-    const bool without_density = !query.scene && !c_.traits.has_pdf;  // a run divides by the pdf of the draw
-    call(c_.sample, query, [&](const nb::object& given) {
-        const nb::tuple answer = nb::cast<nb::tuple>(given);
+    const bool lacks_density = !query.scene && !c_.traits.has_pdf;  // a run divides by the pdf of the draw
+    call(c_.sample, query, [&](const nb::object& value) {
+        const nb::tuple answer = nb::cast<nb::tuple>(value);
         const Rows wi = nb::cast<Rows>(answer[0]);
         const Column pdf = nb::cast<Column>(answer[1]);
         Rows weight;
@@ -100,7 +100,7 @@ void CallableSampler::draw_rows(const SamplerQuery& query, std::span<Draw> out) 
         const Unlocked free;
         for (std::size_t i = 0; i < out.size(); ++i) {
             out[i] = draw_of(c_, wi, pdf, weight, delta, i);
-            if (without_density && out[i].pdf > 0) out[i].pdf = 1;
+            if (lacks_density && out[i].pdf > 0) out[i].pdf = 1;
         }
     });
     draws_ += out.size();
@@ -121,10 +121,10 @@ void CallableSampler::f_rows_by_channel(const SamplerQuery& query, std::span<Vec
     call(c_.f, query, [&](const nb::object& answer) {
         const Rows f = nb::cast<Rows>(answer);
         must_be(f.shape(0), out.size());
-        const bool three = f.shape(1) == 3;
+        const bool has_three_channels = f.shape(1) == 3;
         const Unlocked free;
         for (std::size_t i = 0; i < out.size(); ++i) {
-            out[i] = three ? Vec3d{f(i, 0), f(i, 1), f(i, 2)} : Vec3d{f(i, 0), f(i, 0), f(i, 0)};
+            out[i] = has_three_channels ? Vec3d{f(i, 0), f(i, 1), f(i, 2)} : Vec3d{f(i, 0), f(i, 0), f(i, 0)};
             if (c_.upper_only && query.pairs[i].wi.z <= 0) out[i] = {};
         }
     });

@@ -18,13 +18,13 @@ using Adapter = std::shared_ptr<const SamplerAdapter>;
 
 /// CheckCases over w_o, and the sampler in them.
 struct CheckCases {
-    std::vector<CheckCase> all;
+    std::vector<CheckCase> cases;
     Adapter adapter;                                             // null: a built-in sampler, or an arm of an experiment
     std::vector<std::shared_ptr<const CallableSampler>> arms{};  // of an experiment: those with callables
     std::size_t size() const {
-        std::size_t checked = 0;
-        for (const CheckCase& t : all) checked += !t.baseline;
-        return checked;
+        std::size_t count = 0;
+        for (const CheckCase& t : cases) count += !t.baseline;
+        return count;
     }
 };
 
@@ -65,10 +65,10 @@ CheckCases of_callables(nb::object sample, nb::object pdf, nb::object f, const s
     if (eta) c.traits.eta = Vec3d{eta->at(0), eta->at(eta->size() / 2), eta->at(eta->size() - 1)};
     const auto adapter = std::make_shared<CallableSampler>(std::move(c));
     if (!number) return {make_user_cases(adapter, full, grid), adapter};
-    CheckCase only;
-    only.arm = adapter->name();
-    only.adapter = adapter;
-    return {{std::move(only)}, adapter};
+    CheckCase check_case;
+    check_case.arm = adapter->name();
+    check_case.adapter = adapter;
+    return {{std::move(check_case)}, adapter};
 }
 
 CheckCases of_experiment(const Experiment& experiment, const std::string& sampler, int pixels, bool full,
@@ -79,9 +79,10 @@ CheckCases of_experiment(const Experiment& experiment, const std::string& sample
         samplers[name] = arm;
         out.arms.push_back(arm);
     }
-    const Work here;
-    out.all = arm_cases(experiment, sampler, open_external(with_arms_of(experiment, {sampler}), 0, std::move(samplers)),
-        {pixels, full, grid, "--" + keyword});
+    const Work work_scope;
+    out.cases =
+        arm_cases(experiment, sampler, open_external(with_arms_of(experiment, {sampler}), 0, std::move(samplers)),
+            {pixels, full, grid, "--" + keyword});
     return out;
 }
 
@@ -89,7 +90,7 @@ CheckCases of_experiment(const Experiment& experiment, const std::string& sample
 struct CheckRun {
     CheckResult result;
     ResultSource source;
-    bool against = false;
+    bool is_against = false;
 };
 
 TestSettings settings_of(double alpha, std::uint32_t seed, bool full, bool accept_few) {
@@ -123,7 +124,7 @@ CheckRun checked(CheckCases& check_cases, CheckCases* other, double alpha, std::
     CheckRun out{{}, {version(), commit(), command}, other != nullptr};
     const auto work = [&] {
         if (estimates || (check_cases.adapter && check_cases.adapter->traits().number)) {
-            out.against = false;
+            out.is_against = false;
             check::ExpectedMean expected;
             if (estimates)
                 expected.value = {estimates->front(), estimates->at(estimates->size() / 2), estimates->back()};
@@ -132,16 +133,16 @@ CheckRun checked(CheckCases& check_cases, CheckCases* other, double alpha, std::
             return;
         }
         if (!other) {
-            out.result = run_checks(check_cases.all, settings, monitor);
+            out.result = run_checks(check_cases.cases, settings, monitor);
             return;
         }
-        std::vector<CheckCase> a = check_cases.all, b = other->all;
+        std::vector<CheckCase> a = check_cases.cases, b = other->cases;
         for (std::vector<CheckCase>* side : {&a, &b})
             std::erase_if(*side, [](const CheckCase& t) { return t.baseline; });
         if (other->adapter) b = sampler_against(other->adapter, a);
         out.result = compare_samplers(a, b, settings, expect_same, monitor);
     };
-    const bool serial = is_serial(check_cases) || (other && is_serial(*other));
+    const bool needs_one_thread = is_serial(check_cases) || (other && is_serial(*other));
     set_raised(check_cases, &raised);
     if (other) set_raised(*other, &raised);
     const auto quiet = [&] {
@@ -149,7 +150,7 @@ CheckRun checked(CheckCases& check_cases, CheckCases* other, double alpha, std::
         if (other) set_raised(*other, nullptr);
     };
     try {
-        watched(monitor, raised, progress, serial, [&] { threads > 0 ? on_threads(threads, work) : work(); });
+        watched(monitor, raised, progress, needs_one_thread, [&] { threads > 0 ? on_threads(threads, work) : work(); });
     } catch (...) {
         quiet();
         throw;
@@ -165,12 +166,12 @@ std::pair<std::string, std::string> described(
     settings.seed = seed;
     if (full) {
         settings.draws *= 16;
-        settings.draws_of_limited *= 16;
+        settings.limited_draws *= 16;
     }
     PolledMonitor monitor;
     Raised raised(monitor);
-    std::vector<check::Description> all;
-    const auto work = [&] { all = check::describe(check_cases.all, settings, monitor); };
+    std::vector<check::Description> descriptions;
+    const auto work = [&] { descriptions = check::describe(check_cases.cases, settings, monitor); };
     set_raised(check_cases, &raised);
     try {
         watched(monitor, raised, progress, is_serial(check_cases),
@@ -181,21 +182,21 @@ std::pair<std::string, std::string> described(
     }
     set_raised(check_cases, nullptr);
     std::string text;
-    for (const check::Description& d : all) text += check::description_text(d) + "\n";
-    return {text, check::description_json(all).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
+    for (const check::Description& d : descriptions) text += check::description_text(d) + "\n";
+    return {text, check::description_json(descriptions).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
 }
 
 /// Returns the cases of a built-in sampler on which `a` was checked.
 CheckCases arm_beside(const std::string& arm, const CheckCases& a) {
     if (const std::vector<std::string> names = sampler_names(); std::ranges::find(names, arm) == names.end()) {
-        const std::string near = nearest(arm, names);
-        throw nb::value_error(fmt::format(
-            "against is '{}': no built-in arm{}", arm, near.empty() ? "" : fmt::format("; did you mean '{}'?", near))
+        const std::string suggestion = nearest(arm, names);
+        throw nb::value_error(fmt::format("against is '{}': no built-in arm{}", arm,
+            suggestion.empty() ? "" : fmt::format("; did you mean '{}'?", suggestion))
                 .c_str());
     }
-    std::vector<CheckCase> checked = a.all;
-    std::erase_if(checked, [](const CheckCase& t) { return t.baseline; });
-    return {sampler_named_against(arm, checked), nullptr};
+    std::vector<CheckCase> cases = a.cases;
+    std::erase_if(cases, [](const CheckCase& t) { return t.baseline; });
+    return {sampler_named_against(arm, cases), nullptr};
 }
 
 void draw_batches(const CheckCases& check_cases, std::uint32_t batches) {
@@ -213,7 +214,7 @@ void draw_batches(const CheckCases& check_cases, std::uint32_t batches) {
                 u[i][k] = pair.x;
                 if (k + 1 < count) u[i][k + 1] = pair.y;
             }
-        check_cases.adapter->sample(0, check_cases.all.front().wo, u, out);
+        check_cases.adapter->sample(0, check_cases.cases.front().wo, u, out);
     };
     watched(monitor, raised, nb::none(), check_cases.adapter->serial(), [&] {
         if (check_cases.adapter->serial())
@@ -259,10 +260,10 @@ void add_check_run(nb::module_& m) {
         .def_prop_ro("verdicts", &verdicts_of)
         .def(
             "text",
-            [](const CheckRun& j, bool all) {
-                if (j.against) return against_text(j.result);
-                return all || !one_sampler(j.result) ? verdict_table(j.result, all)
-                                                     : verdict_screen(j.result, FrontEnd::python);
+            [](const CheckRun& j, bool shows_all) {
+                if (j.is_against) return against_text(j.result);
+                return shows_all || !one_sampler(j.result) ? verdict_table(j.result, shows_all)
+                                                           : verdict_screen(j.result, FrontEnd::python);
             },
             nb::arg("all") = false)
         .def("json", [](const CheckRun& j) { return verdict_json(j.result, j.source); })

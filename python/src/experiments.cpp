@@ -84,11 +84,11 @@ void restore(RunResult& into, const State& state) {
     std::tie(r->s, r->holds, r->json, r->csv, r->junit, r->attributes, r->boxes, films, references, r->times,
         r->threads, r->stages) = state;
     for (const nb::handle entry : films) {
-        const nb::tuple at = nb::cast<nb::tuple>(entry);
-        const nb::dict planes = nb::cast<nb::dict>(at[4]);
+        const nb::tuple fields = nb::cast<nb::tuple>(entry);
+        const nb::dict planes = nb::cast<nb::dict>(fields[4]);
         auto& [key, film] = r->films.emplace_back();
-        key = {nb::cast<std::string>(at[0]), nb::cast<std::uint64_t>(at[1]), nb::cast<double>(at[2]),
-            nb::cast<std::uint32_t>(at[3])};
+        key = {nb::cast<std::string>(fields[0]), nb::cast<std::uint64_t>(fields[1]), nb::cast<double>(fields[2]),
+            nb::cast<std::uint32_t>(fields[3])};
         film.n = key.n;
         for (const auto& [name, values] : film_planes) restore_plane(planes, name, values, film);
         for (const auto& [name, values] : film_counts) restore_plane(planes, name, values, film);
@@ -127,8 +127,8 @@ std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& 
         const auto of_seed = [&](const auto& jobs, auto&& seed_of_job) {
             return std::ranges::count_if(jobs, [&](const auto& j) { return seed_of_job(j) == seed; });
         };
-        const auto planned = of_seed(run.plan.jobs, [](const Job& j) { return j.seed; });
-        if (of_seed(run.results, [](const JobResult& r) { return r.job.seed; }) != planned) break;
+        const auto job_count = of_seed(run.plan.jobs, [](const Job& j) { return j.seed; });
+        if (of_seed(run.results, [](const JobResult& r) { return r.job.seed; }) != job_count) break;
         ++seeds;
     }
     if (seeds == 0 || !run.prepared || run.prepared->stopped) return {};
@@ -136,25 +136,25 @@ std::optional<RunResult> finished_seeds(const Experiment& experiment, RunSoFar& 
     part.references = run.plan.references;
     std::erase_if(run.results, [&](const JobResult& r) { return !std::ranges::count(part.seeds, r.job.seed); });
     PolledMonitor monitor;
-    const Work here(&monitor);
-    Measured done =
+    const Work work_scope(&monitor);
+    Measured result =
         collect(part, std::move(*run.prepared), std::move(run.results), run.engine, monitor, {"crescent.run", false});
-    return result_of(std::move(done));
+    return result_of(std::move(result));
 }
 
-/// `kept` receives the result of the complete seeds if the run is interrupted.
+/// `partial_results` receives the result of the complete seeds if the run is interrupted.
 RunResult run_experiment(const Experiment& experiment, int first, int last, int threads, const std::string& isa,
-    const Beside& beside, const nb::object& progress, const CallableArms& callables, int repeats,
-    nb::typed<nb::list, RunResult> kept) {
+    const Beside& extras, const nb::object& progress, const CallableArms& callables, int repeats,
+    nb::typed<nb::list, RunResult> partial_results) {
     PolledMonitor monitor;
     Raised raised(monitor);
     RunResult out;
     const auto [samplers, serial] = samplers_of(callables, raised);
     RunSoFar run;
-    bool complete = false;
+    bool is_complete = false;
     const auto work = [&] {
-        run.plan = plan(experiment, {first, beside.references ? last : first});
-        run.plan.references = beside.references;
+        run.plan = plan(experiment, {first, extras.references ? last : first});
+        run.plan.references = extras.references;
         run.engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         run.prepared = look(run.plan, run.engine);
         log_warnings(run.plan, *run.prepared, monitor);
@@ -173,29 +173,30 @@ RunResult run_experiment(const Experiment& experiment, int first, int last, int 
         }
         monitor.check();
         const double films = start.seconds() - references;
-        Measured all = collect(run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor,
-            {"crescent.run", beside.studies});
-        all.timing.stages.insert(all.timing.stages.begin(), {{"references", references}, {"films", films}});
+        Measured result = collect(run.plan, std::move(*run.prepared), std::move(run.results), run.engine, monitor,
+            {"crescent.run", extras.studies});
+        result.timing.stages.insert(result.timing.stages.begin(), {{"references", references}, {"films", films}});
         run.results.clear();
         run.prepared.reset();
-        out = result_of(std::move(all));
-        complete = true;
+        out = result_of(std::move(result));
+        is_complete = true;
     };
     try {
         watched(monitor, raised, progress, serial, work);
     } catch (nb::python_error& error) {
         if (!error.matches(PyExc_KeyboardInterrupt)) throw;
-        if (complete) kept.append(nb::cast(std::move(out)));
+        if (is_complete) partial_results.append(nb::cast(std::move(out)));
         else if (std::optional<RunResult> part = finished_seeds(experiment, run))
-            kept.append(nb::cast(std::move(*part)));
+            partial_results.append(nb::cast(std::move(*part)));
         throw;
     }
     return out;
 }
 
-/// Writes metrics.json, metrics.csv, junit.xml, films/*.exr and `more`, all at once; only the program writes plates.
+/// Writes metrics.json, metrics.csv, junit.xml, films/*.exr and `attachments`, all at once; only the program writes
+/// plates.
 void write_folder(
-    const RunResult& r, const std::string& folder, const std::vector<std::pair<std::string, nb::bytes>>& more) {
+    const RunResult& r, const std::string& folder, const std::vector<std::pair<std::string, nb::bytes>>& attachments) {
     PolledMonitor monitor;
     Raised raised(monitor);
     watched(monitor, raised, nb::none(), true, [&] {
@@ -206,7 +207,7 @@ void write_folder(
         std::map<std::string, std::vector<std::pair<std::string, const Film*>>> files;
         for (const auto& [key, film] : r.films)
             files[film_file(key.arm, key.s, r.s)].emplace_back(fmt::format("n={}", key.n), &film);
-        for (const auto& [name, bytes] : more)
+        for (const auto& [name, bytes] : attachments)
             staging.write(name, std::span(static_cast<const unsigned char*>(bytes.data()), bytes.size()));
         for (const auto& [name, parts] : files) write_exr(staging.path("films/" + name + ".exr"), parts, r.attributes);
         staging.commit(monitor);
@@ -245,19 +246,19 @@ Experiment settled_paths(Experiment e) {
 Experiment parsed_in(const std::string& folder, const std::string& text, const std::string& name,
     const std::vector<std::string>& overrides) {
     const std::string file = (std::filesystem::path(folder) / std::filesystem::path(name).filename()).string();
-    const auto shown = [&](SourceLocation at) {
-        if (at.file == file) at.file = name;
-        return at;
+    const auto rename_place = [&](SourceLocation place) {
+        if (place.file == file) place.file = name;
+        return place;
     };
     try {
         Experiment e = settled_paths(parse(text, file, overrides));
         e.file = name;
-        for (auto& [_, at] : e.places) at = shown(at);
+        for (auto& [_, place] : e.places) place = rename_place(place);
         return e;
     } catch (const InputError& error) {
-        std::vector<Diagnostic> all = error.diagnostics();
-        for (Diagnostic& one : all) one.at = shown(one.at);
-        throw InputError(std::move(all));
+        std::vector<Diagnostic> diagnostics = error.diagnostics();
+        for (Diagnostic& diagnostic : diagnostics) diagnostic.location = rename_place(diagnostic.location);
+        throw InputError(std::move(diagnostics));
     }
 }
 
@@ -340,7 +341,7 @@ void add_experiments(nb::module_& m) {
     m.def(
         "join",
         [](const std::vector<std::string>& parts) {
-            const Work here;
+            const Work work_scope;
             return result_of(join(parts, "crescent.join"));
         },
         "parts"_a);
@@ -348,9 +349,9 @@ void add_experiments(nb::module_& m) {
         "run",
         [](const Experiment& experiment, int first, int last, int threads, const std::string& isa, bool studies,
             bool references, const nb::object& progress, const CallableArms& callables, int repeats,
-            nb::typed<nb::list, RunResult> kept) {
+            nb::typed<nb::list, RunResult> partial_results) {
             return run_experiment(experiment, first, last, threads, isa, {.references = references, .studies = studies},
-                progress, callables, repeats, std::move(kept));
+                progress, callables, repeats, std::move(partial_results));
         },
         "experiment"_a, "first"_a, "last"_a, "threads"_a, "isa"_a, "studies"_a, "references"_a, "progress"_a.none(),
         "callables"_a, "repeats"_a, "kept"_a);

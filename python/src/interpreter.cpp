@@ -1,5 +1,5 @@
-// Two flags in order: `ending`, after which no work begins and running work is asked to stop; `closed`, after which no
-// thread takes the lock. Between them waiting threads get the lock, since this one has released it.
+// Two flags in order: `is_ending`, after which no work begins and running work is asked to stop; `is_closed`, after
+// which no thread takes the lock. Between them waiting threads get the lock, since this one has released it.
 #include "interpreter.h"
 
 #include <unistd.h>
@@ -20,7 +20,7 @@ namespace {
 struct Gate {
     std::mutex mutex;
     std::condition_variable changed;
-    bool ending = false, closed = false;
+    bool is_ending = false, is_closed = false;
     unsigned waiting = 0;  // threads between the gate and the lock
     unsigned works = 0;
     std::vector<ProgressMonitor*> monitors;
@@ -28,17 +28,17 @@ struct Gate {
 };
 
 Gate& gate() {
-    static Gate& only = *new Gate;
-    return only;
+    static Gate& instance = *new Gate;
+    return instance;
 }
 
 /// take() takes the lock, unless the gate is closed.
 template <class Take> void through_the_gate(Take&& take) {
     std::unique_lock lock(gate().mutex);
-    const bool closed = gate().closed;
-    if (!closed) ++gate().waiting;
+    const bool is_closed = gate().is_closed;
+    if (!is_closed) ++gate().waiting;
     lock.unlock();
-    if (closed) sleep_until_exit();
+    if (is_closed) sleep_until_exit();
     take();
     lock.lock();
     --gate().waiting;
@@ -48,7 +48,7 @@ template <class Take> void through_the_gate(Take&& take) {
 /// With the lock held: counts the beginning of work.
 ProgressMonitor* registered(ProgressMonitor* monitor) {
     const std::lock_guard guard(gate().mutex);
-    if (gate().ending) {
+    if (gate().is_ending) {
         PyErr_SetString(PyExc_RuntimeError, "crescent cannot begin work while the interpreter is ending");
         throw nb::python_error();
     }
@@ -62,12 +62,12 @@ ProgressMonitor* registered(ProgressMonitor* monitor) {
 void wait_for_work(std::unique_lock<std::mutex>& lock) {
     constexpr std::chrono::milliseconds step{20};
     constexpr int longest = 250, longest_in_callables = 10;
-    unsigned entered = 0;
-    int still = 0;
-    for (int i = 0; i < longest && gate().works > 0 && still < longest_in_callables; ++i) {
+    unsigned call_count = 0;
+    int still_count = 0;
+    for (int i = 0; i < longest && gate().works > 0 && still_count < longest_in_callables; ++i) {
         gate().changed.wait_for(lock, step);
-        const bool same = callbacks().entered == std::exchange(entered, callbacks().entered);
-        still = same && callbacks().inside >= gate().works ? still + 1 : 0;
+        const bool is_same = callbacks().call_count == std::exchange(call_count, callbacks().call_count);
+        still_count = is_same && callbacks().thread_count >= gate().works ? still_count + 1 : 0;
     }
 }
 
@@ -85,19 +85,19 @@ void leave_beside_work() {
 
 void before_exit() {
     std::unique_lock lock(gate().mutex);
-    gate().ending = true;
+    gate().is_ending = true;
     for (ProgressMonitor* monitor : gate().monitors) monitor->stop = true;
     if (getpid() == gate().process) {  // a child of fork() has none of the counted threads
         PyThreadState* const state = PyEval_SaveThread();
         wait_for_work(lock);
         if (gate().works > 0) leave_beside_work();
-        gate().closed = true;
+        gate().is_closed = true;
         gate().changed.wait(lock, [] { return gate().waiting == 0; });
         lock.unlock();
         PyEval_RestoreThread(state);
         return;
     }
-    gate().closed = true;
+    gate().is_closed = true;
 }
 
 }  // namespace
@@ -107,8 +107,8 @@ void sleep_until_exit() {
 }
 
 Callbacks& callbacks() {
-    static Callbacks& only = *new Callbacks;
-    return only;
+    static Callbacks& instance = *new Callbacks;
+    return instance;
 }
 
 Locked::Locked() : state_{} {
@@ -132,7 +132,7 @@ Work::~Work() {
         --g.works;
         if (monitor_) std::erase(g.monitors, monitor_);
         g.changed.notify_all();
-        if (!g.ending) return;
+        if (!g.is_ending) return;
     }
     sleep_until_exit();
 }

@@ -60,7 +60,7 @@ private:
 
 /// The number of threads inside a Python callable, and the number of calls.
 struct Callbacks {
-    std::atomic<unsigned> inside{0}, entered{0};
+    std::atomic<unsigned> thread_count{0}, call_count{0};
 };
 Callbacks& callbacks();
 
@@ -70,14 +70,14 @@ Callbacks& callbacks();
 /// Calls callable(arguments...) with the lock held. If Python ends this thread inside the callable, the thread sleeps
 /// instead.
 template <class... Arguments> nb::object call_python(const nb::object& callable, Arguments&&... arguments) {
-    ++callbacks().inside;
-    ++callbacks().entered;
+    ++callbacks().thread_count;
+    ++callbacks().call_count;
     try {
         nb::object out = callable(std::forward<Arguments>(arguments)...);
-        --callbacks().inside;
+        --callbacks().thread_count;
         return out;
     } catch (abi::__forced_unwind&) { sleep_until_exit(); } catch (...) {
-        --callbacks().inside;
+        --callbacks().thread_count;
         throw;
     }
 }

@@ -45,8 +45,8 @@ void add_tails(const RunPlan& what, const Scene& scene, const std::string& isa, 
             monitor.check();
             for (RunMetrics& run : metrics.runs)
                 if (run.key.seed == job.seed && run.key.arm == job.arm && run.key.s == job.s)
-                    for (RegionMetrics& of : run.regions)
-                        if (of.region == region.name) of.tail = tail;
+                    for (RegionMetrics& row : run.regions)
+                        if (row.region == region.name) row.tail = tail;
         }
     }
 }
@@ -54,21 +54,21 @@ void add_tails(const RunPlan& what, const Scene& scene, const std::string& isa, 
 /// States an experiment without the files of its samplers, which may change or be on another machine when the text is
 /// read: read_metrics() checks the hash, and the sweep has an identity of its own for each sampler.
 void leave_out_files(const RunPlan& what, Provenance& provenance) {
-    Experiment plain = what.whole;
-    for (ArmPlan& arm : plain.arms)
+    Experiment portable_experiment = what.whole;
+    for (ArmPlan& arm : portable_experiment.arms)
         if (arm.is_external()) {
             arm.sampler = "uniform";
             arm.exec.reset();
             arm.plugin.reset();
             arm.python.reset();
         }
-    provenance.experiment_text = canonical_text(plain);
-    provenance.experiment_hash = fmt::format("{:016x}", hash(plain));
+    provenance.experiment_text = canonical_text(portable_experiment);
+    provenance.experiment_hash = fmt::format("{:016x}", hash(portable_experiment));
 }
 
 /// Runs these arms with seeds first to last against given references. The part with the experiment's own seed has the
 /// tail indices of its arms.
-RunResult run_part(const Experiment& experiment, int first, int last, const Names& arms, const References& given,
+RunResult run_part(const Experiment& experiment, int first, int last, const Names& arms, const References& references,
     int threads, const std::string& isa, const nb::object& progress, const CallableArms& callables) {
     PolledMonitor monitor;
     Raised raised(monitor);
@@ -76,17 +76,17 @@ RunResult run_part(const Experiment& experiment, int first, int last, const Name
     const auto [samplers, serial] = samplers_of(callables, raised);
     watched(monitor, raised, progress, serial, [&] {
         RunPlan what = plan(experiment, {first, last});
-        const auto other = [&](const std::string& name) { return std::ranges::find(arms, name) == arms.end(); };
-        std::erase_if(what.jobs, [&](const Job& job) { return other(job.arm); });
-        Experiment& seen = what.experiment;  // no other sampler is opened
-        seen = with_arms_of(std::move(seen), arms);
-        seen.assertions.clear();
-        if (seen.exponent && other(seen.exponent->arm)) seen.exponent.reset();
+        const auto is_other = [&](const std::string& name) { return std::ranges::find(arms, name) == arms.end(); };
+        std::erase_if(what.jobs, [&](const Job& job) { return is_other(job.arm); });
+        Experiment& part_experiment = what.experiment;  // no other sampler is opened
+        part_experiment = with_arms_of(std::move(part_experiment), arms);
+        part_experiment.assertions.clear();
+        if (part_experiment.exponent && is_other(part_experiment.exponent->arm)) part_experiment.exponent.reset();
         const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
         Prepared prepared = look(what, engine);
-        prepared.quadrature = given.quadrature;
-        prepared.monte_carlo = given.monte_carlo;
-        prepared.paired = given.paired;
+        prepared.quadrature = references.quadrature;
+        prepared.monte_carlo = references.monte_carlo;
+        prepared.paired = references.paired;
         const Scene scene = prepared.scene;
         std::vector<Job> jobs;
         std::vector<JobResult> results;
@@ -96,13 +96,14 @@ RunResult run_part(const Experiment& experiment, int first, int last, const Name
             results.push_back(execute(what, prepared, job, engine, monitor, job.seed == what.seeds.front()));
         }
         monitor.check();
-        Measured all =
+        Measured result =
             collect(what, std::move(prepared), std::move(results), engine, monitor, {"crescent sweep", false});
         monitor.check();
-        on_threads(engine.threads, [&] { add_tails(what, scene, engine.isa, monitor, jobs, all.shapes, all.metrics); });
-        all.metrics.has_studies = true;  // furnaces and article checks are a result of their own: studies()
-        leave_out_files(what, all.provenance);
-        out = result_of(std::move(all));
+        on_threads(
+            engine.threads, [&] { add_tails(what, scene, engine.isa, monitor, jobs, result.shapes, result.metrics); });
+        result.metrics.has_studies = true;  // furnaces and article checks are a result of their own: studies()
+        leave_out_files(what, result.provenance);
+        out = result_of(std::move(result));
     });
     return out;
 }
@@ -121,21 +122,22 @@ RunResult studies(const Experiment& experiment, int threads, const std::string& 
         what.experiment.regions.clear();
         what.experiment.assertions.clear();
         const Engine engine = settled({.threads = serial ? 1 : threads, .isa = isa, .samplers = samplers});
-        Measured all = collect(what, look(what, engine), {}, engine, monitor, {"crescent sweep", true});
+        Measured result = collect(what, look(what, engine), {}, engine, monitor, {"crescent sweep", true});
         monitor.check();
-        leave_out_files(what, all.provenance);
-        out = result_of(std::move(all));
+        leave_out_files(what, result.provenance);
+        out = result_of(std::move(result));
     });
     return out;
 }
 
 /// The largest of what the parts with the first seed state of each reference: parts differ in the films that they
 /// compare the references by.
-void merge_references(const std::vector<ReferenceQuality>& part, std::vector<ReferenceQuality>& all) {
-    if (all.empty()) all = part;
-    for (std::size_t k = 0; k < std::min(all.size(), part.size()); ++k) {
-        all[k].error_share = std::max(all[k].error_share, part[k].error_share);
-        all[k].max_relative_rmse_change = std::max(all[k].max_relative_rmse_change, part[k].max_relative_rmse_change);
+void merge_references(const std::vector<ReferenceQuality>& part, std::vector<ReferenceQuality>& references) {
+    if (references.empty()) references = part;
+    for (std::size_t k = 0; k < std::min(references.size(), part.size()); ++k) {
+        references[k].error_share = std::max(references[k].error_share, part[k].error_share);
+        references[k].max_relative_rmse_change =
+            std::max(references[k].max_relative_rmse_change, part[k].max_relative_rmse_change);
     }
 }
 
@@ -143,29 +145,29 @@ void merge_references(const std::vector<ReferenceQuality>& part, std::vector<Ref
 /// their metrics.json. Its bytes are those of one run of all. Throws InputError if a row is missing.
 RunResult assemble(
     const Experiment& experiment, int first, int last, const Names& parts, const std::string& measured_once) {
-    const Work here;
+    const Work work_scope;
     const RunPlan what = plan(experiment, {first, last});
     Measured out;
     out.experiment = what.experiment;
     Metrics& metrics = out.metrics;
-    MetricsFile once = read_metrics(measured_once, "the studies of the sweep");
-    out.evidence = std::move(once.evidence);
-    metrics.furnaces = std::move(once.metrics.furnaces);
-    metrics.geometry_pixels = once.metrics.geometry_pixels;
-    metrics.shape_pixels = once.metrics.shape_pixels;
+    MetricsFile studies = read_metrics(measured_once, "the studies of the sweep");
+    out.evidence = std::move(studies.evidence);
+    metrics.furnaces = std::move(studies.metrics.furnaces);
+    metrics.geometry_pixels = studies.metrics.geometry_pixels;
+    metrics.shape_pixels = studies.metrics.shape_pixels;
     std::map<std::tuple<std::string, std::uint64_t, double, std::uint32_t>, RunMetrics> rows;
     const auto key_of = [](const RunKey& key) { return std::tuple(key.arm, key.n, key.s, key.seed); };
     for (const std::string& text : parts) {
         MetricsFile part = read_metrics(text, "a part of the sweep");
-        const bool begins = part.provenance.seeds.front() == what.seeds.front();
+        const bool is_first = part.provenance.seeds.front() == what.seeds.front();
         std::set<std::string> films;
         for (RunMetrics& run : part.metrics.runs) {
             films.insert(to_string(run.key));
             rows[key_of(run.key)] = std::move(run);
         }
         for (auto& [name, hash] : part.metrics.film_hashes)
-            if (begins || !films.contains(name)) metrics.film_hashes[name] = hash;
-        if (begins) merge_references(part.metrics.references, metrics.references);
+            if (is_first || !films.contains(name)) metrics.film_hashes[name] = hash;
+        if (is_first) merge_references(part.metrics.references, metrics.references);
     }
     for (const Job& job : what.jobs)
         for (const std::uint64_t n : job.n) {

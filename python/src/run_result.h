@@ -50,11 +50,11 @@ inline ReferenceList reference_list(const std::vector<ReferenceFilm>& films, nb:
 /// Copies the planes of reference_list().
 inline void restore_references(const nb::list& from, std::vector<ReferenceFilm>& to) {
     for (const nb::handle entry : from) {
-        const nb::tuple at = nb::cast<nb::tuple>(entry);
+        const nb::tuple fields = nb::cast<nb::tuple>(entry);
         ReferenceFilm& film = to.emplace_back();
-        film.s = nb::cast<double>(at[0]);
+        film.s = nb::cast<double>(fields[0]);
         for (const auto& [name, values] : reference_planes)
-            restore_plane(nb::cast<nb::dict>(at[1]), name, values, film);
+            restore_plane(nb::cast<nb::dict>(fields[1]), name, values, film);
     }
 }
 

@@ -10,13 +10,13 @@ namespace {
 
 double component(const Vec3d& v, std::size_t j) { return j == 0 ? v.x : j == 1 ? v.y : v.z; }
 
-/// One value a run, at(run, column), repeated over its rows.
-template <class At>
-Table per_run(const char* name, const SceneRows& scene, std::size_t rows, std::vector<std::size_t> of_row, At&& at) {
+/// One value a run, value_at(run, column), repeated over its rows.
+template <class At> Table per_run(
+    const char* name, const SceneRows& scene, std::size_t rows, std::vector<std::size_t> of_row, At&& value_at) {
     Table out(name, rows, std::move(of_row));
     for (std::size_t j = 0; j < out.columns(); ++j) {
         double* to = out.column(j);
-        for (std::size_t r = 0; r < scene.runs.size(); ++r) to = std::fill_n(to, scene.runs[r].rows, at(r, j));
+        for (std::size_t r = 0; r < scene.runs.size(); ++r) to = std::fill_n(to, scene.runs[r].rows, value_at(r, j));
     }
     return out;
 }

@@ -18,7 +18,7 @@ void look_around(PolledMonitor& monitor, Raised& raised, const nb::object& progr
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
         if (progress.is_none() || monitor.stop) return;
         const PolledMonitor::State state = monitor.state();
-        call_python(progress, state.what, state.done, state.total);
+        call_python(progress, state.what, state.progress, state.total);
     } catch (...) { raised.keep(); }
 }
 
@@ -41,7 +41,7 @@ void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress,
     };
     if (on_this_thread) {
         {
-            const Work here(&monitor);
+            const Work work_scope(&monitor);
             guarded();
         }
         look_around(monitor, raised, progress);
@@ -49,21 +49,21 @@ void watched(PolledMonitor& monitor, Raised& raised, const nb::object& progress,
         return raised.throw_again();
     }
     std::mutex lock;
-    std::condition_variable over;
-    bool done = false;
+    std::condition_variable end_signal;
+    bool is_done = false;
     {
-        const Work here(&monitor);
+        const Work work_scope(&monitor);
         std::thread worker([&] {
             guarded();
             const std::lock_guard guard(lock);
-            done = true;
-            over.notify_one();
+            is_done = true;
+            end_signal.notify_one();
         });
         std::unique_lock guard(lock);
-        while (!over.wait_for(guard, std::chrono::milliseconds(50), [&] { return done; })) {
+        while (!end_signal.wait_for(guard, std::chrono::milliseconds(50), [&] { return is_done; })) {
             guard.unlock();
             {
-                const Locked held;
+                const Locked python_lock;
                 look_around(monitor, raised, progress);
             }
             guard.lock();

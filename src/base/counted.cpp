@@ -8,9 +8,9 @@ namespace crescent {
 std::string counted(std::size_t count, std::string_view thing) {
     std::string out = std::to_string(count) + " ";
     while (!thing.empty()) {
-        const std::size_t open = std::min(thing.find('['), thing.size());
-        out += thing.substr(0, open);
-        thing.remove_prefix(open);
+        const std::size_t bracket = std::min(thing.find('['), thing.size());
+        out += thing.substr(0, bracket);
+        thing.remove_prefix(bracket);
         const std::size_t close = thing.find(']');
         if (close == thing.npos) return out += thing;
         const std::string_view forms = thing.substr(1, close - 1);

@@ -18,7 +18,7 @@ std::string join(const std::vector<Diagnostic>& diagnostics) {
     std::string text;
     for (const Diagnostic& c : diagnostics) {
         if (!text.empty()) text += '\n';
-        const std::string place = printable(to_string(c.at));
+        const std::string place = printable(to_string(c.location));
         text += place.empty() ? c.message : place + ": " + c.message;
     }
     return text;
@@ -32,9 +32,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
         std::size_t diagonal = row[0];
         row[0] = i + 1;
         for (std::size_t j = 0; j < b.size(); ++j) {
-            const bool same =
+            const bool is_equal =
                 std::tolower(static_cast<unsigned char>(a[i])) == std::tolower(static_cast<unsigned char>(b[j]));
-            const std::size_t best = std::min({row[j] + 1, row[j + 1] + 1, diagonal + (same ? 0 : 1)});
+            const std::size_t best = std::min({row[j] + 1, row[j + 1] + 1, diagonal + (is_equal ? 0 : 1)});
             diagonal = row[j + 1];
             row[j + 1] = best;
         }
@@ -50,7 +50,7 @@ std::string to_string(const SourceLocation& place) {
 }
 
 InputError::InputError(std::vector<Diagnostic> diagnostics)
-    : std::invalid_argument(join(diagnostics)), all_(std::move(diagnostics)) {}
+    : std::invalid_argument(join(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
 OutputError not_built(std::string_view part) {
     return OutputError(fmt::format("{} is not built yet: ./build-all in the folder of the sources builds it", part));

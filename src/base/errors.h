@@ -24,7 +24,7 @@ std::string to_string(const SourceLocation& place);
 struct Diagnostic {
     /// Mistakes for which a front end knows a remedy in its own terms.
     enum class Kind { other, unknown_name, misspelt_name, box_off_image };
-    SourceLocation at;
+    SourceLocation location;
     std::string message;
     Kind kind = Kind::other;
     std::string path{};  // of the key or the table in an experiment
@@ -38,10 +38,10 @@ public:
     InputError(const SourceLocation& place, const std::string& message)
         : InputError(std::vector<Diagnostic>{{place, message}}) {}
     /// In file order; at least one.
-    const std::vector<Diagnostic>& diagnostics() const { return all_; }
+    const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
 
 private:
-    std::vector<Diagnostic> all_;
+    std::vector<Diagnostic> diagnostics_;
 };
 
 /// A file of images has no layer of this name, or several.

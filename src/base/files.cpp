@@ -97,11 +97,11 @@ bool is_mounted(const fs::path& path) {
 bool sync(const fs::path& path) {
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
     if (file < 0) return false;
-    const bool good = fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP;
+    const bool is_good = fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP;
     const int why = errno;
     close(file);
     errno = why;
-    return good;
+    return is_good;
 }
 
 std::string text_of(const fs::path& path) {
@@ -125,8 +125,8 @@ std::vector<std::string> entries(const fs::path& folder) {
     return out;
 }
 
-bool contains(const std::vector<std::string>& names, const std::string& one) {
-    return std::find(names.begin(), names.end(), one) != names.end();
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 bool any_below(const std::vector<std::string>& names, const fs::path& folder) {
     return std::any_of(
@@ -187,8 +187,9 @@ std::set<fs::path>& locked_here() {
 bool must_stay(const fs::path& out, const fs::path& replacement) {
     struct stat s{};
     std::error_code none;
-    const fs::path here = fs::current_path(none);
-    if (std::mismatch(out.begin(), out.end(), here.begin(), here.end()).first == out.end()) return true;
+    const fs::path working_folder = fs::current_path(none);
+    if (std::mismatch(out.begin(), out.end(), working_folder.begin(), working_folder.end()).first == out.end())
+        return true;
 #ifdef __linux__
     for (const char* rights : {"system.posix_acl_access", "system.posix_acl_default"})
         if (getxattr(out.c_str(), rights, nullptr, 0) >= 0) return true;
@@ -201,10 +202,10 @@ bool must_stay(const fs::path& out, const fs::path& replacement) {
 
 /// Returns whether a folder can exist next to `out` from which names can be moved into it.
 bool can_be_next_to(const fs::path& out) {
-    struct stat s{}, above{};
+    struct stat s{}, parent_stat{};
     const fs::path parent = out.parent_path();
     const bool other_device =
-        stat(out.c_str(), &s) == 0 && stat(parent.c_str(), &above) == 0 && s.st_dev != above.st_dev;
+        stat(out.c_str(), &s) == 0 && stat(parent.c_str(), &parent_stat) == 0 && s.st_dev != parent_stat.st_dev;
     return out.has_filename() && out.filename().string().size() < 240 && !is_mounted(out) && !other_device &&
         access(parent.c_str(), W_OK) == 0;
 }
@@ -212,8 +213,8 @@ bool can_be_next_to(const fs::path& out) {
 /// Returns the absolute path, with links followed as far as the path exists.
 fs::path resolved(const fs::path& path) {
     std::error_code error;
-    const fs::path whole = fs::weakly_canonical(fs::absolute(path), error);
-    return error ? fs::absolute(path) : whole;
+    const fs::path canonical = fs::weakly_canonical(fs::absolute(path), error);
+    return error ? fs::absolute(path) : canonical;
 }
 
 }  // namespace
@@ -223,7 +224,7 @@ PublishingFaults& publishing_faults() {
     return faults;
 }
 
-Staging::Staging(const std::string& folder, std::string kind) : shown_(folder), kind_(std::move(kind)) {
+Staging::Staging(const std::string& folder, std::string kind) : users_path_(folder), kind_(std::move(kind)) {
     std::error_code error;
     out_ = resolved(folder);
     if (!out_.has_filename()) out_ = out_.parent_path();
@@ -231,11 +232,11 @@ Staging::Staging(const std::string& folder, std::string kind) : shown_(folder), 
     out_ = resolved(out_);
     if (error || (is_there(out_) && !is_folder(out_)))
         fail("cannot make the folder", folder, error ? error.message() : "something else has that name");
-    const fs::path inside = out_ / ".crescent-work";
-    if (is_folder(inside)) complete(inside);  // of a run for which OUT was a mount point
+    const fs::path inner_folder = out_ / ".crescent-work";
+    if (is_folder(inner_folder)) complete(inner_folder);  // of a run for which OUT was a mount point
     lock_.reset();
-    complete(
-        can_be_next_to(out_) ? out_.parent_path() / fmt::format(".{}.crescent", out_.filename().string()) : inside);
+    complete(can_be_next_to(out_) ? out_.parent_path() / fmt::format(".{}.crescent", out_.filename().string())
+                                  : inner_folder);
     if (!make_folders(work_ / "new") || !make_folders(work_ / "scratch"))
         fail("cannot write in", folder, std::strerror(errno));
 }
@@ -246,7 +247,7 @@ void Staging::complete(const Path& work) {
     if (work_.parent_path() == out_) make_folders(out_);
     for (int tries = 0; (mkdir(work_.c_str(), 0700) != 0 && errno != EEXIST) || !take_lock(); ++tries)
         if (const int why = errno; !is_folder(work_) || tries > 100)
-            fail("cannot write in", shown_, std::strerror(why));
+            fail("cannot write in", users_path_, std::strerror(why));
     if (read_moving(work_).folder != 0) finish();
     if (read_moving(work_).folder != 0)
         fail("cannot clear", work_.string(), "it has earlier outputs, or files next to them");
@@ -257,28 +258,28 @@ void Staging::complete(const Path& work) {
 bool Staging::take_lock() {
     const fs::path path = work_ / "lock";
     const std::lock_guard one_at_a_time(lock_mutex);
-    const FolderInUse in_use(fmt::format(
-        "{} is in use by another run; wait for it{}", shown_, kind_ == "outputs" ? " or choose another --out" : ""));
+    const FolderInUse in_use(fmt::format("{} is in use by another run; wait for it{}", users_path_,
+        kind_ == "outputs" ? " or choose another --out" : ""));
     if (locked_here().contains(work_)) throw in_use;
     const std::vector<std::string> present = entries(work_);
-    const bool fresh = present.empty() || present == std::vector<std::string>{"lock"};
+    const bool is_fresh = present.empty() || present == std::vector<std::string>{"lock"};
     struct stat s{};
     if (lstat(work_.c_str(), &s) != 0) return false;
-    if (!S_ISDIR(s.st_mode) || s.st_uid != geteuid() || (!fresh && text_of(path) != lock_text))
-        fail("cannot write in", shown_,
+    if (!S_ISDIR(s.st_mode) || s.st_uid != geteuid() || (!is_fresh && text_of(path) != lock_text))
+        fail("cannot write in", users_path_,
             fmt::format(
                 "{} is not a folder of this user's runs; move it away or choose another --out", work_.string()));
     const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (file < 0 && errno == ENOENT) return false;
-    if (file < 0) fail("cannot write in", shown_, std::strerror(errno));
-    struct flock whole{};
-    whole.l_type = F_WRLCK;
-    whole.l_whence = SEEK_SET;
-    const bool taken = fcntl(file, F_SETLK, &whole) == 0 || (errno != EACCES && errno != EAGAIN);
-    struct stat now{};
-    if (!taken || fstat(file, &now) != 0 || now.st_ino != inode(path)) {
+    if (file < 0) fail("cannot write in", users_path_, std::strerror(errno));
+    struct flock file_lock{};
+    file_lock.l_type = F_WRLCK;
+    file_lock.l_whence = SEEK_SET;
+    const bool is_locked = fcntl(file, F_SETLK, &file_lock) == 0 || (errno != EACCES && errno != EAGAIN);
+    struct stat current{};
+    if (!is_locked || fstat(file, &current) != 0 || current.st_ino != inode(path)) {
         close(file);
-        if (!taken) throw in_use;
+        if (!is_locked) throw in_use;
         return false;
     }
     locked_here().insert(work_);
@@ -289,7 +290,7 @@ bool Staging::take_lock() {
         locked_here().erase(work);
     });
     if (pwrite(file, lock_text.data(), lock_text.size(), 0) != static_cast<ssize_t>(lock_text.size()))
-        fail("cannot write in", shown_, std::strerror(errno));
+        fail("cannot write in", users_path_, std::strerror(errno));
     return true;
 }
 
@@ -319,7 +320,7 @@ void Staging::expect(const std::vector<std::string>& names) const {
     for (const std::string& name : names)
         if (const std::string why = obstacle(name); !why.empty())
             throw OutputError(
-                fmt::format("cannot write {}/{}: {}; the earlier outputs there are unchanged", shown_, name, why));
+                fmt::format("cannot write {}/{}: {}; the earlier outputs there are unchanged", users_path_, name, why));
 }
 
 std::string Staging::path(const std::string& name) {
@@ -344,11 +345,11 @@ void Staging::adopt(const Names& names) {
     adopted_.insert(adopted_.end(), names.begin(), names.end());
     const fs::path list = out_ / list_of(kind_), new_list = work_ / "scratch" / "list";
     if (!is_there(out_)) return;
-    Names listed = names_in(list);
+    Names list_entries = names_in(list);
     for (const std::string& name : names)
-        if (stays_inside(name) && is_there(out_ / name) && !contains(listed, name)) listed.push_back(name);
+        if (stays_inside(name) && is_there(out_ / name) && !contains(list_entries, name)) list_entries.push_back(name);
     std::string text(list_head);
-    for (const std::string& name : listed) text += name + "\n";
+    for (const std::string& name : list_entries) text += name + "\n";
     if (!put(new_list, text) || !sync(new_list) || !move_to(new_list, list))
         fail("cannot write", list.string(), std::strerror(errno));
 }
@@ -368,15 +369,15 @@ void Staging::commit(ProgressMonitor& monitor) {
     std::set<fs::path> synced;
     for (const std::string& name : names) {
         if (!fs::is_symlink(fresh_outputs / name)) synced.insert(fresh_outputs / name);
-        for (fs::path up = fs::path(name).parent_path(); !up.empty(); up = up.parent_path())
-            synced.insert(fresh_outputs / up);
+        for (fs::path parent = fs::path(name).parent_path(); !parent.empty(); parent = parent.parent_path())
+            synced.insert(fresh_outputs / parent);
     }
     synced.insert(fresh_outputs);
     for (const fs::path& path : synced)
         if (!sync(path)) fail("cannot write", path.string(), std::strerror(errno));
     if (!put(work_ / "moving", fmt::format("{} {} end\n", inode(fresh_outputs), kind_)) || !sync(work_ / "moving") ||
         !sync(work_))
-        fail("cannot write in", shown_, std::strerror(errno));
+        fail("cannot write in", users_path_, std::strerror(errno));
     monitor.outputs = Outputs::moving;
     moving_ = true;
     try {
@@ -393,9 +394,9 @@ void Staging::commit(ProgressMonitor& monitor) {
 }
 
 /// Makes a second name in new/ for each file of the user next to the outputs; what cannot be linked is moved later.
-void Staging::link_users_files(const Path& below, const Names& ours) const {
-    for (const std::string& leaf : entries(out_ / below)) {
-        const fs::path name = below / leaf, to = work_ / "new" / name;
+void Staging::link_users_files(const Path& subfolder, const Names& ours) const {
+    for (const std::string& leaf : entries(out_ / subfolder)) {
+        const fs::path name = subfolder / leaf, to = work_ / "new" / name;
         if (out_ / name == work_) continue;
         if (is_folder(out_ / name)) {
             if (is_folder(to) || any_below(ours, name)) link_users_files(name, ours);
@@ -413,14 +414,14 @@ void Staging::finish() {
     const fs::path fresh_outputs = work_ / "new", old = work_ / "old";
     if (inode(fresh_outputs) == moving.folder && !publish_whole()) publish_one_by_one(moving.kind);
     sync(out_.parent_path());
-    for (const fs::path& before : {fresh_outputs, old}) {  // after an exchange, and after two renames
-        if (!is_there(before)) continue;
+    for (const fs::path& folder : {fresh_outputs, old}) {  // after an exchange, and after two renames
+        if (!is_there(folder)) continue;
         const std::string list = list_of(moving.kind);
-        Names ours = names_in(before / list);
+        Names ours = names_in(folder / list);
         ours.push_back(list);
-        clear(before, "", ours, others_lists(out_, list));
-        remove_entry(before / list);
-        remove_entry(before);
+        clear(folder, "", ours, others_lists(out_, list));
+        remove_entry(folder / list);
+        remove_entry(folder);
     }
     if (!is_there(fresh_outputs) && !is_there(old)) {
         remove_entry(work_ / "one-by-one");
@@ -442,35 +443,38 @@ bool Staging::publish_whole() const {
 void Staging::publish_one_by_one(const std::string& kind) {
     const fs::path fresh_outputs = work_ / "new", list = list_of(kind);
     if (!is_there(fresh_outputs / list)) return remove_tree(fresh_outputs);  // which was moved last
-    if (!put(work_ / "one-by-one", "")) fail("cannot write in", shown_, std::strerror(errno));
-    const Names before = names_in(out_ / list), now = names_in(fresh_outputs / list), others = others_lists(out_, list);
+    if (!put(work_ / "one-by-one", "")) fail("cannot write in", users_path_, std::strerror(errno));
+    const Names old_names = names_in(out_ / list), new_names = names_in(fresh_outputs / list),
+                others = others_lists(out_, list);
     const auto bring = [&](const std::string& name) {
         expect({name});
-        const bool users = is_there(out_ / name) && name != list && !contains(before, name) && !contains(others, name);
-        if (make_folders((out_ / name).parent_path()) && (!users || keep_aside(out_ / name, name)) &&
+        const bool is_users_file =
+            is_there(out_ / name) && name != list && !contains(old_names, name) && !contains(others, name);
+        if (make_folders((out_ / name).parent_path()) && (!is_users_file || keep_aside(out_ / name, name)) &&
             move_to(fresh_outputs / name, out_ / name))
             return;
         const int why = errno;
-        if ((now.empty() || name == now.front()) && remove_entry(work_ / "moving"))
+        if ((new_names.empty() || name == new_names.front()) && remove_entry(work_ / "moving"))
             moving_ = false;  // nothing has changed
         errno = why;
         fail("cannot write", (out_ / name).string(), std::strerror(errno));
     };
-    for (const std::string& name : now)
+    for (const std::string& name : new_names)
         if (is_there(fresh_outputs / name)) bring(name);
-    for (const std::string& removed : before)
-        if (!contains(now, removed) && is_there(out_ / removed) && obstacle(removed).empty() &&
-            remove_entry(out_ / removed))
-            for (fs::path up = fs::path(removed).parent_path(); !up.empty() && ::rmdir((out_ / up).c_str()) == 0;)
-                up = up.parent_path();
+    for (const std::string& old_name : old_names)
+        if (!contains(new_names, old_name) && is_there(out_ / old_name) && obstacle(old_name).empty() &&
+            remove_entry(out_ / old_name))
+            for (fs::path parent = fs::path(old_name).parent_path();
+                !parent.empty() && ::rmdir((out_ / parent).c_str()) == 0;)
+                parent = parent.parent_path();
     bring(list);
     remove_tree(fresh_outputs);  // only second names of the user's files are left
 }
 
 /// Removes our outputs from the former OUT and moves the rest into OUT. The list of our outputs is kept until the end.
-void Staging::clear(const Path& old, const Path& below, const Names& ours, const Names& others) {
-    for (const std::string& leaf : entries(old / below)) {
-        const fs::path name = below / leaf, from = old / name, to = out_ / name;
+void Staging::clear(const Path& old, const Path& subfolder, const Names& ours, const Names& others) {
+    for (const std::string& leaf : entries(old / subfolder)) {
+        const fs::path name = subfolder / leaf, from = old / name, to = out_ / name;
         if (name == ours.back()) continue;
         if (is_folder(from) && (is_folder(to) || any_below(ours, name))) {
             clear(old, name, ours, others);
@@ -486,7 +490,7 @@ bool Staging::keep_aside(const Path& from, const Path& name) {
     const Path backup = free_backup_name(out_ / name);
     if (!move_to(from, backup)) return false;
     warnings_.push_back(fmt::format(
-        "{}/{} was not written by crescent: it is now {}", shown_, name.string(), backup.filename().string()));
+        "{}/{} was not written by crescent: it is now {}", users_path_, name.string(), backup.filename().string()));
     return true;
 }
 

@@ -68,17 +68,17 @@ private:
     void complete(const Path& work);
     bool take_lock();
     std::string obstacle(const std::string& name) const;
-    void link_users_files(const Path& below, const Names& ours) const;
+    void link_users_files(const Path& subfolder, const Names& ours) const;
     void finish();
     bool publish_whole() const;
     void publish_one_by_one(const std::string& kind);
-    void clear(const Path& old, const Path& below, const Names& ours, const Names& others);
+    void clear(const Path& old, const Path& subfolder, const Names& ours, const Names& others);
     bool keep_aside(const Path& from, const Path& name);
 
-    std::string shown_, kind_;    // shown_: the OUT of the caller
-    Path out_, work_;             // absolute, links followed
-    std::shared_ptr<void> lock_;  // its destruction removes an empty work folder
-    bool moving_ = false;         // outputs are being moved to their places
+    std::string users_path_, kind_;  // users_path_: the OUT of the caller
+    Path out_, work_;                // absolute, links followed
+    std::shared_ptr<void> lock_;     // its destruction removes an empty work folder
+    bool moving_ = false;            // outputs are being moved to their places
     Names names_, warnings_, adopted_;
 };
 

@@ -14,7 +14,7 @@
 namespace crescent {
 
 std::string host_program() {
-    if (const char* given = std::getenv("CRESCENT_PLUGIN_HOST")) return given;
+    if (const char* path = std::getenv("CRESCENT_PLUGIN_HOST")) return path;
     Dl_info ours{};
     if (dladdr(reinterpret_cast<const void*>(&host_program), &ours) == 0) return host_program_name;
 #ifdef __linux__

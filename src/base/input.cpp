@@ -36,11 +36,11 @@ std::string read_input(const std::string& path, std::size_t limit, std::string_v
     if (!std::filesystem::is_regular_file(path, ignored)) limit = std::min(limit, std::size_t{64} << 20);
     std::string text;
     while (file && text.size() <= limit) {
-        const std::size_t before = text.size();
-        text.resize(std::min(limit + 1, before + (std::size_t{1} << 20)));
+        const std::size_t offset = text.size();
+        text.resize(std::min(limit + 1, offset + (std::size_t{1} << 20)));
         errno = 0;
-        file.read(text.data() + before, static_cast<std::streamsize>(text.size() - before));
-        text.resize(before + static_cast<std::size_t>(file.gcount()));
+        file.read(text.data() + offset, static_cast<std::streamsize>(text.size() - offset));
+        text.resize(offset + static_cast<std::size_t>(file.gcount()));
     }
     if (file.bad())
         throw InputError({path, 0, 0}, fmt::format("expected {} that can be read: {}", what, std::strerror(errno)));

@@ -68,55 +68,55 @@ double field(const std::string& text, const std::string& name) {
 
 /// Returns what a group may still allocate: its limit minus its use; cached files are freed when needed.
 std::uint64_t left_in(const std::string& group, const char* limit_file, const char* used_file, const char* cached) {
-    double limit = 0, used = 0;
+    double limit = 0, use = 0;
     if (!number_in(group + limit_file, limit) || limit >= 9e18) return no_limit;
-    number_in(group + used_file, used);
-    const double busy = std::max(0.0, used - field(contents_of(group + "/memory.stat"), cached));
+    number_in(group + used_file, use);
+    const double busy = std::max(0.0, use - field(contents_of(group + "/memory.stat"), cached));
     return static_cast<std::uint64_t>(std::max(0.0, limit - busy));
 }
 
 std::uint64_t left_in_address_space() {
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return no_limit;
-    const auto used = static_cast<std::uint64_t>(1024 * field(contents_of("/proc/self/status"), "VmSize:"));
-    return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
+    const auto size = static_cast<std::uint64_t>(1024 * field(contents_of("/proc/self/status"), "VmSize:"));
+    return limit.rlim_cur > size ? limit.rlim_cur - size : 0;
 }
 
 }  // namespace
 
 double granted_processors(const std::string& root, const std::string& own_group) {
-    double least = 0;
+    double processors = 0;
     const auto grant = [&](double quota, double period) {
-        if (quota > 0 && period > 0 && (least == 0 || quota / period < least)) least = quota / period;
+        if (quota > 0 && period > 0 && (processors == 0 || quota / period < processors)) processors = quota / period;
     };
     for (const std::string& group : groups(root, own_group, "cpu")) {
-        std::istringstream both(contents_of(group + "/cpu.max"));  // "200000 100000" or "max 100000"
+        std::istringstream quota_file(contents_of(group + "/cpu.max"));  // "200000 100000" or "max 100000"
         double quota = 0, period = 0;
-        if (both >> quota >> period) grant(quota, period);
+        if (quota_file >> quota >> period) grant(quota, period);
         if (number_in(group + "/cpu.cfs_quota_us", quota) && number_in(group + "/cpu.cfs_period_us", period))
             grant(quota, period);
     }
-    return least;
+    return processors;
 }
 
 std::uint64_t granted_memory(const std::string& root, const std::string& own_group) {
-    std::uint64_t least = no_limit;
+    std::uint64_t memory = no_limit;
     for (const std::string& group : groups(root, own_group, "memory")) {
-        least = std::min(least, left_in(group, "/memory.max", "/memory.current", "inactive_file"));
-        least =
-            std::min(least, left_in(group, "/memory.limit_in_bytes", "/memory.usage_in_bytes", "total_inactive_file"));
+        memory = std::min(memory, left_in(group, "/memory.max", "/memory.current", "inactive_file"));
+        memory =
+            std::min(memory, left_in(group, "/memory.limit_in_bytes", "/memory.usage_in_bytes", "total_inactive_file"));
     }
-    return least;
+    return memory;
 }
 
 int usable_threads() {
     int count = static_cast<int>(std::thread::hardware_concurrency());  // 0 if unknown
 #ifdef __linux__
-    cpu_set_t mine;
-    if (sched_getaffinity(0, sizeof mine, &mine) == 0) count = CPU_COUNT(&mine);
+    cpu_set_t cpus;
+    if (sched_getaffinity(0, sizeof cpus, &cpus) == 0) count = CPU_COUNT(&cpus);
 #endif
-    if (const double granted = granted_processors("", "/proc/self/cgroup"); granted > 0)
-        count = std::min(count, static_cast<int>(std::min(4096.0, std::ceil(granted))));
+    if (const double processors = granted_processors("", "/proc/self/cgroup"); processors > 0)
+        count = std::min(count, static_cast<int>(std::min(4096.0, std::ceil(processors))));
     return std::max(count, 1);
 }
 
@@ -154,15 +154,15 @@ std::string shared_file(const std::string& name) {
 }
 
 Usage usage() {
-    rusage used{};
-    getrusage(RUSAGE_SELF, &used);
+    rusage resources{};
+    getrusage(RUSAGE_SELF, &resources);
     Usage out;
 #ifdef __APPLE__
-    out.peak_memory = static_cast<std::uint64_t>(used.ru_maxrss);
+    out.peak_memory = static_cast<std::uint64_t>(resources.ru_maxrss);
 #else
-    out.peak_memory = static_cast<std::uint64_t>(used.ru_maxrss) * 1024;
+    out.peak_memory = static_cast<std::uint64_t>(resources.ru_maxrss) * 1024;
 #endif
-    for (const timeval& t : {used.ru_utime, used.ru_stime})
+    for (const timeval& t : {resources.ru_utime, resources.ru_stime})
         out.cpu_seconds += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
     return out;
 }

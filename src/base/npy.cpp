@@ -55,18 +55,18 @@ void read_type(const Dictionary& in, NpyHeader& out) {
 }
 
 void read_shape(const Dictionary& in, NpyHeader& out) {
-    std::string_view rest = in.value("shape");
+    std::string_view remainder = in.value("shape");
     const auto fail = [&] { in.fail("a 'shape' of whole numbers such as (540, 960, 3)"); };
-    if (!rest.starts_with('(')) fail();
-    rest = Dictionary::without_blanks(rest.substr(1));
-    while (!rest.starts_with(')')) {
+    if (!remainder.starts_with('(')) fail();
+    remainder = Dictionary::without_blanks(remainder.substr(1));
+    while (!remainder.starts_with(')')) {
         std::uint64_t n = 0;
-        const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), n);
+        const auto [end, error] = std::from_chars(remainder.data(), remainder.data() + remainder.size(), n);
         if (error != std::errc{} || out.shape.size() == 32) fail();
         out.shape.push_back(n);
-        rest = Dictionary::without_blanks(rest.substr(static_cast<std::size_t>(end - rest.data())));
-        if (rest.starts_with(',')) rest = Dictionary::without_blanks(rest.substr(1));
-        else if (!rest.starts_with(')')) fail();
+        remainder = Dictionary::without_blanks(remainder.substr(static_cast<std::size_t>(end - remainder.data())));
+        if (remainder.starts_with(',')) remainder = Dictionary::without_blanks(remainder.substr(1));
+        else if (!remainder.starts_with(')')) fail();
     }
 }
 

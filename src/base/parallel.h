@@ -42,11 +42,11 @@ inline int threads_here() { return oneapi::tbb::this_task_arena::max_concurrency
 template <class T> class PerThread {
 public:
     /// `make` may be called by several threads at once; local() is the calling thread's own.
-    explicit PerThread(std::function<T()> make) : all_(std::move(make)) {}
-    T& local() { return all_.local(); }
+    explicit PerThread(std::function<T()> make) : values_(std::move(make)) {}
+    T& local() { return values_.local(); }
 
 private:
-    oneapi::tbb::enumerable_thread_specific<T> all_;
+    oneapi::tbb::enumerable_thread_specific<T> values_;
 };
 
 using Mutex = std::mutex;
@@ -75,11 +75,11 @@ inline int threads_here() { return 1; }
 template <class T> class PerThread {
 public:
     /// local() is the result of `make`.
-    explicit PerThread(const std::function<T()>& make) : one_(make()) {}
-    T& local() { return one_; }
+    explicit PerThread(const std::function<T()>& make) : value_(make()) {}
+    T& local() { return value_; }
 
 private:
-    T one_;
+    T value_;
 };
 
 /// With one thread there is nothing to lock.

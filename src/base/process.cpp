@@ -71,14 +71,14 @@ struct Stream {
     void make_pipe(bool they_read) {
         int ends[2];
 #ifdef __linux__
-        const bool made = ::pipe2(ends, O_CLOEXEC) == 0;
-        if (made) ::fcntl(ends[0], F_SETPIPE_SZ, 1 << 20);  // blocks of rows in fewer turns; may be refused
+        const bool has_pipe = ::pipe2(ends, O_CLOEXEC) == 0;
+        if (has_pipe) ::fcntl(ends[0], F_SETPIPE_SZ, 1 << 20);  // blocks of rows in fewer turns; may be refused
 #else
-        const bool made = ::pipe(ends) == 0;
+        const bool has_pipe = ::pipe(ends) == 0;
         for (const int end : ends)
-            if (made) ::fcntl(end, F_SETFD, FD_CLOEXEC);
+            if (has_pipe) ::fcntl(end, F_SETFD, FD_CLOEXEC);
 #endif
-        if (!made) throw OutputError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+        if (!has_pipe) throw OutputError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
         theirs = ends[they_read ? 0 : 1];
         ours = ends[they_read ? 1 : 0];
     }
@@ -90,14 +90,14 @@ public:
     AllBlocked() {
         sigset_t signals;
         sigfillset(&signals);
-        pthread_sigmask(SIG_SETMASK, &signals, &before_);
+        pthread_sigmask(SIG_SETMASK, &signals, &old_mask_);
     }
-    ~AllBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+    ~AllBlocked() { pthread_sigmask(SIG_SETMASK, &old_mask_, nullptr); }
     AllBlocked(const AllBlocked&) = delete;
     AllBlocked& operator=(const AllBlocked&) = delete;
 
 private:
-    sigset_t before_;
+    sigset_t old_mask_;
 };
 
 std::atomic<bool> adopting{false};
@@ -196,11 +196,11 @@ void print_piece(const std::string& label, std::string piece) {
     const char* term = std::getenv("TERM");
     const bool clear = ::isatty(STDERR_FILENO) && term && std::string_view(term) != "dumb";
     const std::string text = fmt::format("{}{}: {}\n", clear ? "\r\x1b[K" : "", label, printable(piece));
-    for (std::size_t written = 0; written < text.size();) {
-        const ssize_t n = ::write(STDERR_FILENO, text.data() + written, text.size() - written);
+    for (std::size_t offset = 0; offset < text.size();) {
+        const ssize_t n = ::write(STDERR_FILENO, text.data() + offset, text.size() - offset);
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0) return;  // reporting is no longer possible
-        written += static_cast<std::size_t>(n);
+        offset += static_cast<std::size_t>(n);
     }
 }
 
@@ -264,17 +264,17 @@ Process::Ready Process::wait_ready(bool to_write, bool to_read, int milliseconds
 }
 
 ssize_t Process::write(std::string_view bytes) const {
-    sigset_t pipe, before, earlier, pending;
+    sigset_t pipe, old_mask, earlier, pending;
     sigemptyset(&pipe);
     sigaddset(&pipe, SIGPIPE);
     sigpending(&earlier);
-    pthread_sigmask(SIG_BLOCK, &pipe, &before);
+    pthread_sigmask(SIG_BLOCK, &pipe, &old_mask);
     const ssize_t n = ::write(in_, bytes.data(), bytes.size());
     const int why = errno;
     sigpending(&pending);
     int ours = 0;
     if (n < 0 && !sigismember(&earlier, SIGPIPE) && sigismember(&pending, SIGPIPE)) sigwait(&pipe, &ours);
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    pthread_sigmask(SIG_SETMASK, &old_mask, nullptr);
     errno = why;
     return n;
 }
@@ -282,14 +282,14 @@ ssize_t Process::write(std::string_view bytes) const {
 ssize_t Process::read(char* to, std::size_t limit) const { return ::read(out_, to, limit); }
 
 std::optional<ProcessEnd> Process::ended(int milliseconds) {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);
     while (!ended_ && pid_ > 0) {
-        siginfo_t about{};
-        const int waited = ::waitid(P_PID, static_cast<id_t>(pid_), &about, WEXITED | WNOHANG | WNOWAIT);
-        if (waited != 0 && errno != EINTR) ended_ = ProcessEnd{};  // reaped elsewhere: the exit status is unknown
-        if (waited == 0 && about.si_pid == pid_)
-            ended_ = about.si_code == CLD_EXITED ? ProcessEnd{about.si_status, 0} : ProcessEnd{0, about.si_status};
-        if (ended_ || std::chrono::steady_clock::now() >= until) break;
+        siginfo_t info{};
+        const int result = ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT);
+        if (result != 0 && errno != EINTR) ended_ = ProcessEnd{};  // reaped elsewhere: the exit status is unknown
+        if (result == 0 && info.si_pid == pid_)
+            ended_ = info.si_code == CLD_EXITED ? ProcessEnd{info.si_status, 0} : ProcessEnd{0, info.si_status};
+        if (ended_ || std::chrono::steady_clock::now() >= deadline) break;
         wait_ready(false, false, 1);
     }
     if (ended_) pass_on_stderr();

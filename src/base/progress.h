@@ -51,10 +51,10 @@ public:
 /// Keeps what the work reports until it is queried. All members may be called from any thread.
 class PolledMonitor : public ProgressMonitor {
 public:
-    /// The current stage ("seed 3 of 16"), and its progress: `done` of `total` units of its own.
+    /// The current stage ("seed 3 of 16"), and `progress` of `total` units of its own.
     struct State {
         std::string what;
-        double done = 0, total = 0;
+        double progress = 0, total = 0;
     };
 
     /// Returns the current state; from any thread.
@@ -80,7 +80,7 @@ public:
     }
     void advance(double units) override {
         const Guard guard(lock_);
-        state_.done += units;
+        state_.progress += units;
     }
     void skip(double units) override {
         const Guard guard(lock_);

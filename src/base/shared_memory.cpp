@@ -20,22 +20,22 @@ SharedMemory::SharedMemory(std::size_t bytes) : bytes_(bytes) {
     file_ = ::shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL, 0600);
     ::shm_unlink(name.c_str());
 #endif
-    void* at = MAP_FAILED;
+    void* address = MAP_FAILED;
     if (file_ >= 0 && ::ftruncate(file_, static_cast<off_t>(bytes)) == 0)
-        at = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
-    if (at == MAP_FAILED) {
+        address = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
+    if (address == MAP_FAILED) {
         const int why = errno;
         if (file_ >= 0) ::close(file_);
         throw OutputError(fmt::format("no shared memory: {}", std::strerror(why)));
     }
-    at_ = static_cast<std::byte*>(at);
+    address_ = static_cast<std::byte*>(address);
 #ifdef __linux__
     ::fcntl(file_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL);
 #endif
 }
 
 SharedMemory::~SharedMemory() {
-    ::munmap(at_, bytes_);
+    ::munmap(address_, bytes_);
     ::close(file_);
 }
 

@@ -14,12 +14,12 @@ public:
     SharedMemory(const SharedMemory&) = delete;
     SharedMemory& operator=(const SharedMemory&) = delete;
     int file() const { return file_; }
-    std::byte* at() const { return at_; }
+    std::byte* at() const { return address_; }
 
 private:
     std::size_t bytes_;
     int file_ = -1;
-    std::byte* at_ = nullptr;
+    std::byte* address_ = nullptr;
 };
 
 }  // namespace crescent

@@ -27,9 +27,9 @@ std::size_t sequence_length(std::string_view text, std::size_t start) {
     if (length < 3) return length;
     const unsigned second = byte(start + 1);
     const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-    const bool outside = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
+    const bool is_outside = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
     const bool noncharacter = first == 0xEF && second == 0xBF && byte(start + 2) >= 0xBE;  // U+FFFE, U+FFFF
-    return overlong || outside || noncharacter ? 0 : length;
+    return overlong || is_outside || noncharacter ? 0 : length;
 }
 
 bool forbidden(char c) {
@@ -60,8 +60,8 @@ std::string escape(std::string_view text) {
             ++i;
             continue;
         }
-        const std::string_view named = reference(text[i]);
-        out += named.empty() ? text.substr(i, length) : named;
+        const std::string_view name = reference(text[i]);
+        out += name.empty() ? text.substr(i, length) : name;
         i += length;
     }
     return out;
@@ -107,13 +107,13 @@ std::string shell_word(std::string_view word) {
 // ---- Formats the suggestion of nearest(); words of more than 64 characters get none.
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& valid) {
-    const std::string near = word.size() > 64 ? "" : nearest(word, valid);
-    return near.empty() || near == word ? "" : "; did you mean '" + near + "'?";
+    const std::string suggestion = word.size() > 64 ? "" : nearest(word, valid);
+    return suggestion.empty() || suggestion == word ? "" : "; did you mean '" + suggestion + "'?";
 }
 
 std::string expected_one_of(const std::vector<std::string>& valid, std::string_view word) {
     std::string words;
-    for (const std::string& one : valid) words += (words.empty() ? "" : ", ") + one;
+    for (const std::string& name : valid) words += (words.empty() ? "" : ", ") + name;
     return "expected one of " + words + ", not '" + printable(std::string(word)) + "'" + did_you_mean(word, valid);
 }
 

@@ -59,9 +59,9 @@ public:
         const mode_t mask = umask(0);
         umask(mask);
         const mode_t mode = stat(path_.c_str(), &s) == 0 ? s.st_mode & 07777 : 0666 & ~mask;
-        const bool done = fchmod(file_, mode) == 0 && fsync(file_) == 0 &&
+        const bool is_complete = fchmod(file_, mode) == 0 && fsync(file_) == 0 &&
             (name_.empty() ? name_and_rename() : rename(name_.c_str(), path_.c_str()) == 0);
-        if (!done) fail(path_, std::strerror(errno));
+        if (!is_complete) fail(path_, std::strerror(errno));
         name_.clear();
     }
 
@@ -112,13 +112,13 @@ void claim_outputs(const std::vector<OutputFile>& outputs, const std::vector<std
     };
     for (const OutputFile& output : outputs) {
         if (output.path.empty() || is_stream(output.path)) continue;
-        const std::string named = fmt::format("{} {}", output.flag, printable(output.path));
+        const std::string name = fmt::format("{} {}", output.flag, printable(output.path));
         for (const std::string& input : inputs)
             if (std::filesystem::equivalent(output.path, input, unknown))
-                throw InputError({named, 0, 0}, "expected another file than one that is read");
+                throw InputError({name, 0, 0}, "expected another file than one that is read");
         for (const OutputFile& other : outputs)
             if (&other < &output && !other.path.empty() && is_same(output.path, other.path))
-                throw InputError({named, 0, 0}, fmt::format("expected another file than that of {}", other.flag));
+                throw InputError({name, 0, 0}, fmt::format("expected another file than that of {}", other.flag));
         can_write(output.path);
     }
 }

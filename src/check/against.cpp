@@ -29,33 +29,33 @@ constexpr std::uint32_t streams_of_b = 1u << 15;  // B draws from streams that A
 
 /// The settings of the comparison at one w_o.
 struct AgainstPlan {
-    CheckBudget budget, own;  // of both samplers together; of each alone
+    CheckBudget budget, single_budget;  // of both samplers together; of each alone
     Levels levels;
     std::uint32_t seed = 1;
     bool expect_same = false;
 };
 
-AgainstPlan plan_of(const TestSettings& settings, bool limited, bool expect_same, std::size_t cases) {
+AgainstPlan plan_of(const TestSettings& settings, bool is_limited, bool expect_same, std::size_t cases) {
     AgainstPlan out;
     // The budget includes a check of each sampler alone, with one look. A sampler that fails that check is not ranked.
     TestSettings shared = settings;
-    if (limited) shared.questions /= 2;
-    out.budget = budget_of(shared, limited, cases);
-    out.own = CheckBudget::limited();
-    if (limited && !settings.full) out.own.looks = 1;
+    if (is_limited) shared.questions /= 2;
+    out.budget = budget_of(shared, is_limited, cases);
+    out.single_budget = CheckBudget::limited();
+    if (is_limited && !settings.full) out.single_budget.looks = 1;
     out.seed = settings.seed;
     out.expect_same = expect_same;
-    constexpr double of_both_and_each = 3 * static_cast<double>(Family::families);
-    out.levels = levels_of(settings.alpha, static_cast<double>(cases) * of_both_and_each);
+    constexpr double families = 3 * static_cast<double>(Family::families);
+    out.levels = levels_of(settings.alpha, static_cast<double>(cases) * families);
     return out;
 }
 
 class Comparison {
 public:
-    Comparison(const Side& one, const Side& other, const AgainstPlan& plan)
+    Comparison(const Side& side_a, const Side& side_b, const AgainstPlan& plan)
         : plan_(plan),
-          a_{one.check_case, *other.check_case.adapter, key_of(one)},
-          b_{other.check_case, *one.check_case.adapter, key_of(other)} {}
+          a_{side_a.check_case, *side_b.check_case.adapter, key_of(side_a)},
+          b_{side_b.check_case, *side_a.check_case.adapter, key_of(side_b)} {}
 
     std::vector<Verdict> run() {
         std::vector<Verdict> out;
@@ -73,15 +73,15 @@ public:
             return out;
         }
         note_distribution(out[0]);
-        const CheckAt own_a = own(a_), own_b = own(b_);
+        const CheckAt check_a = check_alone(a_), check_b = check_alone(b_);
         const AgainstCase c{.a = a_,
             .b = b_,
             .common = *common_,
             .draws_a = draws_a_,
             .draws_b = draws_b_,
-            .own_a = own_a,
-            .own_b = own_b,
-            .of_f = plan_.budget.of_f(),
+            .check_a = check_a,
+            .check_b = check_b,
+            .f_draws = plan_.budget.f_draws(),
             .levels = plan_.levels,
             .expect_same = plan_.expect_same};
         compare_f(c, out[1]);
@@ -94,7 +94,7 @@ private:
     AgainstSide a_, b_;
     std::optional<CommonPlan> common_;
     SamplerDraws draws_a_, draws_b_;
-    std::map<Family, Least> least_;
+    std::map<Family, Least> least_answers_;
     std::vector<Finding> findings_;  // significant at both stages
 
     StreamKey key_of(const Side& side) const {
@@ -104,50 +104,51 @@ private:
         return key;
     }
 
-    CheckAt own(const AgainstSide& side) const {
+    CheckAt check_alone(const AgainstSide& side) const {
         return check_sampler_at(*side.check_case.adapter, 0, side.check_case.wo,
-            {side.check_case.light, side.key.place, plan_.levels}, plan_.own, plan_.seed);
+            {side.check_case.light, side.key.place, plan_.levels}, plan_.single_budget, plan_.seed);
     }
 
     AgainstEvidence evidence() const { return {a_, *common_, draws_a_, draws_b_}; }
 
     void find_differences() {
-        for (int look = 0; look < plan_.budget.looks && findings_.empty(); ++look) {
-            const Look to = plan_.budget.look(look);
-            draw_on(a_, *common_, to, plan_.budget.of_f(), draws_a_);
-            draw_on(b_, *common_, to, plan_.budget.of_f(), draws_b_);
+        for (int look_index = 0; look_index < plan_.budget.looks && findings_.empty(); ++look_index) {
+            const Look target = plan_.budget.look(look_index);
+            draw_on(a_, *common_, target, plan_.budget.f_draws(), draws_a_);
+            draw_on(b_, *common_, target, plan_.budget.f_draws(), draws_b_);
             const AgainstEvidence first = evidence();
-            least_ = least_by_family<Answer>(first.tests());
-            const double level = level_at(plan_.levels, look, plan_.budget.looks);
-            const std::vector<Least> suspects = suspects_of(first.tests(), least_, level, draws_a_.total.independent);
-            if (!suspects.empty()) confirm(suspects, to, look);
+            least_answers_ = least_by_family<Answer>(first.tests());
+            const double level = level_at(plan_.levels, look_index, plan_.budget.looks);
+            const std::vector<Least> suspects =
+                suspects_of(first.tests(), least_answers_, level, draws_a_.total.independent);
+            if (!suspects.empty()) confirm(suspects, target, look_index);
         }
     }
 
-    void confirm(const std::vector<Least>& suspects, const Look& to, int look) {
+    void confirm(const std::vector<Least>& suspects, const Look& target, int look_index) {
         const Look largest_look = plan_.budget.look(plan_.budget.looks - 1).divided_by(4);
-        const Look more = {
-            0, std::max(to.independent, largest_look.independent), std::max(to.scrambled, largest_look.scrambled)};
+        const Look retest_target = {0, std::max(target.independent, largest_look.independent),
+            std::max(target.scrambled, largest_look.scrambled)};
         AgainstSide a = a_, b = b_;
-        a.key.stage = b.key.stage = static_cast<std::uint8_t>(2 + look);
+        a.key.stage = b.key.stage = static_cast<std::uint8_t>(2 + look_index);
         SamplerDraws draws_a, draws_b;
-        draw_on(a, *common_, more, 0, draws_a);
-        draw_on(b, *common_, more, 0, draws_b);
+        draw_on(a, *common_, retest_target, 0, draws_a);
+        draw_on(b, *common_, retest_target, 0, draws_b);
         const AgainstEvidence second(a, *common_, draws_a, draws_b);
         for (const Least& suspect : suspects) {
-            const Answer again = retest(second.tests(), suspect.answer);
-            if (again.p < plan_.levels.second) findings_.push_back({suspect.answer, again, suspect.members});
+            const Answer answer = retest(second.tests(), suspect.answer);
+            if (answer.p < plan_.levels.second) findings_.push_back({suspect.answer, answer, suspect.members});
         }
     }
 
     static double unusable(const SamplerDraws& draws) { return static_cast<double>(draws.total.checks.unusable); }
 
     void note_unusable(Verdict& v) const {
-        const bool of_a = unusable(draws_a_) > 0;
+        const bool is_a = unusable(draws_a_) > 0;
         v.state = State::inconclusive;
         v.sentences = {{"unusable draws",
-            fmt::format("{:g} draws of {} cannot be used: {} is not valid here.", unusable(of_a ? draws_a_ : draws_b_),
-                of_a ? "A" : "B", of_a ? "A" : "B")}};
+            fmt::format("{:g} draws of {} cannot be used: {} is not valid here.", unusable(is_a ? draws_a_ : draws_b_),
+                is_a ? "A" : "B", is_a ? "A" : "B")}};
         v.next_step = "A valid sampler; `crescent check` of it alone shows more.";
     }
 
@@ -157,8 +158,8 @@ private:
     std::string clearest_difference() const {
         if (const auto place = largest_difference(common_->plan, shares_of_draws(draws_b_.total), draws_a_.total))
             return fmt::format("Of the draws of A {} are {}, of those of B {}.",
-                share_text(place->drawn, place->drawn_error), region_text(place->rect, traits()),
-                share_text(place->claimed, place->claimed_error));
+                share_text(place->drawn_share, place->drawn_error), region_text(place->rect, traits()),
+                share_text(place->claimed_share, place->claimed_error));
         const Finding& clearest = *std::ranges::min_element(
             findings_, {}, [](const Finding& f) { return std::fabs(f.second.sd / f.second.difference); });
         return sentence_of(clearest.second);
@@ -166,10 +167,10 @@ private:
 
     std::string sentence_of(const Answer& a) const {
         // The right side is the mean of both; replicates are compared with each other.
-        const bool by_sets =
+        const bool uses_sets =
             a.family == Family::mass_sets || a.family == Family::slope_sets || a.family == Family::centre_sets;
         const double pooled = draws_a_.total.independent + draws_b_.total.independent;
-        const double per_visible = by_sets ? 1 : pooled / draws_b_.total.independent;
+        const double per_visible = uses_sets ? 1 : pooled / draws_b_.total.independent;
         const double difference = a.difference * per_visible, half = half_width_95 * a.sd * per_visible;
         const double h = common_->plan.largest_h();
         switch (a.family) {
@@ -196,23 +197,24 @@ private:
     }
 
     void note_distribution(Verdict& v) const {
-        const bool differ = !findings_.empty();
-        v.same = !differ;
-        v.evidence["same"] = !differ;
+        const bool has_difference = !findings_.empty();
+        v.same = !has_difference;
+        v.evidence["same"] = !has_difference;
         const Observations &a = draws_a_.total, &b = draws_b_.total;
         v.evidence["draws"] = {a.independent + a.scrambled, b.independent + b.scrambled};
-        for (const auto& [family, least] : least_) v.evidence["p"][std::string(info(family).name)] = least.p();
+        for (const auto& [family, entry] : least_answers_) v.evidence["p"][std::string(info(family).name)] = entry.p();
         for (const Finding& f : findings_)
             v.evidence["tests"][std::string(info(f.first.family).name)] = {{"difference", f.second.difference},
                 {"sd", f.second.sd}, {"p_first", f.first.p}, {"p_again", f.second.p}};
-        v.state = differ && plan_.expect_same ? State::wrong : State::right;
-        if (differ) {
+        v.state = has_difference && plan_.expect_same ? State::wrong : State::right;
+        if (has_difference) {
             v.sentences = {{"different distributions", "They draw from different distributions."},
                 {"clearest difference", clearest_difference()}};
             return;
         }
-        const AgainstEvidence both = evidence();
-        const DifferenceSizes sizes = sizes_between(both.evidence(), plan_.levels.first, common_->drawn);
+        const AgainstEvidence pooled_evidence = evidence();
+        const DifferenceSizes sizes =
+            sizes_between(pooled_evidence.evidence(), plan_.levels.first, common_->directions);
         v.sentences = {{"no difference", "No difference between their distributions was found."}};
         if (!sizes.part) return;
         v.evidence["would_have_found"]["part"] = *sizes.part;
@@ -237,20 +239,20 @@ std::vector<std::size_t> by_direction(std::span<const CheckCase> check_cases) {
 
 /// The three verdicts at a w_o at which a sampler failed to answer.
 std::vector<Verdict> failed_verdicts(const CheckCase& a, const CheckCase& b, const SamplerError& fault) {
-    const bool slow = dynamic_cast<const SamplerTimeout*>(&fault);
+    const bool is_slow = dynamic_cast<const SamplerTimeout*>(&fault);
     std::vector<Verdict> out;
     for (const char* name : compared_by) {
         Verdict v;
         v.arm = a.arm + " against " + b.arm;
         v.check_case = a.text();
         v.name = name;
-        v.state = slow ? State::inconclusive : State::error;
-        v.sentences = {{slow ? "too slow" : "failure",
-            slow ? std::string(fault.what())
+        v.state = is_slow ? State::inconclusive : State::error;
+        v.sentences = {{is_slow ? "too slow" : "failure",
+            is_slow ? std::string(fault.what())
                 : dynamic_cast<const SamplerExited*>(&fault)
                 ? fmt::format("It could not be evaluated: {}.", fault.what())
                 : fmt::format("The sampler failed: {}.", fault.what())}};
-        if (slow) v.next.kind = NextStep::Kind::more_time;
+        if (is_slow) v.next.kind = NextStep::Kind::more_time;
         out.push_back(std::move(v));
     }
     return out;
@@ -259,11 +261,11 @@ std::vector<Verdict> failed_verdicts(const CheckCase& a, const CheckCase& b, con
 /// The cases with adapters that name the side in each error. A sampler keeps one adapter for all of its cases.
 std::vector<CheckCase> named_cases(std::span<const CheckCase> check_cases, const std::string& side) {
     std::vector<CheckCase> out(check_cases.begin(), check_cases.end());
-    std::map<std::shared_ptr<const SamplerAdapter>, std::shared_ptr<const SamplerAdapter>> named;
+    std::map<std::shared_ptr<const SamplerAdapter>, std::shared_ptr<const SamplerAdapter>> named_adapters;
     for (CheckCase& t : out) {
-        std::shared_ptr<const SamplerAdapter>& one = named[t.adapter];
-        if (!one) one = named_side(t.adapter, side);
-        t.adapter = one;
+        std::shared_ptr<const SamplerAdapter>& adapter = named_adapters[t.adapter];
+        if (!adapter) adapter = named_side(t.adapter, side);
+        t.adapter = adapter;
     }
     return out;
 }
@@ -281,24 +283,26 @@ CheckResult compare_samplers(std::span<const CheckCase> a, std::span<const Check
     bool expect_same, ProgressMonitor& monitor) {
     monitor.begin("two samplers", static_cast<double>(a.size()));
     std::vector<std::vector<Verdict>> verdicts(a.size());
-    const std::vector<CheckCase> of_a = named_cases(a, "A"), of_b = named_cases(b, "B");
-    const auto either = [&](auto is) { return std::ranges::any_of(a, is) || std::ranges::any_of(b, is); };
-    const bool serial = either([](const CheckCase& t) { return t.adapter->serial(); });
-    const bool limited = either([](const CheckCase& t) { return t.adapter->limited(); });
-    const AgainstPlan plan = plan_of(settings, limited, expect_same, a.size());
+    const std::vector<CheckCase> cases_a = named_cases(a, "A"), cases_b = named_cases(b, "B");
+    const auto either = [&](auto predicate) {
+        return std::ranges::any_of(a, predicate) || std::ranges::any_of(b, predicate);
+    };
+    const bool is_serial = either([](const CheckCase& t) { return t.adapter->serial(); });
+    const bool is_limited = either([](const CheckCase& t) { return t.adapter->limited(); });
+    const AgainstPlan plan = plan_of(settings, is_limited, expect_same, a.size());
     PerDirectionCache cache_a, cache_b;  // used by one thread if either sampler is serial
-    const auto one = [&](std::size_t i) {
+    const auto compare = [&](std::size_t i) {
         monitor.check();
         try {
             const auto stream = static_cast<std::uint32_t>(i);
-            const Side side_a = cache_a.of(of_a[i], stream), side_b = cache_b.of(of_b[i], stream + streams_of_b);
+            const Side side_a = cache_a.of(cases_a[i], stream), side_b = cache_b.of(cases_b[i], stream + streams_of_b);
             verdicts[i] = Comparison(side_a, side_b, plan).run();
         } catch (const SamplerError& fault) { verdicts[i] = failed_verdicts(a[i], b[i], fault); }
         monitor.advance(1);
     };
-    if (serial)
-        for (std::size_t i : by_direction(a)) one(i);
-    else parallel_for(std::size_t{0}, a.size(), one);
+    if (is_serial)
+        for (std::size_t i : by_direction(a)) compare(i);
+    else parallel_for(std::size_t{0}, a.size(), compare);
     CheckResult out;
     out.alpha = settings.alpha;
     for (std::size_t i = 0; i < a.size(); ++i) {

@@ -23,7 +23,7 @@ public:
         : source(*side.check_case.adapter, technique, side.check_case.wo, side.check_case.light),
           other_(side.other, 0, side.check_case.wo, side.check_case.light) {}
     Source source;
-    Source& below() { return source.has_density() || !other_.has_density() ? source : other_; }
+    Source& lower_source() { return source.has_density() || !other_.has_density() ? source : other_; }
 
 private:
     Source other_;
@@ -57,7 +57,7 @@ Pilots draw_pilots(const AgainstSide& side, const CheckBudget& budget) {
                 if (has_direction(d)) {
                     const Vec3d w = normalize(d.wi);
                     double p = d.pdf;
-                    evaluate_below(technique.below(), {&w, 1}, {&p, 1});
+                    evaluate_below(technique.lower_source(), {&w, 1}, {&p, 1});
                     if (is_direction(source.traits, d, p)) out.directions.push_back(w);
                 } else if (d.delta > 0 && d.delta <= 1) {
                     deltas.add(d, source.channels() == 3 ? d.weights : Vec3d{weight, weight, weight});
@@ -91,46 +91,47 @@ double mean_log_q(const Tree& tree) {
 }  // namespace
 
 CommonPlan common_plan(const AgainstSide& a, const AgainstSide& b, const CheckBudget& budget) {
-    Pilots of_a = draw_pilots(a, budget), of_b = draw_pilots(b, budget);
-    std::vector<Vec3d> delta_directions, drawn;
-    for (const Pilots* pilots : {&of_a, &of_b})
+    Pilots pilots_a = draw_pilots(a, budget), pilots_b = draw_pilots(b, budget);
+    std::vector<Vec3d> delta_directions, directions;
+    for (const Pilots* pilots : {&pilots_a, &pilots_b})
         for (const DeltaPart& part : pilots->deltas)
             if (delta_index(delta_directions, part.wi) == delta_directions.size()) delta_directions.push_back(part.wi);
     for (std::size_t i = 0; i < most_directions; ++i)
-        for (const Pilots* pilots : {&of_a, &of_b})
-            if (i < pilots->directions.size()) drawn.push_back(pilots->directions[i]);
+        for (const Pilots* pilots : {&pilots_a, &pilots_b})
+            if (i < pilots->directions.size()) directions.push_back(pilots->directions[i]);
     std::vector<DensityPoint> points;
-    const double count = static_cast<double>(of_a.directions.size() + of_b.directions.size());
+    const double count = static_cast<double>(pilots_a.directions.size() + pilots_b.directions.size());
     Vec3d middle{};
-    for (const Pilots* pilots : {&of_a, &of_b})
+    for (const Pilots* pilots : {&pilots_a, &pilots_b})
         for (Vec3d w : pilots->directions) {
             points.push_back({to_chart(w), 1});
             middle = middle + w * (1 / count);
         }
-    const double step = std::max(step_of_directions(of_a.directions), step_of_directions(of_b.directions));
+    const double step = std::max(step_of_directions(pilots_a.directions), step_of_directions(pilots_b.directions));
     Source source(*a.check_case.adapter, 0, a.check_case.wo, a.check_case.light);
     source.by_draws = true;
     StreamKey key = a.key;
     key.purpose = Purpose::tree;
-    const std::uint32_t draws = of_a.draws + of_b.draws;
+    const std::uint32_t draws = pilots_a.draws + pilots_b.draws;
     Plan plan{.tree = Tree(source, std::move(points), draws, {}, step, budget, key),
         .step = step,
         .median_log_p = 0,
         .middle = middle,
-        .usual = {},
+        .mean_weight = {},
         .per_step = {0, 0, step, step, step, step},
         .estimates = true,
-        .drawn = static_cast<std::uint32_t>(count),
-        .of = draws};
+        .direction_count = static_cast<std::uint32_t>(count),
+        .draw_count = draws};
     plan.median_log_p = mean_log_q(plan.tree);
     return {.plan = std::move(plan),
         .delta_directions = std::move(delta_directions),
-        .delta_a = std::move(of_a.deltas),
-        .delta_b = std::move(of_b.deltas),
-        .drawn = std::move(drawn)};
+        .delta_a = std::move(pilots_a.deltas),
+        .delta_b = std::move(pilots_b.deltas),
+        .directions = std::move(directions)};
 }
 
-void draw_on(const AgainstSide& side, const CommonPlan& common, const Look& to, std::uint32_t of_f, SamplerDraws& d) {
+void draw_on(
+    const AgainstSide& side, const CommonPlan& common, const Look& target, std::uint32_t f_draws, SamplerDraws& d) {
     d.techniques.resize(static_cast<std::size_t>(side.check_case.adapter->techniques()));
     d.total = {};
     d.delta_draws.assign(common.delta_directions.size(), 0);
@@ -139,11 +140,11 @@ void draw_on(const AgainstSide& side, const CommonPlan& common, const Look& to, 
         StreamKey key = side.key;
         key.technique = static_cast<std::uint8_t>(t);
         Observations& observations = d.techniques[t];
-        observe_draws(technique.source, technique.below(), common.plan, to, of_f, key, observations);
+        observe_draws(technique.source, technique.lower_source(), common.plan, target, f_draws, key, observations);
         add_technique(observations, d.total);
         for (const DeltaPart& part : observations.deltas.parts(observations.independent))
             if (const std::size_t k = delta_index(common.delta_directions, part.wi); k < d.delta_draws.size())
-                d.delta_draws[k] += static_cast<double>(part.drawn);
+                d.delta_draws[k] += static_cast<double>(part.draws);
     }
 }
 
@@ -192,9 +193,9 @@ VisitAll AgainstEvidence::tests() const {
 void AgainstEvidence::test_delta_shares(const Visit& visit) const {
     const double n = a_.total.independent, pooled = n + b_.total.independent;
     for (std::size_t k = 0; k < a_.delta_draws.size(); ++k) {
-        const double share = (a_.delta_draws[k] + b_.delta_draws[k]) / pooled, drawn = a_.delta_draws[k] / n;
-        const NodeSums part{.drawn = drawn, .claimed = share, .second = share},
-            remainder{.drawn = 1 - drawn, .claimed = 1 - share, .second = 1 - share};
+        const double share = (a_.delta_draws[k] + b_.delta_draws[k]) / pooled, draw_share = a_.delta_draws[k] / n;
+        const NodeSums part{.draw_mean = draw_share, .claim = share, .second = share},
+            remainder{.draw_mean = 1 - draw_share, .claim = 1 - share, .second = 1 - share};
         const NodeSplit s = split_between(part, remainder, n, detection_floor * std::min(share, 1 - share), pooled);
         visit({.family = Family::delta_share,
             .member = static_cast<int>(k),

@@ -25,7 +25,7 @@ struct CommonPlan {
     Plan plan;
     std::vector<Vec3d> delta_directions;      // of both samplers
     std::vector<DeltaPart> delta_a, delta_b;  // of the pilot draws
-    std::vector<Vec3d> drawn;                 // some pilot directions of each sampler, in turn
+    std::vector<Vec3d> directions;            // some pilot directions of each sampler, in turn
 };
 
 /// Built from pilot draws of each sampler.
@@ -38,8 +38,9 @@ struct SamplerDraws {
     std::vector<double> delta_draws;  // number of draws towards each delta direction
 };
 
-/// Adds draws up to a look, and weights of the first `of_f`.
-void draw_on(const AgainstSide& side, const CommonPlan& common, const Look& to, std::uint32_t of_f, SamplerDraws& d);
+/// Adds draws up to a look, and weights of the first `f_draws`.
+void draw_on(
+    const AgainstSide& side, const CommonPlan& common, const Look& target, std::uint32_t f_draws, SamplerDraws& d);
 
 /// The right side if both have one distribution: the mean over the draws of both.
 Integrals pooled_integrals(const Plan& plan, const Observations& a, const Observations& b);
@@ -80,8 +81,8 @@ struct AgainstCase {
     const AgainstSide &a, &b;
     const CommonPlan& common;
     const SamplerDraws &draws_a, &draws_b;
-    const CheckAt &own_a, &own_b;  // checks of each sampler alone
-    std::uint32_t of_f = 0;
+    const CheckAt &check_a, &check_b;  // checks of each sampler alone
+    std::uint32_t f_draws = 0;
     Levels levels;
     bool expect_same = false;
 };
@@ -89,7 +90,7 @@ struct AgainstCase {
 /// Tests whether f is the same at directions over the whole sphere and at draws of either sampler, and q times weight
 /// of each delta part.
 void compare_f(const AgainstCase& c, Verdict& v);
-/// Var X_A / Var X_B if both estimate the same integral and neither sampler is wrong. of_f: result of compare_f().
-void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v);
+/// Var X_A / Var X_B if both estimate the same integral and neither sampler is wrong. f_verdict: result of compare_f().
+void compare_variances(const AgainstCase& c, const Verdict& f_verdict, Verdict& v);
 
 }  // namespace crescent::check

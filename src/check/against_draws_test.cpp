@@ -93,7 +93,9 @@ TEST(DrawsOfTwo, HaveTheVarianceOfADifferenceOfShares) {
 
 TEST(DrawsOfTwo, StatedSizesFallWithTheDraws) {
     const Two two({}, {});
-    const auto sizes_at = [&](double level) { return sizes_between(two.both->evidence(), level, two.common->drawn); };
+    const auto sizes_at = [&](double level) {
+        return sizes_between(two.both->evidence(), level, two.common->directions);
+    };
     const DifferenceSizes sizes = sizes_at(1e-5);
     ASSERT_TRUE(sizes.part && sizes.distance);
     // A mean of 2^15 draws on both sides: sd of x 1/2, at 1e-5 and 98 % about 4.7 + 2 of its errors.

@@ -37,7 +37,7 @@ SharedF f_of_both(const AgainstCase& c) {
         Source source(a, 0, c.a.check_case.wo, c.a.check_case.light);
         StreamKey key = c.a.key;
         key.purpose = Purpose::draws;
-        std::vector<PrimarySample> u(source.available(key, c.of_f));
+        std::vector<PrimarySample> u(source.available(key, c.f_draws));
         std::vector<Draw> draws(u.size());
         source.draw(key, 0, u, draws);
         for (const Draw& d : draws)
@@ -46,15 +46,15 @@ SharedF f_of_both(const AgainstCase& c) {
                 out.a.push_back(*d.f);
             }
     } else {
-        const bool whole = std::ranges::any_of(c.common.drawn, [](Vec3d w) { return w.z < 0; });
+        const bool has_lower_draws = std::ranges::any_of(c.common.directions, [](Vec3d w) { return w.z < 0; });
         StreamKey key = c.a.key;
         key.purpose = Purpose::pairs;
         Stream stream(key);
         for (int i = 0; i < 256; ++i) {
             const double t = 0.98 * stream.number();
-            out.wi.push_back(from_chart({whole && i % 2 ? 2 - t : t, two_pi * stream.number()}));
+            out.wi.push_back(from_chart({has_lower_draws && i % 2 ? 2 - t : t, two_pi * stream.number()}));
         }
-        out.wi.insert(out.wi.end(), c.common.drawn.begin(), c.common.drawn.end());
+        out.wi.insert(out.wi.end(), c.common.directions.begin(), c.common.directions.end());
     }
     std::vector<Pair> directions;
     for (Vec3d w : out.wi) directions.push_back({c.a.check_case.wo, w});
@@ -78,19 +78,20 @@ double moved_f(const SamplerAdapter& s, Vec3d wo, Vec3d wi, double f) {
     return 2 * largest;
 }
 
-void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
+void note_difference(const AgainstCase& c, const SharedF& shared_f, Verdict& v) {
     const SamplerAdapter &a = *c.a.check_case.adapter, &b = *c.b.check_case.adapter;
     std::size_t count = 0, worst = 0;
     double largest = 0, sum_a = 0, sum_b = 0;
-    for (std::size_t i = 0; i < both.wi.size(); ++i) {
-        const double fa = both.a[i], fb = both.b[i], difference = std::fabs(fa - fb),
+    for (std::size_t i = 0; i < shared_f.wi.size(); ++i) {
+        const double fa = shared_f.a[i], fb = shared_f.b[i], difference = std::fabs(fa - fb),
                      size = std::max(std::fabs(fa), std::fabs(fb));
         sum_a += fa;
         sum_b += fb;
         if (difference <= same_number * size + 1e-30) continue;
-        const double of_file = only_at_draws(a) ? 4 * ulp * size / std::max(std::fabs(both.wi[i].z), 1e-9)
-                                                : moved_f(a, c.a.check_case.wo, both.wi[i], fa);
-        if (difference <= same_number * size + of_file + moved_f(b, c.b.check_case.wo, both.wi[i], fb)) continue;
+        const double file_rounding = only_at_draws(a) ? 4 * ulp * size / std::max(std::fabs(shared_f.wi[i].z), 1e-9)
+                                                      : moved_f(a, c.a.check_case.wo, shared_f.wi[i], fa);
+        if (difference <= same_number * size + file_rounding + moved_f(b, c.b.check_case.wo, shared_f.wi[i], fb))
+            continue;
         ++count;
         if (difference / size > largest) {
             largest = difference / size;
@@ -99,21 +100,21 @@ void note_difference(const AgainstCase& c, const SharedF& both, Verdict& v) {
     }
     v.same = count == 0;
     v.evidence["same"] = *v.same;
-    v.evidence["directions"] = both.wi.size();
+    v.evidence["directions"] = shared_f.wi.size();
     v.evidence["differ"] = count;
     if (count == 0) {
         v.sentences = {{"same f",
             fmt::format(
-                "f is the same at {} directions{}.", both.wi.size(), only_at_draws(a) ? ", the draws of A" : "")}};
+                "f is the same at {} directions{}.", shared_f.wi.size(), only_at_draws(a) ? ", the draws of A" : "")}};
         return;
     }
-    const Vec3d w = both.wi[worst];
+    const Vec3d w = shared_f.wi[worst];
     v.evidence["largest_relative"] = largest;
     v.evidence["worst_wi"] = {w.x, w.y, w.z};
-    v.evidence["f"] = {both.a[worst], both.b[worst]};
+    v.evidence["f"] = {shared_f.a[worst], shared_f.b[worst]};
     v.sentences = {{"difference of f",
-        fmt::format("f differs at {} of {} directions, most at {}: {:.6g} and {:.6g}{}.", count, both.wi.size(),
-            direction_text(w), both.a[worst], both.b[worst],
+        fmt::format("f differs at {} of {} directions, most at {}: {:.6g} and {:.6g}{}.", count, shared_f.wi.size(),
+            direction_text(w), shared_f.a[worst], shared_f.b[worst],
             sum_b > 0 ? fmt::format("; the mean of f over them is {:.4g} times that of B", sum_a / sum_b) : "")}};
 }
 
@@ -186,7 +187,7 @@ struct WeightMoments {
         heavy = tail.heavy() || tail.open();
     }
     /// Whether the remaining variance is within the rounding of p.
-    bool none(double times) const { return std::sqrt(variance) <= times * same_number * std::fabs(mean); }
+    bool is_constant(double factor) const { return std::sqrt(variance) <= factor * same_number * std::fabs(mean); }
 };
 
 void skip(Verdict& v, std::string message) {
@@ -199,24 +200,24 @@ void note_ratio(Verdict& v, double ratio, double log_se, bool differ) {
     const double low = ratio * math::exp(-interval_95 * log_se), high = ratio * math::exp(interval_95 * log_se);
     v.evidence["ratio"] = ratio;
     v.evidence["interval"] = {low, high};
-    const bool alike = low > 1 - alike_variances && high < 1 + alike_variances;
-    const bool ranked = differ && !alike && std::fabs(ratio - 1) > alike_variances;
-    v.evidence["better"] = !ranked ? "none" : ratio > 1 ? "B" : "A";
+    const bool are_alike = low > 1 - alike_variances && high < 1 + alike_variances;
+    const bool is_ranked = differ && !are_alike && std::fabs(ratio - 1) > alike_variances;
+    v.evidence["better"] = !is_ranked ? "none" : ratio > 1 ? "B" : "A";
     v.sentences = {{"variance ratio",
         fmt::format("{}: the variance of A is {:.4g} times that of B (95 %: {:.4g} to {:.4g}).",
-            alike           ? "The variances are alike to 1 %"
-                : !ranked   ? "Neither is shown to be better here"
-                : ratio > 1 ? "B is better here"
-                            : "A is better here",
+            are_alike        ? "The variances are alike to 1 %"
+                : !is_ranked ? "Neither is shown to be better here"
+                : ratio > 1  ? "B is better here"
+                             : "A is better here",
             ratio, low, high)}};
 }
 
 /// Weights of fresh draws.
 std::vector<double> fresh_weights(const AgainstSide& side, const AgainstCase& c) {
-    AgainstSide again = side;
-    again.key.stage = 2;
+    AgainstSide fresh_side = side;
+    fresh_side.key.stage = 2;
     SamplerDraws draws;
-    draw_on(again, c.common, {0, c.of_f, 0}, c.of_f, draws);
+    draw_on(fresh_side, c.common, {0, c.f_draws, 0}, c.f_draws, draws);
     return draws.total.weights;
 }
 
@@ -239,15 +240,15 @@ void rank(const AgainstCase& c, const WeightMoments& a, const WeightMoments& b, 
             fmt::format("The means of their weights differ ({:.6g} and {:.6g}): variances of two integrals are not "
                         "ranked.",
                 a.mean, b.mean));
-    const bool none_a = a.none(1), none_b = b.none(1);
-    if (a.none(2) && b.none(2)) {
+    const bool is_constant_a = a.is_constant(1), is_constant_b = b.is_constant(1);
+    if (a.is_constant(2) && b.is_constant(2)) {
         v.evidence["better"] = "none";
         v.sentences = {{"no variance", "Neither has a variance: the weights of each are all alike."}};
-    } else if (none_a || none_b) {
-        v.evidence["better"] = none_a ? "A" : "B";
+    } else if (is_constant_a || is_constant_b) {
+        v.evidence["better"] = is_constant_a ? "A" : "B";
         v.sentences = {{"variance ratio",
             fmt::format("{} is better here: its weights are all alike; the variance of {} is {:.4g}.",
-                none_a ? "A" : "B", none_a ? "B" : "A", none_a ? b.variance : a.variance)}};
+                is_constant_a ? "A" : "B", is_constant_a ? "B" : "A", is_constant_a ? b.variance : a.variance)}};
     } else {
         note_ratio(v, a.variance / b.variance, math::hypot(a.variance_se / a.variance, b.variance_se / b.variance),
             differ(variances_p));
@@ -256,20 +257,20 @@ void rank(const AgainstCase& c, const WeightMoments& a, const WeightMoments& b, 
 
 /// Draws of A in twenty groups, reweighted to B by p_A / p_B: E_B[X_B^2] = E_A[X_A^2 p_A / p_B].
 struct ReweighedDraws {
-    static constexpr std::size_t groups = 20;
+    static constexpr std::size_t group_count = 20;
     struct Group {
         double n = 0, x = 0, square = 0, other = 0;
         double variance() const { return square / n - sqr(x / n); }
-        double of_other() const { return other / n - sqr(x / n); }
-        double log_ratio() const { return math::log(variance() / of_other()); }
+        double variance_of_other() const { return other / n - sqr(x / n); }
+        double log_ratio() const { return math::log(variance() / variance_of_other()); }
         bool varies() const {
-            const double least = 1e-9 * square / n;
-            return variance() > least && of_other() > least;
+            const double threshold = 1e-9 * square / n;
+            return variance() > threshold && variance_of_other() > threshold;
         }
     };
-    std::array<Group, groups> of{};
-    Group all{};
-    std::vector<double> x, others;
+    std::array<Group, group_count> groups{};
+    Group total{};
+    std::vector<double> x, other_squares;
     double lost = 0;  // draws with light where p of B is 0
 
     ReweighedDraws(const AgainstCase& c, int stage) {
@@ -278,36 +279,40 @@ struct ReweighedDraws {
         StreamKey key = c.a.key;
         key.purpose = Purpose::draws;
         key.stage = static_cast<std::uint8_t>(stage);
-        std::vector<PrimarySample> u(a.available(key, c.of_f));
+        std::vector<PrimarySample> u(a.available(key, c.f_draws));
         std::vector<Draw> draws(u.size());
         a.draw(key, 0, u, draws);
         for (std::size_t i = 0; i < draws.size(); ++i) {
             const Draw& d = draws[i];
-            const bool drawn = d.pdf > 0 && d.f && d.wi.z > 0;
-            x.push_back(drawn ? *d.f * d.wi.z / d.pdf * c.a.check_case.light(d.wi) : 0);
+            const bool is_drawn = d.pdf > 0 && d.f && d.wi.z > 0;
+            x.push_back(is_drawn ? *d.f * d.wi.z / d.pdf * c.a.check_case.light(d.wi) : 0);
             const double p = x[i] > 0 ? b.density(d.wi) : 0;
             lost += x[i] > 0 && !(p > 0);
-            others.push_back(p > 0 ? sqr(x[i]) * d.pdf / p : 0);
-            for (Group* g : {&of[i % groups], &all}) {
+            other_squares.push_back(p > 0 ? sqr(x[i]) * d.pdf / p : 0);
+            for (Group* g : {&groups[i % group_count], &total}) {
                 ++g->n;
                 g->x += x[i];
                 g->square += sqr(x[i]);
-                g->other += others[i];
+                g->other += other_squares[i];
             }
         }
     }
     /// Standard error of the log ratio by the jackknife (Quenouille 1956).
     double log_se() const {
         double square = 0;
-        for (const Group& g : of) {
-            const Group rest{
-                .n = all.n - g.n, .x = all.x - g.x, .square = all.square - g.square, .other = all.other - g.other};
-            square += sqr(rest.log_ratio() - all.log_ratio());
+        for (const Group& g : groups) {
+            const Group remainder{.n = total.n - g.n,
+                .x = total.x - g.x,
+                .square = total.square - g.square,
+                .other = total.other - g.other};
+            square += sqr(remainder.log_ratio() - total.log_ratio());
         }
-        return std::sqrt(square * (groups - 1) / groups);
+        return std::sqrt(square * (group_count - 1) / group_count);
     }
     double p() const {
-        return all.varies() ? student_p_of(std::fabs(all.log_ratio()), sqr(std::max(log_se(), 1e-9)), groups - 1) : 1;
+        return total.varies()
+            ? student_p_of(std::fabs(total.log_ratio()), sqr(std::max(log_se(), 1e-9)), group_count - 1)
+            : 1;
     }
 };
 
@@ -318,7 +323,7 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
     if (b.techniques() > 1)
         return skip(v, "f is known only at the draws of A: the variance of a pair of techniques does not follow.");
     const ReweighedDraws first(c, 1);
-    if (first.lost > 0 || WeightMoments(first.x).heavy || WeightMoments(first.others).heavy) {
+    if (first.lost > 0 || WeightMoments(first.x).heavy || WeightMoments(first.other_squares).heavy) {
         v.state = State::inconclusive;
         if (first.lost > 0)
             v.sentences = {{"support",
@@ -328,41 +333,41 @@ void over_draws_of_a(const AgainstCase& c, Verdict& v) {
         v.next.kind = NextStep::Kind::heavier_pdf;
         return;
     }
-    v.evidence["variance_a"] = first.all.variance();
-    v.evidence["variance_b"] = first.all.of_other();
-    if (!first.all.varies()) {
+    v.evidence["variance_a"] = first.total.variance();
+    v.evidence["variance_b"] = first.total.variance_of_other();
+    if (!first.total.varies()) {
         v.sentences = {{"variances",
-            fmt::format("The variances are {:.4g} and {:.4g}.", std::max(first.all.variance(), 0.0),
-                std::max(first.all.of_other(), 0.0))}};
+            fmt::format("The variances are {:.4g} and {:.4g}.", std::max(first.total.variance(), 0.0),
+                std::max(first.total.variance_of_other(), 0.0))}};
         return;
     }
-    note_ratio(v, math::exp(first.all.log_ratio()), first.log_se(),
+    note_ratio(v, math::exp(first.total.log_ratio()), first.log_se(),
         first.p() < c.levels.first && ReweighedDraws(c, 2).p() < c.levels.second);
     v.sentences.push_back({"method", "B's follows from the draws of A by p_A / p_B."});
 }
 
 /// Whether the check of the sampler alone prevents a variance ratio.
-bool is_wrong_itself(const CheckAt& of_sampler, const char* who, Verdict& v) {
-    static constexpr std::array<std::string_view, 6> counts = {
+bool is_wrong_itself(const CheckAt& check, const char* who, Verdict& v) {
+    static constexpr std::array<std::string_view, 6> blocking_verdicts = {
         "support", "normalised", "density", "identity", "mean", "valid"};
-    const auto look = [&](Family family) {
+    const auto blocks = [&](Family family) {
         const std::string_view name = info(family).verdict;
-        if (std::ranges::find(counts, name) == counts.end()) return false;
+        if (std::ranges::find(blocking_verdicts, name) == blocking_verdicts.end()) return false;
         skip(v,
             fmt::format("{} is wrong itself, by {}: the variance of a wrong sampler is not ranked. `crescent check` of "
                         "it alone shows more.",
                 who, name));
         return true;
     };
-    return std::ranges::any_of(of_sampler.findings, [&](const Finding& f) { return look(f.first.family); }) ||
-        std::ranges::any_of(of_sampler.small, [&](const SmallFault& f) { return look(f.family); });
+    return std::ranges::any_of(check.findings, [&](const Finding& f) { return blocks(f.first.family); }) ||
+        std::ranges::any_of(check.small, [&](const SmallFault& f) { return blocks(f.family); });
 }
 
 }  // namespace
 
-void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
+void compare_variances(const AgainstCase& c, const Verdict& f_verdict, Verdict& v) {
     const SamplerAdapter &a = *c.a.check_case.adapter, &b = *c.b.check_case.adapter;
-    if (!of_f.same.value_or(true)) return skip(v, "Their f differ: variances of two integrals are not ranked.");
+    if (!f_verdict.same.value_or(true)) return skip(v, "Their f differ: variances of two integrals are not ranked.");
     if (!a.has_drawn_f())
         return skip(v,
             a.can_draw() ? "There is no f, so f L cos / p has no variance."
@@ -373,18 +378,18 @@ void compare_variances(const AgainstCase& c, const Verdict& of_f, Verdict& v) {
             return skip(v,
                 fmt::format(
                     "{} has neither a pdf(w) nor a weight with its draws (weight=yes), so it has no variance.", who));
-    if (is_wrong_itself(c.own_a, "A", v) || is_wrong_itself(c.own_b, "B", v)) return;
+    if (is_wrong_itself(c.check_a, "A", v) || is_wrong_itself(c.check_b, "B", v)) return;
     if (!b.has_drawn_f()) return over_draws_of_a(c, v);
-    const WeightMoments of_a(c.draws_a.total.weights), of_b(c.draws_b.total.weights);
-    v.evidence["variance_a"] = of_a.variance;
-    v.evidence["variance_b"] = of_b.variance;
-    for (const auto& [m, who] : {std::pair(&of_a, "A"), {&of_b, "B"}})
+    const WeightMoments moments_a(c.draws_a.total.weights), moments_b(c.draws_b.total.weights);
+    v.evidence["variance_a"] = moments_a.variance;
+    v.evidence["variance_b"] = moments_b.variance;
+    for (const auto& [m, who] : {std::pair(&moments_a, "A"), {&moments_b, "B"}})
         if (m->heavy) {
             v.state = State::inconclusive;
             v.sentences.push_back({"heavy tail", fmt::format("{} has a heavy tail: its variance is not known.", who)});
             v.next.kind = NextStep::Kind::heavier_pdf;
         }
-    if (v.state == State::right) rank(c, of_a, of_b, v);
+    if (v.state == State::right) rank(c, moments_a, moments_b, v);
 }
 
 }  // namespace crescent::check

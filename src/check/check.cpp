@@ -40,16 +40,16 @@ void note_first_failure(const std::string& what, Verdict& v) {
 }
 
 void next_step(CheckResult& j) {
-    bool wrong = !j.unmet.empty(), error = false, doubt = false;
+    bool is_wrong = !j.unmet.empty(), has_error = false, has_doubt = false;
     j.as_expected = j.unmet.empty();
     for (const Verdict& v : j.verdicts) {
         if (v.waived) continue;
-        wrong = wrong || v.state == State::wrong;
-        error = error || v.state == State::error;
-        doubt = doubt || v.state == State::inconclusive;
+        is_wrong = is_wrong || v.state == State::wrong;
+        has_error = has_error || v.state == State::error;
+        has_doubt = has_doubt || v.state == State::inconclusive;
         j.as_expected = j.as_expected && v.expected;
     }
-    j.state = wrong ? State::wrong : error ? State::error : doubt ? State::inconclusive : State::right;
+    j.state = is_wrong ? State::wrong : has_error ? State::error : has_doubt ? State::inconclusive : State::right;
 }
 
 namespace {
@@ -69,11 +69,11 @@ bool may_stay_open(const Verdict& v) {
 
 /// Sets whether the state is the expected one, for a right sampler or for a built-in arm.
 void expect(const CheckCase& check_case, bool reaches_all, Verdict& v) {
-    const bool infinite = check_case.theory.tail_k && *check_case.theory.tail_k >= check::heavy_index;
+    const bool is_infinite = check_case.theory.tail_k && *check_case.theory.tail_k >= check::heavy_index;
     if (check_case.theory.wrong && *check_case.theory.wrong == v.name) {
         v.expected = v.state == State::wrong;
         v.why_expected = check_case.theory.why;
-    } else if (infinite && (v.name == "tail" || (v.state == State::inconclusive && may_stay_open(v)))) {
+    } else if (is_infinite && (v.name == "tail" || (v.state == State::inconclusive && may_stay_open(v)))) {
         // Where p is 0, the weights do not include the light that causes the tail.
         v.expected = v.state == State::inconclusive || !reaches_all;
         v.why_expected = check_case.theory.why;
@@ -90,19 +90,20 @@ void expect(const CheckCase& check_case, bool reaches_all, Verdict& v) {
 struct AbortText {
     State state = State::error;
     const char* what = "";  // states the first text
-    std::string first, rest;
+    std::string first, remainder;
 };
 
 AbortText abort_text(const Cut& cut, const CheckCase& check_case, const TestSettings& settings) {
-    const std::string rest = "Not evaluated: the sampler failed before.";
+    const std::string remainder = "Not evaluated: the sampler failed before.";
     switch (cut.why) {
-        case Cut::Why::fault: return {State::error, "failure", fmt::format("The sampler failed: {}.", cut.what), rest};
-        case Cut::Why::exited: return {State::error, "not evaluated", rest, rest};
+        case Cut::Why::fault:
+            return {State::error, "failure", fmt::format("The sampler failed: {}.", cut.what), remainder};
+        case Cut::Why::exited: return {State::error, "not evaluated", remainder, remainder};
         case Cut::Why::too_slow: break;
     }
-    const double of_program = check_case.adapter->spending().allowed;
-    const std::string message = of_program > 0
-        ? fmt::format("Not examined: {:g} s are not enough for this program at every w_o.", of_program)
+    const double program_seconds = check_case.adapter->spending().allowed;
+    const std::string message = program_seconds > 0
+        ? fmt::format("Not examined: {:g} s are not enough for this program at every w_o.", program_seconds)
         : fmt::format("Not examined: {:g} s (TestSettings::seconds) are not enough for this sampler at every w_o.",
               settings.seconds);
     return {settings.accept_few ? State::skipped : State::inconclusive, "not evaluated", message, message};
@@ -116,11 +117,11 @@ void report_cut(const CheckCase& check_case, const Cut& cut, const TestSettings&
     SkippedCase skipped{.arm = check_case.arm, .check_case = check_case.text(), .verdicts = {}, .why = text.first};
     for (Verdict& v : verdicts) {
         if (cut.first_draws && v.name == verdict_names[0]) continue;
-        const bool first = skipped.verdicts.empty();
+        const bool is_first = skipped.verdicts.empty();
         v.state = text.state;
-        v.sentences = {first ? Sentence{text.what, text.first} : Sentence{"not evaluated", text.rest}};
+        v.sentences = {is_first ? Sentence{text.what, text.first} : Sentence{"not evaluated", text.remainder}};
         v.evidence = nlohmann::ordered_json::object();
-        if (first && cut.why == Cut::Why::fault) note_first_failure(cut.what, v);
+        if (is_first && cut.why == Cut::Why::fault) note_first_failure(cut.what, v);
         if (v.state == State::inconclusive) v.next.kind = NextStep::Kind::more_time;
         skipped.verdicts.push_back(v.name);
     }
@@ -145,10 +146,10 @@ std::vector<CheckCase> with_remaining_limits(std::span<const CheckCase> check_ca
     std::vector<CheckCase> out(check_cases.begin(), check_cases.end());
     const auto w_o =
         static_cast<std::size_t>(std::ranges::count_if(out, [](const CheckCase& t) { return !t.baseline; }));
-    const std::size_t in_all = std::min(settings.questions * w_o, settings.questions_in_all) + settings.further_in_all;
+    const std::size_t total = std::min(settings.questions * w_o, settings.questions_in_all) + settings.further_in_all;
     for (CheckCase& t : out)
         if (t.adapter->limited())
-            t.adapter = limited_in_number(t.adapter, in_all - std::min(in_all, w_o * evaluations_extra));
+            t.adapter = limited_in_number(t.adapter, total - std::min(total, w_o * evaluations_extra));
     return out;
 }
 
@@ -156,9 +157,9 @@ std::vector<CheckCase> with_remaining_limits(std::span<const CheckCase> check_ca
 std::optional<check::Cause> cause_of(
     std::span<const CheckCase> check_cases, const CheckOutcome& outcome, const TestSettings& settings) {
     if (!outcome.wrong()) return {};
-    const std::vector<CheckCase> capped = with_remaining_limits(check_cases, settings);
+    const std::vector<CheckCase> capped_cases = with_remaining_limits(check_cases, settings);
     try {
-        return check::cause_of(capped, outcome);
+        return check::cause_of(capped_cases, outcome);
     } catch (const SamplerError&) { return {}; }  // the limit was reached or the program ended
 }
 
@@ -170,10 +171,10 @@ void distribute(std::span<const CheckCase> check_cases, const CheckOutcome& outc
     auto next = verdicts.begin();
     for (std::size_t k = 0; k < outcome.check_cases.size(); ++k) {
         const std::size_t i = outcome.check_cases[k];
-        std::vector<Verdict>& mine = to[i];
-        std::move(next, next + verdict_names.size(), std::back_inserter(mine));
+        std::vector<Verdict>& case_verdicts = to[i];
+        std::move(next, next + verdict_names.size(), std::back_inserter(case_verdicts));
         next += verdict_names.size();
-        if (outcome.cut[k]) report_cut(check_cases[i], *outcome.cut[k], settings, mine, j);
+        if (outcome.cut[k]) report_cut(check_cases[i], *outcome.cut[k], settings, case_verdicts, j);
     }
     if (outcome.whole_cut)
         report_whole_cut(
@@ -182,10 +183,10 @@ void distribute(std::span<const CheckCase> check_cases, const CheckOutcome& outc
 
 /// A result without a single examined w_o is an error, also with accept_few.
 void require_examined(std::span<const CheckOutcome> outcomes, CheckResult& j) {
-    const auto whole = [](const CheckOutcome& o) {
+    const auto is_examined = [](const CheckOutcome& o) {
         return std::ranges::any_of(o.cut, [](const std::optional<Cut>& cut) { return !cut; });
     };
-    if (std::ranges::any_of(outcomes, whole)) return;
+    if (std::ranges::any_of(outcomes, is_examined)) return;
     for (const SkippedCase& skipped_case : j.left_out)
         for (Verdict& v : j.verdicts)
             if (v.check_case == skipped_case.check_case && v.arm == skipped_case.arm && v.state == State::skipped) {
@@ -195,7 +196,7 @@ void require_examined(std::span<const CheckOutcome> outcomes, CheckResult& j) {
 }
 
 void count(const CheckOutcome& outcome, CheckResult& j) {
-    for (const auto& techniques : outcome.at)
+    for (const auto& techniques : outcome.checks)
         for (const CheckAt& c : techniques) {
             j.tests += c.answers.size();
             j.screened += c.findings.size() + c.suspected.size();
@@ -209,16 +210,16 @@ void rank(std::span<const CheckCase> check_cases, std::span<const CheckOutcome> 
     const check::CheckSettings& settings, const ProgressMonitor& monitor, VerdictsByCase& verdicts) {
     std::vector<check::Efficiency> variances = check::variances_of(check_cases, outcomes, settings, monitor);
     check::measure_costs(check_cases, settings.seed, variances, monitor);
-    std::vector<Verdict> ranked = check::test_efficiency(check_cases, variances);
+    std::vector<Verdict> efficiency_verdicts = check::test_efficiency(check_cases, variances);
     for (const CheckOutcome& o : outcomes)
         for (std::size_t k = 0; k < o.check_cases.size(); ++k) {
             if (o.cut[k]) continue;
             const std::size_t i = o.check_cases[k];
             const auto v = std::ranges::find(verdicts[i], "efficiency", &Verdict::name);
             if (v == verdicts[i].end()) continue;
-            ranked[i].wo = v->wo;
-            ranked[i].seconds = v->seconds;
-            *v = std::move(ranked[i]);
+            efficiency_verdicts[i].wo = v->wo;
+            efficiency_verdicts[i].seconds = v->seconds;
+            *v = std::move(efficiency_verdicts[i]);
         }
 }
 
@@ -232,15 +233,15 @@ void draw_pictures(std::span<const CheckCase> check_cases, std::span<const Check
         for (std::size_t k = 0; k < o.check_cases.size(); ++k) {
             const std::size_t i = o.check_cases[k];
             if (o.cut[k] || !(settings.pictures || check_cases[i].adapter->limited())) continue;
-            for (const CheckAt& c : o.at[k])
+            for (const CheckAt& c : o.checks[k])
                 if (std::optional<BinHistogram> map = check::bin_map(check_cases[i], c))
                     maps[i].push_back(std::move(*map));
-            for (const CheckAt& c : o.at[k])
+            for (const CheckAt& c : o.checks[k])
                 if (std::optional<LineHistogram> line = check::line_picture(check_cases[i], c);
                     line && settings.pictures)
                     j.lines.push_back(std::move(*line));
             if (!o.tails[k].has_weights) continue;
-            weights[i] = check::weight_picture(check_cases[i], check::weights_of(o.at[k]), o.tails[k]);
+            weights[i] = check::weight_picture(check_cases[i], check::weights_of(o.checks[k]), o.tails[k]);
             try {
                 if (!check_cases[i].adapter->traits().domain) check::add_rose(check_cases[i], *weights[i]);
             } catch (const SamplerError&) { weights[i]->rose_p.clear(); }  // the program ended
@@ -257,32 +258,32 @@ constexpr std::size_t least_evaluations = 200000;
 
 }  // namespace
 
-CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_o) {
+CheckBudget budget_of(const TestSettings& settings, bool is_limited, std::size_t w_o) {
     if (settings.budget) return *settings.budget;
-    if (limited) {
+    if (is_limited) {
         // One twelfth is reserved for tests of the whole sampler, for baselines and for causes.
-        const std::size_t each = settings.questions_in_all / 12 * 11 / std::max<std::size_t>(w_o, 1);
+        const std::size_t share = settings.questions_in_all / 12 * 11 / std::max<std::size_t>(w_o, 1);
         const std::size_t extra = evaluations_extra + evaluations_for_all / std::max<std::size_t>(w_o, 1);
         return CheckBudget::limited(static_cast<double>(
-            std::min(settings.questions - std::min(settings.questions, extra), std::max(each, least_evaluations))));
+            std::min(settings.questions - std::min(settings.questions, extra), std::max(share, least_evaluations))));
     }
     return settings.full ? CheckBudget::thorough() : CheckBudget::quick();
 }
 
 CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSettings& settings, ProgressMonitor& monitor) {
-    const auto checked =
+    const auto case_count =
         static_cast<std::size_t>(std::ranges::count_if(check_cases, [](const CheckCase& t) { return !t.baseline; }));
-    check::CheckSettings of_engine;
-    of_engine.budget = budget_of(settings, false, checked);
-    of_engine.limited = budget_of(settings, true, checked);
-    of_engine.further_in_all = settings.budget ? 0 : static_cast<double>(settings.further_in_all);
-    of_engine.seed = settings.seed;
-    of_engine.alpha = settings.alpha;
-    of_engine.keep_evidence = settings.pictures;
-    monitor.begin("verdicts", static_cast<double>(checked));
+    check::CheckSettings engine_settings;
+    engine_settings.budget = budget_of(settings, false, case_count);
+    engine_settings.limited = budget_of(settings, true, case_count);
+    engine_settings.further_in_all = settings.budget ? 0 : static_cast<double>(settings.further_in_all);
+    engine_settings.seed = settings.seed;
+    engine_settings.alpha = settings.alpha;
+    engine_settings.keep_evidence = settings.pictures;
+    monitor.begin("verdicts", static_cast<double>(case_count));
     CheckResult out;
     out.alpha = settings.alpha;
-    const std::vector<CheckOutcome> outcomes = check::check_samplers(check_cases, of_engine, monitor);
+    const std::vector<CheckOutcome> outcomes = check::check_samplers(check_cases, engine_settings, monitor);
     VerdictsByCase verdicts(check_cases.size());
     std::vector<std::size_t> case_of;
     std::vector<bool> reaches_all(check_cases.size());
@@ -290,7 +291,7 @@ CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSetting
         distribute(check_cases, outcome, settings, verdicts, out);
         count(outcome, out);
     }
-    rank(check_cases, outcomes, of_engine, monitor, verdicts);
+    rank(check_cases, outcomes, engine_settings, monitor, verdicts);
     draw_pictures(check_cases, outcomes, settings, out);
     for (std::size_t i = 0; i < check_cases.size(); ++i) {
         if (check_cases[i].baseline) continue;

@@ -53,7 +53,7 @@ struct TestSettings {
 CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSettings& settings, ProgressMonitor& monitor);
 
 /// The budget of each w_o of a sampler, from the settings and the number of w_o.
-check::CheckBudget budget_of(const TestSettings& settings, bool limited, std::size_t w_o);
+check::CheckBudget budget_of(const TestSettings& settings, bool is_limited, std::size_t w_o);
 
 }  // namespace crescent
 

@@ -23,18 +23,18 @@ struct Levels {
 /// stays between alpha1 and 1/10, and the first stage takes the rest: below alpha1, confirmation would be harder than
 /// suspicion; above 1/10 it would confirm nothing.
 constexpr Levels levels_of(double alpha, double questions) {
-    const double both = alpha / (questions > questions_covered ? questions : questions_covered);
-    const double scaled = both / alpha1;
-    const double second = scaled < alpha1 ? alpha1 : scaled > 0.1 ? 0.1 : scaled;
-    return {both / second, second};
+    const double joint_level = alpha / (questions > questions_covered ? questions : questions_covered);
+    const double ratio = joint_level / alpha1;
+    const double second = ratio < alpha1 ? alpha1 : ratio > 0.1 ? 0.1 : ratio;
+    return {joint_level / second, second};
 }
 
 /// Share of alpha1 for each look of a staged budget before the last; the last look has the remainder. Chosen: an early
 /// look stops only for a clear fault, and 1/8 of alpha1 raises the size that it finds by 3 %.
 inline constexpr double early_look = 1.0 / 8;
 /// The level of one look.
-constexpr double level_at(const Levels& levels, int look, int looks) {
-    return levels.first * (look == looks - 1 ? 1 - (looks - 1) * early_look : early_look);
+constexpr double level_at(const Levels& levels, int look_index, int looks) {
+    return levels.first * (look_index == looks - 1 ? 1 - (looks - 1) * early_look : early_look);
 }
 
 /// Looks after those of the budget, while a size is too large. Each has the level of an early look, which counts as

@@ -48,24 +48,24 @@ public:
     double next(const std::string& test, int tests) {
         const double pi2 = 9.869604401089358, k = ++calls_[test];
         const double share = -std::expm1(std::log1p(-alpha_) / std::max(tests, 1)) * 6 / (pi2 * k * k);
-        spent_ += share;
-        ++checked_;
+        share_sum_ += share;
+        ++check_count_;
         return share;
     }
     /// The sum of the shares that this process used.
-    double spent() const { return spent_; }
+    double spent() const { return share_sum_; }
     /// Prints the number of checked samplers and the probability of a false failure.
     void TearDown() override {
-        if (checked_ > 0)
+        if (check_count_ > 0)
             std::printf(
                 "crescent: %d samplers checked in this process; right ones fail by chance with probability at "
                 "most %.4g of the suite's %g\n",
-                checked_, spent_, alpha_);
+                check_count_, share_sum_, alpha_);
     }
 
 private:
-    double alpha_, spent_ = 0;
-    int checked_ = 0;
+    double alpha_, share_sum_ = 0;
+    int check_count_ = 0;
     std::map<std::string, int> calls_;
 };
 
@@ -113,24 +113,24 @@ void PrintTo(const std::shared_ptr<Adapter>& sampler, std::ostream* out) {
 /// the same argument reuses the result of the first. A stored result is never used for another match.
 template <class Argument> class SamplerMatcher : public testing::MatcherInterface<Argument> {
 public:
-    /// settings: of each check; open: whether inconclusive verdicts match.
-    SamplerMatcher(TestSettings settings, bool open) : settings_(std::move(settings)), open_(open) {}
+    /// settings: of each check; is_open: whether inconclusive verdicts match.
+    SamplerMatcher(TestSettings settings, bool is_open) : settings_(std::move(settings)), is_open_(is_open) {}
 
     /// Whether the sampler is right. If it is not, explains why in at most 8 lines.
     bool MatchAndExplain(Argument arg, testing::MatchResultListener* listener) const override {
         const CheckResult j = result_of(arg, listener->IsInterested());
-        const bool matches = j.state == State::right || (open_ && j.state == State::inconclusive);
+        const bool matches = j.state == State::right || (is_open_ && j.state == State::inconclusive);
         if (!matches && listener->IsInterested()) *listener << "\n" << what_is_wrong(j);
         if (matches && !listener->IsInterested()) record(j);
         return matches;
     }
     /// "is a right sampler"
     void DescribeTo(std::ostream* out) const override {
-        *out << (open_ ? "is not a wrong sampler" : "is a right sampler");
+        *out << (is_open_ ? "is not a wrong sampler" : "is a right sampler");
     }
     /// "is not a right sampler"
     void DescribeNegationTo(std::ostream* out) const override {
-        *out << (open_ ? "is a wrong sampler" : "is not a right sampler");
+        *out << (is_open_ ? "is a wrong sampler" : "is not a right sampler");
     }
 
 private:
@@ -146,24 +146,24 @@ private:
     /// Matchers of several elements (Each, ElementsAre) match some before they explain the first: only an explanation
     /// directly after a single match reuses its result.
     CheckResult result_of(const std::remove_cvref_t<Argument>& arg, bool explains) const {
-        if (explains && since_explained_ == 1 && of_ == &arg && kept_) {
+        if (explains && since_explained_ == 1 && argument_ == &arg && result_) {
             since_explained_ = 0;
-            return *std::exchange(kept_, std::nullopt);
+            return *std::exchange(result_, std::nullopt);
         }
         CheckResult j = check_sampler("sampler", user::copy_for_check(arg), shared_settings(settings_));
-        kept_.reset();
+        result_.reset();
         since_explained_ = explains ? 0 : since_explained_ + 1;
         if (!explains) {
-            kept_ = j;
-            of_ = &arg;
+            result_ = j;
+            argument_ = &arg;
         }
         return j;
     }
 
     TestSettings settings_;
-    bool open_;
-    mutable std::optional<CheckResult> kept_;
-    mutable const void* of_ = nullptr;
+    bool is_open_;
+    mutable std::optional<CheckResult> result_;
+    mutable const void* argument_ = nullptr;
     mutable int since_explained_ = 0;
 };
 
@@ -171,15 +171,15 @@ private:
 class AnySamplerMatcher {
 public:
     /// As SamplerMatcher.
-    AnySamplerMatcher(TestSettings settings, bool open) : settings_(std::move(settings)), open_(open) {}
+    AnySamplerMatcher(TestSettings settings, bool is_open) : settings_(std::move(settings)), is_open_(is_open) {}
     /// The matcher for one type.
     template <class Argument> operator testing::Matcher<Argument>() const {
-        return testing::Matcher<Argument>(new SamplerMatcher<Argument>(settings_, open_));
+        return testing::Matcher<Argument>(new SamplerMatcher<Argument>(settings_, is_open_));
     }
 
 private:
     TestSettings settings_;
-    bool open_;
+    bool is_open_;
 };
 
 /// EXPECT_THAT(MySampler{}, crescent::IsARightSampler()): every verdict is right or skipped.

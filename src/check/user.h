@@ -68,10 +68,10 @@ template <class S> consteval bool takes_numbers() {
     using T = SampleParameters<S>;
     if constexpr (input_count<T>() < 1 || output_count<T>() == 1 || output_count<T>() > 3) return false;
     else {
-        constexpr bool known = []<std::size_t... i>(std::index_sequence<i...>) {
+        constexpr bool is_known = []<std::size_t... i>(std::index_sequence<i...>) {
             return ((Written<At<T, i>> || size_of<At<T, i>>() >= 0) && ...);
         }(std::make_index_sequence<count_of<T>>{});
-        if constexpr (!known) return false;
+        if constexpr (!is_known) return false;
         else
             return numbers<S>() >= 1 && numbers<S>() <= PrimarySample::most_numbers &&
                 (without_wo<S>() || Direction<At<T, 0>>);
@@ -151,16 +151,16 @@ template <class S> consteval bool require_checkable() {
 /// 3 if f or the weight is a colour, else 1; whether all members are const, so that several threads may call them;
 /// whether a draw includes its weight; and the resulting traits.
 template <class S> consteval int channels() {
-    bool three = false;
-    if constexpr (HasF<S>) three = Coloured<Bare<typename OfF<S>::Result>>;
+    bool has_colour = false;
+    if constexpr (HasF<S>) has_colour = Coloured<Bare<typename OfF<S>::Result>>;
     if constexpr (output_count<SampleParameters<S>>() == 0) {
         using D = Result<S>;
         if constexpr (requires(const D d) { d.weight; })
-            three = three || Coloured<Bare<decltype(std::declval<D>().weight)>>;
+            has_colour = has_colour || Coloured<Bare<decltype(std::declval<D>().weight)>>;
         else if constexpr (requires(const D d) { colour(d.f); })
-            three = three || Coloured<Bare<decltype(std::declval<D>().f)>>;
+            has_colour = has_colour || Coloured<Bare<decltype(std::declval<D>().f)>>;
     }
-    return three ? 3 : 1;
+    return has_colour ? 3 : 1;
 }
 template <class S> consteval bool all_const() {
     bool out = OfSample<S>::is_const;
@@ -202,7 +202,7 @@ template <class Given> class UserSampler : public InProcessAdapter {
 
 public:
     /// `name` is used in messages; `sampler` may be a pointer.
-    UserSampler(std::string name, Given sampler) : name_(std::move(name)), given_(std::move(sampler)) {}
+    UserSampler(std::string name, Given sampler) : name_(std::move(name)), sampler_(std::move(sampler)) {}
     std::string name() const override { return name_; }
     Traits traits() const override { return user::traits_of(sampler()); }
     bool serial() const override { return !user::all_const<S>() || (user::shares_state<S>() && traits().own_random); }
@@ -215,37 +215,37 @@ public:
             if (!user::HasPdf<S> && out[i].pdf > 0) out[i].pdf = 1;
         }
     }
-    void pdf(int, std::span<const Pair> at, std::span<double> out) const override {
+    void pdf(int, std::span<const Pair> pairs, std::span<double> out) const override {
         if constexpr (user::HasPdf<S>) {
-            count(at.size());
-            for (std::size_t i = 0; i < at.size(); ++i)
+            count(pairs.size());
+            for (std::size_t i = 0; i < pairs.size(); ++i)
                 out[i] = called(
-                    "pdf(wo, wi)", at[i].wo, [&] { return text_of(at[i].wi); },
-                    [&] { return user::pdf(sampler(), at[i]); });
+                    "pdf(wo, wi)", pairs[i].wo, [&] { return text_of(pairs[i].wi); },
+                    [&] { return user::pdf(sampler(), pairs[i]); });
         } else
             for (double& p : out) p = 1;
     }
     bool has_f() const override { return user::HasF<S>; }
     bool has_drawn_f() const override { return user::HasF<S> || user::returns_weights<S>(); }
-    void f_channels(std::span<const Pair> at, std::span<Vec3d> out) const override {
-        if constexpr (user::HasF<S>) count(at.size());
+    void f_channels(std::span<const Pair> pairs, std::span<Vec3d> out) const override {
+        if constexpr (user::HasF<S>) count(pairs.size());
         if constexpr (user::HasF<S>)
-            for (std::size_t i = 0; i < at.size(); ++i)
+            for (std::size_t i = 0; i < pairs.size(); ++i)
                 out[i] = called(
-                    "f(wo, wi)", at[i].wo, [&] { return text_of(at[i].wi); },
-                    [&] { return user::f(sampler(), at[i]); });
+                    "f(wo, wi)", pairs[i].wo, [&] { return text_of(pairs[i].wi); },
+                    [&] { return user::f(sampler(), pairs[i]); });
     }
-    void f(std::span<const Pair> at, std::span<double> out) const override {
-        std::vector<Vec3d> by_channel(out.size());
-        f_channels(at, by_channel);
+    void f(std::span<const Pair> pairs, std::span<double> out) const override {
+        std::vector<Vec3d> channel_values(out.size());
+        f_channels(pairs, channel_values);
         for (std::size_t i = 0; i < out.size(); ++i)
-            out[i] = user::channels<S>() == 3 ? luminance(by_channel[i]) : by_channel[i].x;
+            out[i] = user::channels<S>() == 3 ? luminance(channel_values[i]) : channel_values[i].x;
     }
 
 private:
     std::string name_;
-    mutable Given given_;  // called by one thread if a member is not const
-    decltype(auto) sampler() const { return user::Sampler<Given>::of(given_); }
+    mutable Given sampler_;  // called by one thread if a member is not const
+    decltype(auto) sampler() const { return user::Sampler<Given>::of(sampler_); }
 
     static std::string text_of(Vec3d w) { return fmt::format("w_i = ({:.9g}, {:.9g}, {:.9g})", w.x, w.y, w.z); }
     static std::string text_of(const PrimarySample& u) {
@@ -253,16 +253,17 @@ private:
         for (int k = 0; k < user::numbers<S>(); ++k) out += fmt::format("{}{:.9g}", k ? ", " : "", u[k]);
         return out + ")";
     }
-    template <class Where, class Call> static auto called(const char* what, Vec3d wo, Where&& where, Call&& call) {
+    template <class Where, class Call>
+    static auto called(const char* what, Vec3d wo, Where&& describe_place, Call&& call) {
         try {
             return call();
-        } catch (const std::exception& e) { throw fault(what, e.what(), wo, where()); } catch (...) {
-            throw fault(what, "something", wo, where());
+        } catch (const std::exception& e) { throw fault(what, e.what(), wo, describe_place()); } catch (...) {
+            throw fault(what, "something", wo, describe_place());
         }
     }
-    static SamplerError fault(const char* what, const char* why, Vec3d wo, const std::string& where) {
+    static SamplerError fault(const char* what, const char* why, Vec3d wo, const std::string& place) {
         return SamplerError(
-            fmt::format("{} threw '{}' at w_o = ({:.9g}, {:.9g}, {:.9g}), {}", what, why, wo.x, wo.y, wo.z, where));
+            fmt::format("{} threw '{}' at w_o = ({:.9g}, {:.9g}, {:.9g}), {}", what, why, wo.x, wo.y, wo.z, place));
     }
 };
 
@@ -279,19 +280,19 @@ template <class Given> CheckResult check_sampler(std::string name, Given&& sampl
         "a sampler is copied, and this one cannot be: pass a pointer to it, check_sampler(name, &sampler), or move it");
     if constexpr (std::is_abstract_v<S> || !std::is_constructible_v<S, Given>) return {};
     else if constexpr (user::Adapted<S>) {
-        ProgressMonitor alone;
-        return run_checks(
-            make_user_cases(renamed(sampler, name), settings.full, settings.wo), settings, monitor ? *monitor : alone);
+        ProgressMonitor default_monitor;
+        return run_checks(make_user_cases(renamed(sampler, name), settings.full, settings.wo), settings,
+            monitor ? *monitor : default_monitor);
     } else if constexpr (std::is_same_v<S, PointSampler>) {
-        ProgressMonitor alone;
+        ProgressMonitor default_monitor;
         return run_checks(
             make_user_cases(limited_in_time(adapter_of(sampler, name), settings.seconds), settings.full, settings.wo),
-            settings, monitor ? *monitor : alone);
+            settings, monitor ? *monitor : default_monitor);
     } else if constexpr (user::require_checkable<user::SamplerOf<S>>()) {
         const auto adapter = std::make_shared<UserSampler<S>>(std::move(name), S(std::forward<Given>(sampler)));
-        ProgressMonitor alone;
+        ProgressMonitor default_monitor;
         return run_checks(make_user_cases(limited_in_time(adapter, settings.seconds), settings.full, settings.wo),
-            settings, monitor ? *monitor : alone);
+            settings, monitor ? *monitor : default_monitor);
     } else {
         return {};
     }
@@ -301,30 +302,30 @@ template <class Given> CheckResult check_sampler(std::string name, Given&& sampl
 template <class Sample, class Pdf> struct SampleAndPdf {
     Sample sample;
     Pdf pdf;
-    Traits known{};
-    Traits traits() const { return known; }
+    Traits stated_traits{};
+    Traits traits() const { return stated_traits; }
 };
 /// The same with f.
 template <class Sample, class Pdf, class F> struct SamplePdfAndF {
     Sample sample;
     Pdf pdf;
     F f;
-    Traits known{};
-    Traits traits() const { return known; }
+    Traits stated_traits{};
+    Traits traits() const { return stated_traits; }
 };
 /// For classes whose members are overloaded, templates or have other names; parameters and results are those of
 /// members:
 ///
 ///   check_sampler("mine", sampler_of([&](V wo, float uc, V2 u) { return bsdf.Sample(wo, uc, u); },
 ///                                    [&](V wo, V wi) { return bsdf.Pdf(wo, wi); }));
-template <class Sample, class Pdf> SampleAndPdf<Sample, Pdf> sampler_of(Sample sample, Pdf pdf, Traits known = {}) {
-    return {std::move(sample), std::move(pdf), known};
+template <class Sample, class Pdf> SampleAndPdf<Sample, Pdf> sampler_of(Sample sample, Pdf pdf, Traits traits = {}) {
+    return {std::move(sample), std::move(pdf), traits};
 }
 /// The same with f(wo, wi).
 template <class Sample, class Pdf, class F>
     requires(!std::is_same_v<F, Traits>)
-SamplePdfAndF<Sample, Pdf, F> sampler_of(Sample sample, Pdf pdf, F f, Traits known = {}) {
-    return {std::move(sample), std::move(pdf), std::move(f), known};
+SamplePdfAndF<Sample, Pdf, F> sampler_of(Sample sample, Pdf pdf, F f, Traits traits = {}) {
+    return {std::move(sample), std::move(pdf), std::move(f), traits};
 }
 
 }  // namespace crescent

@@ -47,9 +47,10 @@ Waiver read_one(const std::string& text, const Origin& origin) {
     const std::string state = trimmed(text.substr(equals + 1, colon == text.npos ? colon : colon - equals - 1));
     if (colon != text.npos) out.reason = trimmed(text.substr(colon + 1));
     if (std::find(waivable.begin(), waivable.end(), out.verdict) == waivable.end()) {
-        const std::string near = nearest(out.verdict, waivable);
+        const std::string suggestion = nearest(out.verdict, waivable);
         fault(fmt::format("no verdict '{}'{}", printable(out.verdict),
-            near.empty() ? fmt::format("; they are {}", fmt::join(waivable, ", ")) : "; did you mean '" + near + "'?"));
+            suggestion.empty() ? fmt::format("; they are {}", fmt::join(waivable, ", "))
+                               : "; did you mean '" + suggestion + "'?"));
     }
     if (state == "inconclusive") out.state = State::inconclusive;
     else if (state != "wrong") fault(fmt::format("expected wrong or inconclusive, got '{}'", printable(state)));
@@ -64,8 +65,8 @@ bool is_of(const Waiver& w, const Verdict& v) {
 }
 
 void read_file(const std::string& path, std::vector<Waiver>& out) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored) || std::filesystem::is_directory(path, ignored))
+    std::error_code error;
+    if (!std::filesystem::exists(path, error) || std::filesystem::is_directory(path, error))
         throw InputError(
             {"--expect " + path, 0, 0}, "is neither [ARM ]VERDICT=STATE: REASON nor a file that can be read");
     std::istringstream in(read_input(path, std::size_t{1} << 20, "a file of waivers"));
@@ -89,23 +90,24 @@ std::vector<Waiver> read_waivers(std::span<const std::string> texts) {
 void check_waivers(std::span<const Waiver> waivers, std::span<const std::string> arms) {
     for (const Waiver& w : waivers) {
         if (w.arm.empty() || std::find(arms.begin(), arms.end(), w.arm) != arms.end()) continue;
-        const std::string near = nearest(w.arm, {arms.begin(), arms.end()});
+        const std::string suggestion = nearest(w.arm, {arms.begin(), arms.end()});
         throw InputError({w.place, 0, 0},
             fmt::format("no sampler '{}' is checked here; {}", printable(w.arm),
-                near.empty() ? fmt::format("there is {}", fmt::join(arms, ", ")) : "did you mean '" + near + "'?"));
+                suggestion.empty() ? fmt::format("there is {}", fmt::join(arms, ", "))
+                                   : "did you mean '" + suggestion + "'?"));
     }
 }
 
 void waive(CheckResult& j, std::span<const Waiver> waivers) {
     for (const Waiver& w : waivers) {
-        std::size_t met = 0;
+        std::size_t match_count = 0;
         for (Verdict& v : j.verdicts) {
             if (v.name != w.verdict || v.state != w.state || !is_of(w, v)) continue;
-            ++met;
+            ++match_count;
             v.waived = v.expected = true;
             v.why_expected = w.reason;
         }
-        if (met == 0)
+        if (match_count == 0)
             j.unmet.push_back(fmt::format("{}: {}{} is expected to be {} but is not: the expectation can go", w.place,
                 w.arm.empty() ? "" : w.arm + " ", w.verdict, word(w.state)));
     }

@@ -37,8 +37,8 @@ double anytime_quantile(double p, double df, double information) {
     return c < a ? std::sqrt(df * (c - 1) / (1 - c / a)) : HUGE_VAL;
 }
 
-double look_factor(unsigned look) {
-    const double k = std::numbers::pi * static_cast<double>(std::max(1u, look));
+double look_factor(unsigned look_number) {
+    const double k = std::numbers::pi * static_cast<double>(std::max(1u, look_number));
     return k * k / 6;
 }
 

@@ -14,6 +14,6 @@ double anytime_quantile(double p, double df, double information);
 
 /// Returns the factor of p for a test at the look of this number, 1, 2, ...: those of all looks share one level,
 /// because the sum of 6 / (pi k)^2 over k is 1.
-double look_factor(unsigned look);
+double look_factor(unsigned look_number);
 
 }  // namespace crescent

@@ -37,22 +37,22 @@ constexpr std::size_t named_most = 5;  // largest number of places that are list
 
 /// The two sides, one entry per quantity: as independent renders, and in pairs if there are any.
 struct AllSides {
-    std::vector<BiasPair> apart, paired;
+    std::vector<BiasPair> independent_sides, paired_sides;
 
-    const BiasPair& first() const { return apart[0]; }
+    const BiasPair& first() const { return independent_sides[0]; }
     /// Pairs, missed_events a few of their pixels decide the mean.
     const BiasPair& in_region(std::size_t quantity, std::size_t region) const {
-        const bool pairs = !paired.empty() && paired[quantity].heavy_in(region).empty();
-        return pairs ? paired[quantity] : apart[quantity];
+        const bool pairs = !paired_sides.empty() && paired_sides[quantity].heavy_in(region).empty();
+        return pairs ? paired_sides[quantity] : independent_sides[quantity];
     }
     const BiasPair& in_tile(std::size_t quantity, std::size_t tile) const {
-        const bool pairs = !paired.empty() && !paired[quantity].lone_pixel_in(tile);
-        return pairs ? paired[quantity] : apart[quantity];
+        const bool pairs = !paired_sides.empty() && !paired_sides[quantity].lone_pixel_in(tile);
+        return pairs ? paired_sides[quantity] : independent_sides[quantity];
     }
 };
 
 std::string why_not(const BiasPair& sides, std::size_t region) {
-    if (sides.all.regions[region].pixels.empty()) return "no pixel is finite in every render";
+    if (sides.stats.regions[region].pixels.empty()) return "no pixel is finite in every render";
     if (!sides.pools() && (sides.a.files.size() < 2 || (sides.other && sides.b.files.size() < 2)))
         return "two renders or more of each arm are needed";
     if (sides.pairs && sides.pairs->size() < 2) return "two pairs or more are needed";
@@ -65,17 +65,17 @@ std::string renders_needed_text(const BiasPair& sides, std::size_t region) {
     const std::string heavy = sides.heavy_in(region);
     for (const ArmResult* arm : {&sides.arm, sides.other}) {
         if (!arm || arm->name != heavy) continue;
-        const auto& needed = arm->regions[region].renders_needed;
-        if (!needed) return "; how many renders are needed is unknown";
-        if (*needed >= renders_beyond) return "; more than a million renders are needed";
-        return fmt::format("; about {:.0f} renders are needed", *needed);
+        const auto& renders = arm->regions[region].renders_needed;
+        if (!renders) return "; how many renders are needed is unknown";
+        if (*renders >= renders_beyond) return "; more than a million renders are needed";
+        return fmt::format("; about {:.0f} renders are needed", *renders);
     }
     return "";
 }
 
 MeanTest mean_test(const BiasPair& sides, std::size_t r, double level) {
     const Values a = sides.region_means(sides.a, r), b = sides.region_means(sides.b, r);
-    const PixelSet& set = sides.all.regions[r];
+    const PixelSet& set = sides.stats.regions[r];
     MeanTest t;
     t.region = quantity_names[sides.quantity];
     t.paired = sides.in_pairs();
@@ -84,7 +84,7 @@ MeanTest mean_test(const BiasPair& sides, std::size_t r, double level) {
     t.b = mean_and_error(b).mean;
     t.why = why_not(sides, r);
     if (!t.why.empty()) {
-        t.needed = renders_needed_text(sides, r);
+        t.requirement = renders_needed_text(sides, r);
         return t;
     }
     const SetVariance noise = sides.noise_of(set);
@@ -92,7 +92,7 @@ MeanTest mean_test(const BiasPair& sides, std::size_t r, double level) {
     t.information = sides.information();
     const double undetectable =
         std::max({sides.missable_difference(1, noise.pixels, level), sides.missable_difference(-1, noise.pixels, level),
-            sides.undetectable_difference(t.a, t.b, noise.pixels, noise.own, level)});
+            sides.undetectable_difference(t.a, t.b, noise.pixels, noise.unpaired_variance, level)});
     t.smallest = std::max(sides.detectable_difference(t.welch, level), undetectable) / std::max(std::fabs(t.b), 1e-300);
     if (std::isnan(t.welch.p)) t.why = "the noise of one side is not a finite number";
     return t;
@@ -111,27 +111,28 @@ std::string missed_events_text(const BiasPair& sides, const MeanTest& t, double 
         events->one_in);
 }
 
-/// The tests of one region, one per quantity; `p` is plain, `seen` is 1 where the difference is smaller than the tests
-/// can detect.
+/// The tests of one region, one per quantity; `p` is plain, `detectable_p` is 1 where the difference is smaller than
+/// the tests can detect.
 struct RegionTests {
-    std::vector<MeanTest> each;
-    Values p, seen;
+    std::vector<MeanTest> quantity_tests;
+    Values p, detectable_p;
 };
 
 RegionTests region_tests(const AllSides& sides_of_all, std::size_t r, double level) {
     RegionTests out;
-    for (std::size_t q = 0; q < sides_of_all.apart.size(); ++q) {
+    for (std::size_t q = 0; q < sides_of_all.independent_sides.size(); ++q) {
         const BiasPair& sides = sides_of_all.in_region(q, r);
-        const double share = level * level_share(q, sides_of_all.apart.size());
+        const double share = level * level_share(q, sides_of_all.independent_sides.size());
         const MeanTest t = mean_test(sides, r, share);
         const double p = t.why.empty() ? t.welch.p : std::nan("");
         out.p.push_back(p);
-        out.seen.push_back(p);
-        out.each.push_back(t);
+        out.detectable_p.push_back(p);
+        out.quantity_tests.push_back(t);
         if (std::isnan(p)) continue;
-        const SetVariance noise = sides.noise_of(sides.all.regions[r]);
-        if (std::fabs(t.a - t.b) < sides.undetectable_difference(t.a, t.b, noise.pixels, noise.own, share))
-            out.seen.back() = 1;
+        const SetVariance noise = sides.noise_of(sides.stats.regions[r]);
+        if (std::fabs(t.a - t.b) <
+            sides.undetectable_difference(t.a, t.b, noise.pixels, noise.unpaired_variance, share))
+            out.detectable_p.back() = 1;
     }
     return out;
 }
@@ -140,39 +141,40 @@ RegionTests region_tests(const AllSides& sides_of_all, std::size_t r, double lev
 std::string why_not_seen(const AllSides& sides_of_all, const RegionTests& tests, std::size_t r, double level) {
     const std::size_t q = joint_p(tests.p).quantity;
     const BiasPair& sides = sides_of_all.in_region(q, r);
-    const MeanTest& t = tests.each[q];
-    const double pixels = static_cast<double>(sides.all.regions[r].pixels.size()),
-                 share = level * level_share(q, tests.each.size());
-    const bool missed = std::fabs(t.a - t.b) < sides.missable_difference(t.a - t.b, pixels, share);
-    return missed ? missed_events_text(sides, t, pixels, share) : "";
+    const MeanTest& t = tests.quantity_tests[q];
+    const double pixels = static_cast<double>(sides.stats.regions[r].pixels.size()),
+                 share = level * level_share(q, tests.quantity_tests.size());
+    const bool is_missable = std::fabs(t.a - t.b) < sides.missable_difference(t.a - t.b, pixels, share);
+    return is_missable ? missed_events_text(sides, t, pixels, share) : "";
 }
 
 /// Returns p of "no region differs" (Bonferroni).
-double test_regions(const AllSides& sides_of_all, const BiasLevel& allowed, BiasResult& out) {
-    const auto& regions = sides_of_all.first().all.regions;
-    const double level = allowed.each / static_cast<double>(regions.size()),
-                 named = allowed.named / static_cast<double>(regions.size());
+double test_regions(const AllSides& sides_of_all, const BiasLevel& levels, BiasResult& out) {
+    const auto& regions = sides_of_all.first().stats.regions;
+    const double level = levels.power_level / static_cast<double>(regions.size()),
+                 report_level = levels.report_level / static_cast<double>(regions.size());
     std::vector<RegionTests> tests;
-    Values p, seen;
+    Values p, detectable_p;
     for (std::size_t r = 0; r < regions.size(); ++r) {
         tests.push_back(region_tests(sides_of_all, r, level));
         p.push_back(joint_p(tests[r].p).p);
-        seen.push_back(joint_p(tests[r].seen).p);
+        detectable_p.push_back(joint_p(tests[r].detectable_p).p);
     }
-    const std::vector<bool> small = holm(p, allowed.each), differs = holm(seen, allowed.named);
+    const std::vector<bool> small = holm(p, levels.power_level), differs = holm(detectable_p, levels.report_level);
     for (std::size_t r = 0; r < regions.size(); ++r) {
         RegionTests& test = tests[r];
-        for (std::size_t q = 0; q < test.each.size() && differs[r]; ++q)
-            test.each[q].differs = test.seen[q] / level_share(q, test.each.size()) <= std::max(named, seen[r]);
-        MeanTest& t = out.regions.emplace_back(test.each[0]);
+        for (std::size_t q = 0; q < test.quantity_tests.size() && differs[r]; ++q)
+            test.quantity_tests[q].differs = test.detectable_p[q] / level_share(q, test.quantity_tests.size()) <=
+                std::max(report_level, detectable_p[r]);
+        MeanTest& t = out.regions.emplace_back(test.quantity_tests[0]);
         t.region = regions[r].name;
-        t.joint_p = seen[r];
-        t.channels.assign(test.each.begin() + 1, test.each.end());
+        t.joint_p = detectable_p[r];
+        t.channels.assign(test.quantity_tests.begin() + 1, test.quantity_tests.end());
         if (small[r] && !differs[r]) t.caveat = why_not_seen(sides_of_all, tests[r], r, level);
     }
-    double least = std::nan("");
-    for (const double each : seen) least = std::fmin(least, each);
-    return std::fmin(1, least * static_cast<double>(regions.size()));
+    double smallest = std::nan("");
+    for (const double value : detectable_p) smallest = std::fmin(smallest, value);
+    return std::fmin(1, smallest * static_cast<double>(regions.size()));
 }
 
 /// The test of one quantity in one tile; p is NaN if there is no test.
@@ -184,15 +186,15 @@ struct TileTest {
 TileTest test_tile(const BiasPair& sides, std::size_t t, double level) {
     TileTest out;
     const Values a = sides.tile_means(sides.a, t), b = sides.tile_means(sides.b, t);
-    const SetVariance noise = sides.noise_of(sides.all.tiles.box(t, sides.all.width, sides.all.height));
+    const SetVariance noise = sides.noise_of(sides.stats.tiles.box(t, sides.stats.width, sides.stats.height));
     if (noise.pixels == 0) return out;  // no pixel is finite
     const double d = out.difference = mean_and_error(a).mean - mean_and_error(b).mean;
     out.left_out = sides.lone_pixel_in(t);
     if (out.left_out) return out;
     const Welch w = sides.test(a, b, noise, true);
     if (w.se == 0 && d == 0 && !sides.in_pairs()) return out;  // the same constant on both sides
-    const bool undetectable =
-        std::fabs(d) < sides.undetectable_difference(noise.mean_b + d, noise.mean_b, noise.pixels, noise.own, level);
+    const bool undetectable = std::fabs(d) <
+        sides.undetectable_difference(noise.mean_b + d, noise.mean_b, noise.pixels, noise.unpaired_variance, level);
     out.p = undetectable ? 1 : w.p;
     out.left_out = std::isnan(out.p);
     return out;
@@ -200,35 +202,36 @@ TileTest test_tile(const BiasPair& sides, std::size_t t, double level) {
 
 void name_tiles(const AllSides& sides_of_all, BiasResult& result) {
     PlaceTests& out = result.tiles;
-    std::vector<std::size_t> found;
+    std::vector<std::size_t> tiles;
     for (std::size_t t = 0; t < out.p.size(); ++t)
         if (out.differs[t]) {
-            found.push_back(t);
+            tiles.push_back(t);
             ++result.tiles_by[out.quantity[t]];
         }
-    out.different = found.size();
-    std::sort(found.begin(), found.end(),
+    out.different = tiles.size();
+    std::sort(tiles.begin(), tiles.end(),
         [&](std::size_t s, std::size_t t) { return out.p[s] != out.p[t] ? out.p[s] < out.p[t] : s < t; });
-    for (std::size_t k = 0; k < std::min(found.size(), named_most); ++k) {
-        const RenderStats& readings = sides_of_all.first().all;
-        const Box box = readings.tiles.box(found[k], readings.width, readings.height);
-        const std::size_t q = out.quantity[found[k]];
-        const double b = sides_of_all.apart[q].noise_of(box).mean_b;
-        result.tiles_found.push_back({box, b + out.difference[q][found[k]], b, out.p[found[k]], q});
+    for (std::size_t k = 0; k < std::min(tiles.size(), named_most); ++k) {
+        const RenderStats& readings = sides_of_all.first().stats;
+        const Box box = readings.tiles.box(tiles[k], readings.width, readings.height);
+        const std::size_t q = out.quantity[tiles[k]];
+        const double b = sides_of_all.independent_sides[q].noise_of(box).mean_b;
+        result.tiles_found.push_back({box, b + out.difference[q][tiles[k]], b, out.p[tiles[k]], q});
     }
 }
 
 /// Returns p of "no tile differs".
-double test_tiles(const AllSides& sides_of_all, const BiasLevel& allowed, BiasResult& result) {
+double test_tiles(const AllSides& sides_of_all, const BiasLevel& levels, BiasResult& result) {
     PlaceTests& out = result.tiles;
-    const std::size_t count = sides_of_all.first().all.tiles.count(), quantities = sides_of_all.apart.size();
+    const std::size_t count = sides_of_all.first().stats.tiles.count(),
+                      quantities = sides_of_all.independent_sides.size();
     out.difference.assign(quantities, Values(count, std::nan("")));
     result.tiles_by.assign(quantities, 0);
     for (std::size_t t = 0; t < count; ++t) {
         Values p;
         bool left_out = false;
         for (std::size_t q = 0; q < quantities; ++q) {
-            const double level = allowed.each / static_cast<double>(count) * level_share(q, quantities);
+            const double level = levels.power_level / static_cast<double>(count) * level_share(q, quantities);
             const TileTest test = test_tile(sides_of_all.in_tile(q, t), t, level);
             p.push_back(test.p);
             out.difference[q][t] = test.difference;
@@ -238,9 +241,9 @@ double test_tiles(const AllSides& sides_of_all, const BiasLevel& allowed, BiasRe
         out.p.push_back(joint.p);
         out.quantity.push_back(joint.quantity);
         if (std::isnan(joint.p)) out.left_out += left_out;
-        else ++out.tested;
+        else ++out.test_count;
     }
-    out.differs = discoveries(out.p, allowed.named, sides_of_all.first().dependent);
+    out.differs = discoveries(out.p, levels.report_level, sides_of_all.first().dependent);
     name_tiles(sides_of_all, result);
     std::vector<double> p;
     std::copy_if(out.p.begin(), out.p.end(), std::back_inserter(p), [](double x) { return !std::isnan(x); });
@@ -248,28 +251,28 @@ double test_tiles(const AllSides& sides_of_all, const BiasLevel& allowed, BiasRe
     return simes_p(p, static_cast<double>(p.size()), sides_of_all.first().dependent);
 }
 
-std::optional<MissedEvents> missed_events(const AllSides& sides_of_all, const BiasResult& found, double alpha) {
+std::optional<MissedEvents> missed_events(const AllSides& sides_of_all, const BiasResult& bias, double alpha) {
     std::optional<MissedEvents> hardest;
-    const std::size_t quantities = sides_of_all.apart.size();
+    const std::size_t quantities = sides_of_all.independent_sides.size();
     const auto consider = [&](const Found& place, double pixels, double level) {
-        const auto events = sides_of_all.apart[place.quantity].events_for(
+        const auto events = sides_of_all.independent_sides[place.quantity].events_for(
             place, pixels, level * level_share(place.quantity, quantities));
         if (events && (!hardest || events->size > hardest->size)) hardest = events;
     };
-    const auto& regions = sides_of_all.first().all.regions;
-    for (std::size_t r = 0; r < found.regions.size(); ++r) {
+    const auto& regions = sides_of_all.first().stats.regions;
+    for (std::size_t r = 0; r < bias.regions.size(); ++r) {
         const double pixels = static_cast<double>(regions[r].pixels.size()),
                      level = alpha / static_cast<double>(regions.size());
-        const MeanTest& y = found.regions[r];
+        const MeanTest& y = bias.regions[r];
         if (y.differs) consider({.box = {}, .a = y.a, .b = y.b, .p = 0, .quantity = 0}, pixels, level);
         for (std::size_t c = 0; c < y.channels.size(); ++c)
             if (y.channels[c].differs) consider({{}, y.channels[c].a, y.channels[c].b, 0, c + 1}, pixels, level);
     }
-    for (const Found& tile : found.tiles_found)
+    for (const Found& tile : bias.tiles_found)
         consider(tile, sides_of_all.first().noise_of(tile.box).pixels,
-            found.place_alpha / static_cast<double>(found.tiles.p.size()));
-    for (const Found& pixel : found.pixels_found)
-        consider(pixel, 1, pixel_level(sides_of_all.first(), found.place_alpha));
+            bias.place_alpha / static_cast<double>(bias.tiles.p.size()));
+    for (const Found& pixel : bias.pixels_found)
+        consider(pixel, 1, pixel_level(sides_of_all.first(), bias.place_alpha));
     return hardest;
 }
 
@@ -286,19 +289,19 @@ bool same_renders(const ArmStats& a, const ArmStats& b) {
 
 SingleDifference single_difference(const BiasPair& sides) {
     SingleDifference out;
-    const auto& pixels = sides.all.regions.back().pixels;
+    const auto& pixels = sides.stats.regions.back().pixels;
     double squares = 0;
     for (const std::uint32_t i : pixels) {
         double largest = 0;
-        for (std::size_t q = 0; q < sides.all.quantities; ++q)
+        for (std::size_t q = 0; q < sides.stats.quantities; ++q)
             largest = std::max(largest, std::fabs(sides.a.film.of(q).mean[i] - sides.b.film.of(q).mean[i]));
         const double y = sides.a.film.y()[i] - sides.b.film.y()[i];
         squares += y * y;
         out.different += largest > 0;
         if (largest <= out.largest) continue;
-        const int x = static_cast<int>(i) % sides.all.width, row = static_cast<int>(i) / sides.all.width;
+        const int x = static_cast<int>(i) % sides.stats.width, row = static_cast<int>(i) / sides.stats.width;
         out.largest = largest;
-        out.at = {x, row, x, row};
+        out.place = {x, row, x, row};
     }
     out.pixels = pixels.size();
     out.rms = pixels.empty() ? 0 : std::sqrt(squares / static_cast<double>(pixels.size()));
@@ -308,7 +311,7 @@ SingleDifference single_difference(const BiasPair& sides) {
 /// Returns pairs by file name if the plan requests them, else pairs with shared random numbers if these make the tests
 /// more powerful; `level` is that of one region.
 std::vector<RenderPair> pairs_for(const ComparePlan& plan, const BiasPair& sides, double level, BiasResult& out) {
-    out.shared = shared_seeds(sides.all, sides.a, sides.b);
+    out.shared = shared_seeds(sides.stats, sides.a, sides.b);
     out.all_shared = all_paired(out.shared, sides.a, sides.b);
     if (plan.pair && !sides.referred) return pairs_of(sides.a, sides.b);
     if (!plan.find_pairs) return {};
@@ -319,35 +322,36 @@ std::vector<RenderPair> pairs_for(const ComparePlan& plan, const BiasPair& sides
 }
 
 /// Tests the means of renders that are not identical.
-void test_means(const ComparePlan& plan, const CompareResult& measured, const RenderStats& stats,
-    const BiasLevel& allowed, BiasResult& out, ProgressMonitor& monitor) {
+void test_means(const ComparePlan& plan, const CompareResult& result, const RenderStats& stats, const BiasLevel& levels,
+    BiasResult& out, ProgressMonitor& monitor) {
     AllSides sides;
-    const auto sides_of = [&](std::vector<BiasPair>& to, const PairedRenders* paired) {
+    const auto add_sides = [&](std::vector<BiasPair>& to, const PairedRenders* paired) {
         for (std::size_t q = 0; q < stats.quantities; ++q)
-            to.emplace_back(plan, stats, measured, out.arm_a, out.arm_b, q, paired);
+            to.emplace_back(plan, stats, result, out.arm_a, out.arm_b, q, paired);
     };
-    sides_of(sides.apart, nullptr);
+    add_sides(sides.independent_sides, nullptr);
     const BiasPair& first = sides.first();
-    const double region =
-        allowed.each / 2 / static_cast<double>(stats.regions.size()) * level_share(0, stats.quantities);
+    const double region_level =
+        levels.power_level / 2 / static_cast<double>(stats.regions.size()) * level_share(0, stats.quantities);
     std::optional<PairedRenders> paired;
-    if (auto pairs = pairs_for(plan, first, region, out); !pairs.empty())
+    if (auto pairs = pairs_for(plan, first, region_level, out); !pairs.empty())
         paired = paired_renders(plan, stats, out.arm_a, out.arm_b, std::move(pairs), monitor);
-    if (paired) sides_of(sides.paired, &*paired);
+    if (paired) add_sides(sides.paired_sides, &*paired);
     out.paired = paired.has_value();
-    const BiasLevel half{allowed.each / 2, allowed.named / 2}, quarter{allowed.each / 4, allowed.named / 4};
+    const BiasLevel half{levels.power_level / 2, levels.report_level / 2},
+        quarter{levels.power_level / 4, levels.report_level / 4};
     out.p = 2 * test_regions(sides, half, out);
-    const bool renders = first.a.files.size() >= 2 && (first.referred || first.b.files.size() >= 2);
-    if (renders && !stats.regions.back().pixels.empty()) {
+    const bool has_several_renders = first.a.files.size() >= 2 && (first.referred || first.b.files.size() >= 2);
+    if (has_several_renders && !stats.regions.back().pixels.empty()) {
         out.p = std::fmin(out.p, 4 * test_tiles(sides, quarter, out));
-        out.p = std::fmin(out.p, 4 * test_pixels(paired ? sides.paired : sides.apart, quarter, out));
+        out.p = std::fmin(out.p, 4 * test_pixels(paired ? sides.paired_sides : sides.independent_sides, quarter, out));
     }
     out.p = std::fmin(out.p, 1);
     if (first.a.files.size() == 1 && first.b.files.size() == 1) {
         out.single = single_difference(first);  // equal values may differ in the bits of -0 and of NaN
         out.identical = out.single->pixels > 0 && out.single->different == 0 && !out.non_finite.differs();
     }
-    if (out.differs()) out.missed_events = missed_events(sides, out, allowed.each / 2);
+    if (out.differs()) out.missed_events = missed_events(sides, out, levels.power_level / 2);
 }
 
 }  // namespace
@@ -388,9 +392,9 @@ std::string reference_error_from(const ArmStats& reference) {
            "neighbouring pixels";
 }
 
-BiasResult test_bias(const ComparePlan& plan, const RenderStats& stats, const CompareResult& measured, std::size_t a,
+BiasResult test_bias(const ComparePlan& plan, const RenderStats& stats, const CompareResult& result, std::size_t a,
     std::size_t b, const BiasLevel& level, ProgressMonitor& monitor) {
-    const BiasPair sides(plan, stats, measured, a, b);
+    const BiasPair sides(plan, stats, result, a, b);
     BiasResult out;
     out.a = plan.arms[a].name;
     out.b = sides.referred ? the_reference : plan.arms[b].name;
@@ -398,11 +402,12 @@ BiasResult test_bias(const ComparePlan& plan, const RenderStats& stats, const Co
     out.arm_b = b;
     out.dependent = sides.dependent;
     if (sides.referred) out.reference_error = reference_error_from(sides.b);
-    const double looks = plan.look > 0 ? look_factor(plan.look) : 1;  // these tests do not hold at any time
-    out.non_finite = compare_non_finite(stats, sides.a, sides.b, level.named / 2 / looks);
+    const double looks =
+        plan.look_number > 0 ? look_factor(plan.look_number) : 1;  // these tests do not hold at any time
+    out.non_finite = compare_non_finite(stats, sides.a, sides.b, level.report_level / 2 / looks);
     const double share = out.non_finite.any() ? 0.5 : 1;
-    const BiasLevel rest{level.each * share, level.named * share};
-    out.place_alpha = rest.each / 4;
+    const BiasLevel remainder{level.power_level * share, level.report_level * share};
+    out.place_alpha = remainder.power_level / 4;
     out.identical = same_renders(sides.a, sides.b);
     if (out.identical)
         for (std::size_t r = 0; r < stats.regions.size(); ++r) {
@@ -411,11 +416,11 @@ BiasResult test_bias(const ComparePlan& plan, const RenderStats& stats, const Co
             t.joint_p = 1;
             t.a = t.b = mean_interval(sides.region_means(sides.a, r), confidence).mean;
         }
-    else test_means(plan, measured, stats, rest, out, monitor);
+    else test_means(plan, result, stats, remainder, out, monitor);
     if (out.identical) out.p = 1;
     out.p /= share;
     if (out.non_finite.any()) out.p = std::fmin(out.p, 2 * looks * out.non_finite.p);
-    out.sentence = sentence_of(stats, out, rest.each / 2);
+    out.sentence = sentence_of(stats, out, remainder.power_level / 2);
     return out;
 }
 
@@ -457,13 +462,13 @@ private:
 
 struct Moments {
     double difference = 0, se = 0, df = 1;
-    bool known = false;
+    bool is_known = false;
 };
 
 /// Returns a tile's variance scaled to a pixel's brightness, at most the tile's.
-double scaled(const QuantityReadings& read, std::size_t tile, double variance, double value) {
+double scaled(const QuantityReadings& readings, std::size_t tile, double variance, double value) {
     double mean = 0;
-    for (const auto& render : read.tiles) mean += render[tile].mean / static_cast<double>(read.tiles.size());
+    for (const auto& render : readings.tiles) mean += render[tile].mean / static_cast<double>(readings.tiles.size());
     const double share = mean > 0 ? std::min(1.0, std::fabs(value) / mean) : 1;
     return variance * share * share;
 }
@@ -472,10 +477,10 @@ double scaled(const QuantityReadings& read, std::size_t tile, double variance, d
 /// every render by chance, such as the same number of hits among its samples; with `floored`, its variance is at least
 /// that of its tile, scaled to the pixel's brightness.
 Moments moments(const BiasPair& s, std::size_t i, bool floored) {
-    const auto x = static_cast<int>(i % static_cast<std::size_t>(s.all.width)),
-               y = static_cast<int>(i / static_cast<std::size_t>(s.all.width));
-    const std::size_t t = s.all.tiles.of(x, y), q = s.quantity;
-    const auto over_renders = [&](const ArmStats& side, const std::vector<double>& tiles, const ArmStats& bright) {
+    const auto x = static_cast<int>(i % static_cast<std::size_t>(s.stats.width)),
+               y = static_cast<int>(i / static_cast<std::size_t>(s.stats.width));
+    const std::size_t t = s.stats.tiles.of(x, y), q = s.quantity;
+    const auto variance_of = [&](const ArmStats& side, const std::vector<double>& tiles, const ArmStats& bright) {
         const MeanFilm& film = side.film;
         double v = film.count >= 2 ? film.of(q).m2[i] / static_cast<double>(film.count - 1) : film.variance(i, q);
         if (floored) v = std::max(v, scaled(bright.quantities[q], t, tiles[t], bright.film.of(q).mean[i]));
@@ -483,22 +488,22 @@ Moments moments(const BiasPair& s, std::size_t i, bool floored) {
     };
     Moments m;
     m.difference = s.mean_a(i) - s.mean_b(i);
-    double sum = 0, below = 0;
+    double sum = 0, denominator = 0;
     const auto add = [&](double v, std::size_t renders) {
         sum += v;
-        below += renders > 1 ? v * v / static_cast<double>(renders - 1) : 0;
+        denominator += renders > 1 ? v * v / static_cast<double>(renders - 1) : 0;
     };
     if (s.in_pairs()) {
         m.difference = s.differences->film.of(q).mean[i];
-        add(over_renders(*s.differences, s.tile_paired, s.a), s.differences->files.size());
+        add(variance_of(*s.differences, s.tile_paired, s.a), s.differences->files.size());
     } else {
-        add(over_renders(s.a, s.tile_a, s.a), s.a.files.size());
-        add(over_renders(s.b, s.tile_b, s.b), s.b.files.size());
+        add(variance_of(s.a, s.tile_a, s.a), s.a.files.size());
+        add(variance_of(s.b, s.tile_b, s.b), s.b.files.size());
     }
-    m.known = std::isfinite(sum) && (sum > 0 || m.difference != 0 || s.in_pairs());
-    if (!m.known) return m;
+    m.is_known = std::isfinite(sum) && (sum > 0 || m.difference != 0 || s.in_pairs());
+    if (!m.is_known) return m;
     m.se = std::sqrt(sum);
-    m.df = below > 0 ? sum * sum / below : 1;
+    m.df = denominator > 0 ? sum * sum / denominator : 1;
     return m;
 }
 
@@ -506,10 +511,10 @@ Moments moments(const BiasPair& s, std::size_t i, bool floored) {
 /// that are in no render could explain the difference (`level`, see BiasPair::missable_difference).
 double pixel_p(const BiasPair& s, std::size_t i, double level) {
     const Moments m = moments(s, i, true);
-    if (!m.known) return std::nan("");
+    if (!m.is_known) return std::nan("");
     if (std::fabs(m.difference) < s.undetectable_difference(s.mean_b(i) + m.difference, s.mean_b(i), 1, 0, level))
         return 1;
-    if (m.se > 0 && s.look > 0) return anytime_p(m.difference / m.se, m.df, s.information());
+    if (m.se > 0 && s.look_number > 0) return anytime_p(m.difference / m.se, m.df, s.information());
     return m.se > 0 ? two_sided_p(m.difference / m.se, m.df) : m.difference == 0 ? 1 : 0;
 }
 
@@ -523,7 +528,7 @@ struct Candidate {
 /// Counts of one chunk of pixels, so that threads share nothing.
 struct PixelCounts {
     std::array<std::uint64_t, bins> histogram{};
-    std::uint64_t tested = 0;
+    std::uint64_t test_count = 0;
     std::vector<Candidate> small;  // p <= alpha
 };
 
@@ -540,21 +545,21 @@ LeastT least_t(std::span<const BiasPair> sides, double alpha) {
 }
 
 /// `table`: for the histogram; null: the histogram is not counted.
-PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double alpha, double level, const LeastT& least,
-    const Bins* table) {
-    const auto& pixels = sides[0].all.regions.back().pixels;
+PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double alpha, double level,
+    const LeastT& thresholds, const Bins* table) {
+    const auto& pixels = sides[0].stats.regions.back().pixels;
     PixelCounts out;
     for (std::size_t k = begin; k < std::min(pixels.size(), begin + pixels_at_once); ++k) {
         bool is_known = false, small = false;
         for (const BiasPair& s : sides) {
             const Moments m = moments(s, pixels[k], false);
-            if (!m.known) continue;
+            if (!m.is_known) continue;
             if (s.quantity == 0 && table)
                 ++out.histogram[m.se > 0 ? table->of(m.difference / m.se, m.df) : m.difference == 0 ? bins - 1 : 0];
             is_known = true;
-            small |= m.se > 0 ? !(std::fabs(m.difference) < least[s.quantity] * m.se) : m.difference != 0;
+            small |= m.se > 0 ? !(std::fabs(m.difference) < thresholds[s.quantity] * m.se) : m.difference != 0;
         }
-        out.tested += is_known;
+        out.test_count += is_known;
         if (!is_known || !small) continue;
         std::array<double, most_quantities> p{};
         for (const BiasPair& s : sides)
@@ -568,39 +573,40 @@ PixelCounts part_of(std::span<const BiasPair> sides, std::size_t begin, double a
 }  // namespace
 
 double pixel_level(const BiasPair& s, double alpha) {
-    return alpha / static_cast<double>(s.all.regions.back().pixels.size());
+    return alpha / static_cast<double>(s.stats.regions.back().pixels.size());
 }
 
 double test_pixels(std::span<const BiasPair> sides, const BiasLevel& levels, BiasResult& out) {
     const BiasPair& s = sides[0];
     if (s.lone_reference() && s.b.film.stated_variance.empty()) return std::nan("");
-    const std::size_t count = s.all.regions.back().pixels.size();
-    const double level = pixel_level(s, levels.each);
+    const std::size_t count = s.stats.regions.back().pixels.size();
+    const double level = pixel_level(s, levels.power_level);
     std::optional<Bins> table;
     if (s.count_pixel_p) table.emplace(count > table_from ? most_degrees(s) : 0);
-    const LeastT least = least_t(sides, levels.named);
+    const LeastT thresholds = least_t(sides, levels.report_level);
     std::vector<PixelCounts> parts((count + pixels_at_once - 1) / pixels_at_once);
     parallel_for(std::size_t{0}, parts.size(), [&](std::size_t c) {
-        parts[c] = part_of(sides, c * pixels_at_once, levels.named, level, least, table ? &*table : nullptr);
+        parts[c] =
+            part_of(sides, c * pixels_at_once, levels.report_level, level, thresholds, table ? &*table : nullptr);
     });
     out.pixel_p.assign(bins, 0);
     out.pixels_by.assign(sides.size(), 0);
     std::vector<Candidate> small;
     for (const PixelCounts& part : parts) {
         for (std::size_t k = 0; k < bins; ++k) out.pixel_p[k] += part.histogram[k];
-        out.pixels_tested += part.tested;
+        out.pixels_tested += part.test_count;
         small.insert(small.end(), part.small.begin(), part.small.end());
     }
     std::sort(small.begin(), small.end());
     std::vector<double> p;
     for (const Candidate& c : small) p.push_back(c.p.p);
-    out.pixels_different = discovered(p, static_cast<double>(out.pixels_tested), levels.named, s.dependent);
+    out.pixels_different = discovered(p, static_cast<double>(out.pixels_tested), levels.report_level, s.dependent);
     small.resize(out.pixels_different);
     for (const Candidate& c : small) {
         ++out.pixels_by[c.p.quantity];
         out.different_pixels.push_back(c.pixel);
         if (out.pixels_found.size() == named_most) continue;
-        const int x = static_cast<int>(c.pixel) % s.all.width, y = static_cast<int>(c.pixel) / s.all.width;
+        const int x = static_cast<int>(c.pixel) % s.stats.width, y = static_cast<int>(c.pixel) / s.stats.width;
         const BiasPair& pair = sides[c.p.quantity];
         const double b = pair.mean_b(c.pixel);
         out.pixels_found.push_back(

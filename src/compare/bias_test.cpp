@@ -46,8 +46,8 @@ TEST(NonFinite, PixelsInEveryRenderOfOneSideAndInNoneOfTheOtherAreADifference) {
             const NonFinite& found = r.bias[0].non_finite;  // of b against a
             EXPECT_THAT(found.a.pixels, ElementsAre(35, 36, 52));
             EXPECT_TRUE(found.b.pixels.empty());
-            EXPECT_EQ(found.a.least, static_cast<std::uint32_t>(renders));
-            EXPECT_EQ(found.a.other_most, 0u);
+            EXPECT_EQ(found.a.least_renders, static_cast<std::uint32_t>(renders));
+            EXPECT_EQ(found.a.most_other_renders, 0u);
             EXPECT_THAT(r.sentence, HasSubstr("3 pixels of b are not finite"));
             EXPECT_THAT(r.sentence, HasSubstr("(3, 2), (4, 2), (4, 3)"));
         }
@@ -59,7 +59,7 @@ TEST(NonFinite, PixelsOnBothSidesAreLeftOutAndReported) {
     for (const char arm : {'a', 'b'}) set_pixel(m, arm, 35, 8);
     const CompareResult r = m.compare({same, wide});
     EXPECT_EQ(r.state, State::holds) << r.sentence;
-    EXPECT_EQ(r.bias[0].non_finite.both, 1u);
+    EXPECT_EQ(r.bias[0].non_finite.two_sided, 1u);
     EXPECT_THAT(r.bias[0].sentence, HasSubstr("1 pixel not finite on both sides is left out."));
 }
 
@@ -73,7 +73,7 @@ TEST(NonFinite, PixelsInSomeRendersOfOneSideAreADifferenceIfEqualRatesAreUnlikel
         const CompareResult r = m.compare({same, wide});
         EXPECT_EQ(r.state, state) << renders << r.sentence;
         EXPECT_EQ(r.bias[0].non_finite.b.pixels.size(), state == State::fails ? 1u : 0u);
-        EXPECT_EQ(r.bias[0].non_finite.one, state == State::fails ? 0u : 1u);
+        EXPECT_EQ(r.bias[0].non_finite.one_sided, state == State::fails ? 0u : 1u);
     }
 }
 
@@ -276,8 +276,8 @@ TEST(Identical, OneFilePerSideIsDescribedAndInconclusive) {
     ASSERT_TRUE(r.bias[0].single);
     EXPECT_EQ(r.bias[0].single->different, 1u);
     EXPECT_NEAR(r.bias[0].single->largest, 0.25, 1e-6);
-    EXPECT_EQ(r.bias[0].single->at.x0, 5);
-    EXPECT_EQ(r.bias[0].single->at.y0, 2);
+    EXPECT_EQ(r.bias[0].single->place.x0, 5);
+    EXPECT_EQ(r.bias[0].single->place.y0, 2);
 }
 
 }  // namespace bias_test

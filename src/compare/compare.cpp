@@ -62,15 +62,15 @@ double value_of(const ParsedQuantity& side, const CompareResult& result, std::st
 std::string why_not_finite(const RenderStats& stats, const CompareResult& result, const std::string& region) {
     const auto set =
         std::find_if(stats.regions.begin(), stats.regions.end(), [&](const PixelSet& s) { return s.name == region; });
-    const auto inside = [&](const FailingPixels& failing) {
+    const auto touches_region = [&](const FailingPixels& failing) {
         return std::any_of(failing.pixels.begin(), failing.pixels.end(),
             [&](std::uint32_t i) { return std::binary_search(set->left_out.begin(), set->left_out.end(), i); });
     };
     for (const BiasResult& b : result.bias)
-        if (inside(b.non_finite.a) || inside(b.non_finite.b)) return failing_pixels(stats, b);
+        if (touches_region(b.non_finite.a) || touches_region(b.non_finite.b)) return failing_pixels(stats, b);
     if (stats.arms.size() > 1 || stats.reference) return {};
-    const ArmStats& only = stats.arms[0];
-    const auto fails = [&](std::uint32_t i) { return only.not_finite[i] == only.files.size(); };
+    const ArmStats& arm = stats.arms[0];
+    const auto fails = [&](std::uint32_t i) { return arm.not_finite[i] == arm.files.size(); };
     const auto count = std::count_if(set->left_out.begin(), set->left_out.end(), fails);
     return count ? fmt::format("{} of its pixels are finite in no render", count) : "";
 }
@@ -105,10 +105,11 @@ std::string why_inconclusive(const ComparePlan& plan, const BiasResult& bias) {
             bias.a, bias.b, bias.non_finite.undecided);
     for (const MeanTest& t : bias.regions) {
         if (!t.caveat.empty()) return fmt::format("{} and {} in {}: {}", bias.a, bias.b, t.region, t.caveat);
-        if (!t.why.empty()) return fmt::format("{} and {} in {}: {}{}", bias.a, bias.b, t.region, t.why, t.needed);
+        if (!t.why.empty()) return fmt::format("{} and {} in {}: {}{}", bias.a, bias.b, t.region, t.why, t.requirement);
         for (const MeanTest& c : t.channels)
             if (!c.why.empty())
-                return fmt::format("{} of {} and {} in {}: {}{}", c.region, bias.a, bias.b, t.region, c.why, c.needed);
+                return fmt::format(
+                    "{} of {} and {} in {}: {}{}", c.region, bias.a, bias.b, t.region, c.why, c.requirement);
         if (!(t.smallest <= plan.smallest))
             return fmt::format(
                 "{} and {} in {}: a difference of {:.2g} % would have been found, {:.2g} % is required; more "

@@ -37,13 +37,14 @@ double reference_variance(const RenderStats& stats, std::size_t region);
 /// Returns the source of that error, in words.
 std::string reference_error_from(const ArmStats& reference);
 
-/// The level of a test of two arms, which all its tests share. `each`: of the stated power and of the differences that
-/// cannot be detected. `named`: of the reported regions, tiles and pixels; larger if several such tests share a level.
+/// The level of a test of two arms, which all its tests share. `power_level`: of the stated power and of the
+/// differences that cannot be detected. `report_level`: of the reported regions, tiles and pixels; larger if several
+/// such tests share a level.
 struct BiasLevel {
-    double each, named;
+    double power_level, report_level;
 };
 /// Tests whether two arms (b = arms.size(): the reference) have the same expectation.
-BiasResult test_bias(const ComparePlan& plan, const RenderStats& stats, const CompareResult& measured, std::size_t a,
+BiasResult test_bias(const ComparePlan& plan, const RenderStats& stats, const CompareResult& result, std::size_t a,
     std::size_t b, const BiasLevel& level, ProgressMonitor& monitor);
 
 /// Returns the result as one sentence; `alpha` is the level of its regions.

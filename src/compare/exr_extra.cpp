@@ -20,17 +20,17 @@ namespace {
 std::optional<double> number_of(const ExrAttribute& attribute) {
     if (attribute.number) return attribute.number;
     double total = 0;
-    std::string_view rest = attribute.text;
+    std::string_view text = attribute.text;
     while (true) {
         double piece = 0;
-        const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), piece);
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), piece);
         if (error == std::errc::result_out_of_range) piece = HUGE_VAL;
         else if (error != std::errc{}) return {};
         total = 60 * total + piece;
-        rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-        if (rest.empty() || rest == "s") return total;
-        if (rest.front() != ':') return {};
-        rest.remove_prefix(1);
+        text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+        if (text.empty() || text == "s") return total;
+        if (text.front() != ':') return {};
+        text.remove_prefix(1);
     }
 }
 

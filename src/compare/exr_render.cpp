@@ -31,9 +31,9 @@ Render render_of(const ExrPart& part, const OpenFile& file, const ExrLayer& laye
 
 }  // namespace
 
-Render read_exr(const OpenFile& file, const std::string& wanted, const ReadingOptions& options) {
+Render read_exr(const OpenFile& file, const std::string& layer_name, const ReadingOptions& options) {
     const ExrFile exr(file);
-    const ExrLayer layer = options.channel.empty() ? chosen_layer(exr, file.path(), wanted)
+    const ExrLayer layer = options.channel.empty() ? chosen_layer(exr, file.path(), layer_name)
                                                    : layer_of_channel(exr, file.path(), options.channel);
     const ExrPart& part = exr.parts()[static_cast<std::size_t>(layer.part)];
     Render out = render_of(part, file, layer);

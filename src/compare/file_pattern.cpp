@@ -25,21 +25,21 @@ constexpr std::size_t wildcards_most = 32, length_most = 4096;  // 4096: of a pa
 std::size_t byte_of(char c) { return static_cast<unsigned char>(c); }
 
 /// Reads what stands between [ and ]. Throws InputError.
-PatternPiece set_of(std::string_view inside, std::string_view pattern, const SourceLocation& place) {
+PatternPiece set_of(std::string_view content, std::string_view pattern, const SourceLocation& place) {
     PatternPiece out;
     out.kind = PieceKind::set;
-    const bool negated = inside.size() > 1 && inside[0] == '!';
-    if (negated) inside.remove_prefix(1);
-    for (std::size_t i = 0; i < inside.size(); ++i) {
-        const bool range = i + 2 < inside.size() && inside[i + 1] == '-';
-        const std::size_t first = byte_of(inside[i]), last = byte_of(inside[range ? i + 2 : i]);
+    const bool is_negated = content.size() > 1 && content[0] == '!';
+    if (is_negated) content.remove_prefix(1);
+    for (std::size_t i = 0; i < content.size(); ++i) {
+        const bool is_range = i + 2 < content.size() && content[i + 1] == '-';
+        const std::size_t first = byte_of(content[i]), last = byte_of(content[is_range ? i + 2 : i]);
         if (last < first)
             throw InputError(place,
-                fmt::format("expected a range in ascending order in the pattern '{}', found [{}]", pattern, inside));
+                fmt::format("expected a range in ascending order in the pattern '{}', found [{}]", pattern, content));
         for (std::size_t c = first; c <= last; ++c) out.set.set(c);
-        if (range) i += 2;
+        if (is_range) i += 2;
     }
-    if (negated) out.set.flip();
+    if (is_negated) out.set.flip();
     out.set.reset(byte_of('/'));
     return out;
 }
@@ -73,9 +73,9 @@ Pieces pieces_of(std::string_view part, std::string_view pattern, const SourceLo
             add(PieceKind::digits);
         } else if (end != std::string_view::npos) {
             length = end + 1;
-            const std::string_view inside = part.substr(1, end - 1);
-            if (inside.size() == 1) add_text(out, inside);
-            else out.push_back(set_of(inside, pattern, place));
+            const std::string_view content = part.substr(1, end - 1);
+            if (content.size() == 1) add_text(out, content);
+            else out.push_back(set_of(content, pattern, place));
         } else add_text(out, part.substr(0, 1));
         part.remove_prefix(length);
     }
@@ -101,26 +101,26 @@ public:
 
     bool match(Match& out) {
         forget();
-        return rest(0, 0, out);
+        return match_rest(0, 0, out);
     }
 
 private:
-    void forget() { failed_.assign((pieces_.size() + 1) * (text_.size() + 1), false); }
+    void forget() { failed_states_.assign((pieces_.size() + 1) * (text_.size() + 1), false); }
 
-    bool rest(std::size_t piece, std::size_t from, Match& out) {
+    bool match_rest(std::size_t piece, std::size_t from, Match& out) {
         if (piece == pieces_.size()) return from == text_.size();
         const std::size_t state = piece * (text_.size() + 1) + from;
-        if (failed_[state]) return false;
-        const bool found = alternatives(piece, from, out);
-        if (!found) failed_[state] = true;
-        return found;
+        if (failed_states_[state]) return false;
+        const bool matches = alternatives(piece, from, out);
+        if (!matches) failed_states_[state] = true;
+        return matches;
     }
 
     bool alternatives(std::size_t piece, std::size_t from, Match& out) {
         const PatternPiece& p = pieces_[piece];
         const std::size_t remaining = std::min(text_.find('/', from), text_.size()) - from;
         if (p.kind == PieceKind::text)
-            return text_.substr(from).starts_with(p.text) && rest(piece + 1, from + p.text.size(), out);
+            return text_.substr(from).starts_with(p.text) && match_rest(piece + 1, from + p.text.size(), out);
         if (p.kind == PieceKind::view) return view(piece, from, remaining, out);
         if (p.kind == PieceKind::one || p.kind == PieceKind::set) {
             const bool fits = remaining > 0 && (p.kind == PieceKind::one || p.set[byte_of(text_[from])]);
@@ -141,24 +141,25 @@ private:
 
     bool wildcard(std::size_t piece, std::size_t from, std::size_t length, Match& out) {
         out.wildcards.emplace_back(text_.substr(from, length));
-        if (rest(piece + 1, from + length, out)) return true;
+        if (match_rest(piece + 1, from + length, out)) return true;
         out.wildcards.pop_back();
         return false;
     }
 
     /// The longest view that matches; each later {view} matches the same text.
     bool view(std::size_t piece, std::size_t from, std::size_t remaining, Match& out) {
-        if (out.view) return text_.substr(from).starts_with(*out.view) && rest(piece + 1, from + out.view->size(), out);
+        if (out.view)
+            return text_.substr(from).starts_with(*out.view) && match_rest(piece + 1, from + out.view->size(), out);
         for (std::size_t length = remaining; length > 0; --length) {
             if (any_view_) {
-                if (rest(piece + 1, from + length, out)) return true;
+                if (match_rest(piece + 1, from + length, out)) return true;
                 continue;
             }
             out.view = text_.substr(from, length);
-            const std::vector<bool> before = failed_;
+            const std::vector<bool> former_states = failed_states_;
             forget();
-            if (rest(piece + 1, from + length, out)) return true;
-            failed_ = before;
+            if (match_rest(piece + 1, from + length, out)) return true;
+            failed_states_ = former_states;
             out.view.reset();
         }
         return false;
@@ -167,7 +168,7 @@ private:
     const Pieces& pieces_;
     std::string_view text_;
     bool any_view_;  // the text of a view is not compared with that of others
-    std::vector<bool> failed_;
+    std::vector<bool> failed_states_;
 };
 
 bool is_text(const Pieces& part) { return part.size() == 1 && part[0].kind == PieceKind::text; }
@@ -199,17 +200,17 @@ std::vector<std::string> names_in(const std::string& folder) {
 }  // namespace
 
 FilePattern::FilePattern(std::string pattern, SourceLocation place, bool has_views)
-    : text_(std::move(pattern)), at_(std::move(place)), rooted_(text_.starts_with('/')) {
+    : text_(std::move(pattern)), location_(std::move(place)), rooted_(text_.starts_with('/')) {
     if (text_.size() > length_most)
         throw InputError(
-            at_, fmt::format("expected a pattern of at most {} characters, found {}", length_most, text_.size()));
+            location_, fmt::format("expected a pattern of at most {} characters, found {}", length_most, text_.size()));
     std::size_t wildcards = 0;
     for (const std::string_view part : split_at_slashes(text_)) {
-        parts_.push_back(pieces_of(part, text_, at_, has_views));
+        parts_.push_back(pieces_of(part, text_, location_, has_views));
         for (const PatternPiece& piece : parts_.back()) wildcards += piece.kind != PieceKind::text;
     }
     if (wildcards > wildcards_most)
-        throw InputError(at_,
+        throw InputError(location_,
             fmt::format(
                 "expected at most {} wildcards in the pattern '{}', found {}", wildcards_most, text_, wildcards));
 }
@@ -222,7 +223,7 @@ bool FilePattern::has_view() const {
 
 void FilePattern::find_below(const std::string& folder, std::size_t part, std::vector<std::string>& out) const {
     const Pieces& pieces = parts_[part];
-    const bool last = part + 1 == parts_.size();
+    const bool is_last = part + 1 == parts_.size();
     for (const std::string& name : is_text(pieces) ? std::vector{pieces[0].text} : names_in(folder)) {
         Match ignored;
         if (!is_text(pieces) && (is_hidden(pieces, name) || !Matcher(pieces, name, true).match(ignored))) continue;
@@ -230,8 +231,8 @@ void FilePattern::find_below(const std::string& folder, std::size_t part, std::v
         struct stat s{};
         const bool exists = ::lstat(path.c_str(), &s) == 0;
         const bool is_folder = exists && ::stat(path.c_str(), &s) == 0 && S_ISDIR(s.st_mode);
-        if (last && exists && !is_folder) out.push_back(path);
-        if (!last && is_folder) find_below(path + "/", part + 1, out);
+        if (is_last && exists && !is_folder) out.push_back(path);
+        if (!is_last && is_folder) find_below(path + "/", part + 1, out);
     }
 }
 
@@ -250,9 +251,9 @@ std::optional<MatchedFile> FilePattern::match(const std::string& path) const {
         pieces.insert(pieces.end(), parts_[k].begin(), parts_[k].end());
         text += names[k];
     }
-    Match found;
-    if (!Matcher(pieces, text, false).match(found)) return {};
-    return MatchedFile{path, found.view.value_or(""), std::move(found.wildcards)};
+    Match parts;
+    if (!Matcher(pieces, text, false).match(parts)) return {};
+    return MatchedFile{path, parts.view.value_or(""), std::move(parts.wildcards)};
 }
 
 std::vector<MatchedFile> FilePattern::find() const {
@@ -261,7 +262,7 @@ std::vector<MatchedFile> FilePattern::find() const {
     std::sort(paths.begin(), paths.end());
     std::vector<MatchedFile> out;
     for (const std::string& path : paths)
-        if (auto matched = match(path)) out.push_back(std::move(*matched));
+        if (auto file = match(path)) out.push_back(std::move(*file));
     return out;
 }
 

@@ -34,7 +34,7 @@ public:
     FilePattern(std::string pattern, SourceLocation place, bool has_views);
 
     const std::string& text() const { return text_; }
-    const SourceLocation& at() const { return at_; }
+    const SourceLocation& location() const { return location_; }
     bool has_view() const;
     /// Returns the files that match, sorted by path. Throws InputError if a folder cannot be read.
     std::vector<MatchedFile> find() const;
@@ -50,7 +50,7 @@ private:
     void find_below(const std::string& folder, std::size_t part, std::vector<std::string>& out) const;
 
     std::string text_;
-    SourceLocation at_;
+    SourceLocation location_;
     std::vector<Pieces> parts_;  // between slashes
     bool rooted_ = false;        // begins with '/'
 };

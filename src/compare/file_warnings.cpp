@@ -13,11 +13,11 @@ namespace crescent {
 void FileWarnings::add(
     const std::string& file, const std::string& text, std::uint64_t pixels, const std::string& kind) {
     const std::string& key = kind.empty() ? text : kind;
-    auto found = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& k) { return k.kind == key; });
-    if (found == kinds_.end()) found = kinds_.insert(kinds_.end(), {key, file, text, 0, pixels, pixels});
-    ++found->files;
-    found->fewest = std::min(found->fewest, pixels);
-    found->most = std::max(found->most, pixels);
+    auto entry = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& k) { return k.kind == key; });
+    if (entry == kinds_.end()) entry = kinds_.insert(kinds_.end(), {key, file, text, 0, pixels, pixels});
+    ++entry->files;
+    entry->fewest_pixels = std::min(entry->fewest_pixels, pixels);
+    entry->most_pixels = std::max(entry->most_pixels, pixels);
 }
 
 std::vector<std::string> FileWarnings::lines() const {
@@ -27,15 +27,15 @@ std::vector<std::string> FileWarnings::lines() const {
 }
 
 std::string FileWarnings::line(const std::string& kind) const {
-    const auto found = std::ranges::find(kinds_, kind, &Kind::kind);
-    return found == kinds_.end() ? "" : found->line();
+    const auto entry = std::ranges::find(kinds_, kind, &Kind::kind);
+    return entry == kinds_.end() ? "" : entry->line();
 }
 
 std::string FileWarnings::Kind::line() const {
     const std::string name = files > 1 ? fmt::format("{} (the first of {} files)", file, files) : file;
-    const std::string pixels = most == 0 ? ""
-        : fewest == most                 ? fmt::format("{} pixel{} ", most, most == 1 ? "" : "s")
-                                         : fmt::format("{} to {} pixels ", fewest, most);
+    const std::string pixels = most_pixels == 0 ? ""
+        : fewest_pixels == most_pixels          ? fmt::format("{} pixel{} ", most_pixels, most_pixels == 1 ? "" : "s")
+                                                : fmt::format("{} to {} pixels ", fewest_pixels, most_pixels);
     return fmt::format("{}: {}{}", name, pixels, text);
 }
 
@@ -97,10 +97,10 @@ struct Counts {
 class NonFiniteTest {
 public:
     NonFiniteTest(const RenderStats& stats, const ArmStats& a, const ArmStats& b)
-        : all_(stats), a_(a), b_(b), na_(a.files.size()), nb_(b.files.size()) {}
+        : stats_(stats), a_(a), b_(b), na_(a.files.size()), nb_(b.files.size()) {}
 
     NonFinite result(double alpha) {
-        for (const std::uint32_t i : all_.regions.back().left_out)
+        for (const std::uint32_t i : stats_.regions.back().left_out)
             if (failures(a_, i) + failures(b_, i) > 0) failing_.push_back(i);
         if (failing_.empty()) return {};
         differs_.assign(failing_.size(), false);
@@ -125,9 +125,9 @@ private:
                 out_.p = 0;
             }
         }
-        const std::vector<bool> found = discoveries(p, alpha, false);
+        const std::vector<bool> rejections = discoveries(p, alpha, false);
         for (std::size_t k = 0; k < p.size(); ++k)
-            if (found[k]) differs_[k] = true;
+            if (rejections[k]) differs_[k] = true;
         std::sort(p.begin(), p.end());
         out_.p = std::min(out_.p, 2 * simes_p(p, static_cast<double>(p.size()), false));
     }
@@ -140,48 +140,49 @@ private:
         };
         std::vector<double> p;
         const double share = static_cast<double>(na_) / static_cast<double>(na_ + nb_);
-        for (std::size_t r = 0; r < all_.regions.size(); ++r) {
-            FailedGroups g{.region = all_.regions[r].name, .a = sum(a_, r), .b = sum(b_, r), .p = 1, .differs = false};
+        for (std::size_t r = 0; r < stats_.regions.size(); ++r) {
+            FailedGroups g{
+                .region = stats_.regions[r].name, .a = sum(a_, r), .b = sum(b_, r), .p = 1, .differs = false};
             g.p = binomial_exact(g.a, g.a + g.b, share);
             p.push_back(g.p);
             out_.groups.push_back(g);
         }
-        const std::vector<bool> found = holm(p, alpha);
+        const std::vector<bool> rejections = holm(p, alpha);
         out_.p = std::min(out_.p, 2 * static_cast<double>(p.size()) * *std::min_element(p.begin(), p.end()));
         for (std::size_t r = 0; r < p.size(); ++r) {
             FailedGroups& g = out_.groups[r];
-            g.differs = found[r];
-            const bool more_a = g.a * nb_ > g.b * na_;
-            for (const std::uint32_t i : all_.regions[r].left_out) {
+            g.differs = rejections[r];
+            const bool is_more_in_a = g.a * nb_ > g.b * na_;
+            for (const std::uint32_t i : stats_.regions[r].left_out) {
                 const Counts c = counts(i);
-                if (!g.differs || !(more_a ? more_in_a(c) : more_in_b(c))) continue;
+                if (!g.differs || !(is_more_in_a ? more_in_a(c) : more_in_b(c))) continue;
                 differs_[static_cast<std::size_t>(
                     std::lower_bound(failing_.begin(), failing_.end(), i) - failing_.begin())] = true;
             }
         }
     }
 
-    static void put(FailingPixels& to, std::uint32_t pixel, std::uint32_t failed_here, std::uint32_t other) {
-        const bool first = to.pixels.empty();
+    static void put(FailingPixels& to, std::uint32_t pixel, std::uint32_t renders, std::uint32_t other_renders) {
+        const bool is_first = to.pixels.empty();
         to.pixels.push_back(pixel);
-        to.least = first ? failed_here : std::min(to.least, failed_here);
-        to.most = std::max(to.most, failed_here);
-        to.other_least = first ? other : std::min(to.other_least, other);
-        to.other_most = std::max(to.other_most, other);
+        to.least_renders = is_first ? renders : std::min(to.least_renders, renders);
+        to.most_renders = std::max(to.most_renders, renders);
+        to.least_other_renders = is_first ? other_renders : std::min(to.least_other_renders, other_renders);
+        to.most_other_renders = std::max(to.most_other_renders, other_renders);
     }
 
     void collect() {
         for (std::size_t k = 0; k < failing_.size(); ++k) {
             const Counts c = counts(failing_[k]);
             if (!differs_[k]) {
-                ++(c.a > 0 && c.b > 0 ? out_.both : out_.one);
+                ++(c.a > 0 && c.b > 0 ? out_.two_sided : out_.one_sided);
                 out_.undecided += (c.a == 0 && 2 * c.b >= nb_) || (c.b == 0 && 2 * c.a >= na_);
             } else if (more_in_a(c)) put(out_.a, failing_[k], c.a, c.b);
             else put(out_.b, failing_[k], c.b, c.a);
         }
     }
 
-    const RenderStats& all_;
+    const RenderStats& stats_;
     const ArmStats &a_, &b_;
     const std::size_t na_, nb_;
     std::vector<std::uint32_t> failing_;  // pixels that fail in some render of either side, ascending

@@ -21,7 +21,7 @@ public:
 private:
     struct Kind {
         std::string kind, file, text;  // of the first file
-        std::uint64_t files = 0, fewest = 0, most = 0;
+        std::uint64_t files = 0, fewest_pixels = 0, most_pixels = 0;
         std::string line() const;
     };
     std::vector<Kind> kinds_;
@@ -38,8 +38,9 @@ std::vector<std::uint32_t> failed_groups(const Render& render, const RenderStats
 /// Pixels of one side that fail (are not finite) more often than on the other side.
 struct FailingPixels {
     std::vector<std::uint32_t> pixels;  // ascending
-    std::uint32_t least = 0, most = 0;  // smallest and largest number of renders of this side in which one fails
-    std::uint32_t other_least = 0, other_most = 0;  // the same for the other side
+    // The smallest and the largest number of renders of this side, and of the other, in which one fails.
+    std::uint32_t least_renders = 0, most_renders = 0;
+    std::uint32_t least_other_renders = 0, most_other_renders = 0;
 };
 
 /// Groups of failing pixels of one region, over all renders of a side.
@@ -52,9 +53,10 @@ struct FailedGroups {
 
 /// The result for the values of two sides that are not finite.
 struct NonFinite {
-    std::uint64_t both = 0, one = 0;  // pixels that fail on both sides, or on one side, without a difference
-    std::uint64_t undecided = 0;  // of `one`: those in half of the renders of a side or more, too few renders to decide
-    FailingPixels a, b;           // pixels that differ: those that fail more often on side a, on side b
+    std::uint64_t two_sided = 0, one_sided = 0;  // pixels that fail on both sides, or on one side, without a difference
+    // Of `one_sided`: those in half of the renders of a side or more, too few renders to decide.
+    std::uint64_t undecided = 0;
+    FailingPixels a, b;                // pixels that differ: those that fail more often on side a, on side b
     std::vector<FailedGroups> groups;  // one per region; empty if no pixel fails
     double p = 1;                      // of equal rates everywhere
     bool any() const { return !groups.empty(); }

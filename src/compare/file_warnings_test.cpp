@@ -76,7 +76,7 @@ TEST(NonFiniteCounts, AreComparedByFishersTest) {
     const NonFinite five = compare_non_finite(all, side(8, {{5, 5}}), side(8, {}), 0.03),
                     six = compare_non_finite(all, side(8, {{5, 6}}), side(8, {}), 0.03);
     EXPECT_FALSE(five.differs());
-    EXPECT_EQ(five.one, 1u);
+    EXPECT_EQ(five.one_sided, 1u);
     EXPECT_EQ(five.undecided, 1u);  // half of the renders or more
     EXPECT_NEAR(five.p, 2 * 112.0 / 4368, 1e-9);
     EXPECT_THAT(six.a.pixels, ElementsAre(5));
@@ -87,10 +87,10 @@ TEST(NonFiniteCounts, OfOneSideInEveryRenderDifferAtOnce) {
     const NonFinite found = compare_non_finite(image({3, 9}), side(1, {{9, 1}}), side(2, {{3, 2}, {9, 1}}), 1e-9);
     EXPECT_THAT(found.b.pixels, ElementsAre(3));
     EXPECT_THAT(found.a.pixels, IsEmpty());
-    EXPECT_EQ(found.both, 1u);
+    EXPECT_EQ(found.two_sided, 1u);
     EXPECT_EQ(found.p, 0);
-    EXPECT_EQ(found.b.least, 2u);
-    EXPECT_EQ(found.b.other_most, 0u);
+    EXPECT_EQ(found.b.least_renders, 2u);
+    EXPECT_EQ(found.b.most_other_renders, 0u);
 }
 
 TEST(NonFiniteCounts, OfGroupsShowScatteredFailures) {

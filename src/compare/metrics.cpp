@@ -42,7 +42,7 @@ template <class Transform> MetricValue mean_of(const Values& values, bool heavy,
     return value_of(mean_interval(values, confidence), heavy, transform);
 }
 
-double same(double v) { return v; }
+double identity(double v) { return v; }
 double at_least_0(double v) { return std::max(0.0, v); }
 double root_of(double v) { return std::sqrt(at_least_0(v)); }
 
@@ -57,17 +57,17 @@ double mean_variance(const MeanFilm& film, const PixelSet& set) {
 MetricValue variance(const ArmStats& arm, const PixelSet& set, std::size_t region, bool heavy) {
     const double k = static_cast<double>(arm.files.size());
     if (arm.files.size() >= 2) {
-        Values each = over_renders(arm, region, [&](const RegionStats& r) { return r.spread * k / (k - 1); });
-        MetricValue out = mean_of(each, heavy, at_least_0);
+        Values spreads = over_renders(arm, region, [&](const RegionStats& r) { return r.spread * k / (k - 1); });
+        MetricValue out = mean_of(spreads, heavy, at_least_0);
         if (arm.files.size() == 2) {
             out.interval.reset();
             out.why = "two renders have equal spreads: no interval";
         }
         return out;
     }
-    const double stated = mean_variance(arm.film, set);
-    if (std::isnan(stated)) return missing("one render without a variance channel has no variance");
-    return {stated, {}, "as the renderer wrote it; one render has no interval"};
+    const double stated_variance = mean_variance(arm.film, set);
+    if (std::isnan(stated_variance)) return missing("one render without a variance channel has no variance");
+    return {stated_variance, {}, "as the renderer wrote it; one render has no interval"};
 }
 
 /// Squared bias without the variance: the mean of e_k e_l over pairs of renders, minus the reference's own error. Pairs
@@ -81,8 +81,8 @@ MetricValue squared_bias(const ArmStats& arm, const PixelSet& set, std::size_t r
         sum += render[region].with_sum;
         squares += render[region].mse;
     }
-    const auto statistic = [&](double total, double each, double n) {
-        return (total - each) / (n * (n - 1)) - reference;
+    const auto statistic = [&](double total, double diagonal, double n) {
+        return (total - diagonal) / (n * (n - 1)) - reference;
     };
     MetricValue out{statistic(sum, squares, k), {}, ""};
     if (heavy) out.why = "heavy tail";
@@ -93,8 +93,8 @@ MetricValue squared_bias(const ArmStats& arm, const PixelSet& set, std::size_t r
     Values pseudo;
     for (const auto& render : arm.regions) {
         const RegionStats& r = render[region];
-        const double without = statistic(sum - 2 * r.with_sum + r.mse, squares - r.mse, k - 1);
-        pseudo.push_back(k * *out.value - (k - 1) * without);
+        const double estimate = statistic(sum - 2 * r.with_sum + r.mse, squares - r.mse, k - 1);
+        pseudo.push_back(k * *out.value - (k - 1) * estimate);
     }
     const MeanInterval m = mean_interval(pseudo, confidence);
     const double half = std::max(m.high - m.mean, student_quantile(0.5 + confidence / 2, k - 1) * least_se);
@@ -114,8 +114,8 @@ template <class Transform> MetricValue transformed_metric(const MetricValue& fro
 }
 
 void costs(const MetricValue& var, const Cost& cost, RegionResult& out) {
-    const auto per_unit = [&](const std::optional<double>& each, const char* why) {
-        return each ? transformed_metric(var, [&](double v) { return v * *each; }) : missing(why);
+    const auto per_unit = [&](const std::optional<double>& unit, const char* why) {
+        return unit ? transformed_metric(var, [&](double v) { return v * *unit; }) : missing(why);
     };
     const char* no_time = "no render time: give --seconds";
     out.metrics.emplace_back("efficiency",
@@ -126,7 +126,7 @@ void costs(const MetricValue& var, const Cost& cost, RegionResult& out) {
 
 /// Returns the number of renders for which the largest error would be a twentieth of the sum: the largest of n grows as
 /// n^k, their sum as n.
-std::optional<double> needed(const RegionResult& r, double renders) {
+std::optional<double> needed_renders(const RegionResult& r, double renders) {
     const double k = r.tail ? std::max(0.5, r.tail->k) : 0.5;
     if (!(k < 1)) return {};
     const double count = std::ceil(renders * math::pow(std::max(1.0, r.largest_share / 0.05), 1 / (1 - k)));
@@ -140,18 +140,19 @@ void tail_of(const ArmStats& arm, std::size_t region, RegionResult& out) {
     sum *= static_cast<double>(out.pixels);
     if (sum > 0 && !arm.largest[region].empty())
         out.largest_share = static_cast<double>(arm.largest[region].front()) / sum;
-    if (out.heavy()) out.renders_needed = needed(out, static_cast<double>(arm.files.size()));
+    if (out.heavy()) out.renders_needed = needed_renders(out, static_cast<double>(arm.files.size()));
 }
 
 /// Returns the variance that the renderer states over the variance of its renders.
 std::optional<double> stated_over_measured(const ArmStats& arm, const PixelSet& set) {
     if (arm.film.stated_variance.empty() || arm.film.count < 2) return {};
-    double stated = 0, measured = 0;
+    double stated_sum = 0, measured_sum = 0;
     for (const std::uint32_t i : set.pixels) {
-        stated += static_cast<double>(arm.film.stated_variance[i]);
-        measured += arm.film.variance(i);
+        stated_sum += static_cast<double>(arm.film.stated_variance[i]);
+        measured_sum += arm.film.variance(i);
     }
-    return measured > 0 ? std::optional(stated / static_cast<double>(arm.film.count) / measured) : std::nullopt;
+    return measured_sum > 0 ? std::optional(stated_sum / static_cast<double>(arm.film.count) / measured_sum)
+                            : std::nullopt;
 }
 
 /// Removes values that are not finite, because comparisons with them have no meaning.
@@ -184,24 +185,24 @@ bool RegionResult::mean_heavy() const { return (tail && tail->k >= 1) || largest
 
 bool RegionResult::heavy() const { return (tail && tail->k >= 0.5) || largest_share > heavy_share; }
 
-const RegionResult& ArmResult::region(const std::string& wanted) const {
+const RegionResult& ArmResult::region(const std::string& region_name) const {
     const auto it =
-        std::find_if(regions.begin(), regions.end(), [&](const RegionResult& r) { return r.region == wanted; });
+        std::find_if(regions.begin(), regions.end(), [&](const RegionResult& r) { return r.region == region_name; });
     ensure(it != regions.end(), "a region that was measured");
     return *it;
 }
 
 double reference_variance(const RenderStats& stats, std::size_t region) {
     const ArmStats& reference = *stats.reference;
-    const double stated =
+    const double stated_variance =
         mean_variance(reference.film, stats.regions[region]) / static_cast<double>(reference.film.count);
-    if (!std::isnan(stated)) return stated;
-    double least =
+    if (!std::isnan(stated_variance)) return stated_variance;
+    double smallest =
         HUGE_VAL;  // a bias increases the roughness of an arm's difference, so the smallest estimate is the best
     for (const ArmStats& arm : stats.arms)
         if (arm.film.count > 1 || !arm.film.stated_variance.empty())
-            least = std::min(least, roughness(stats, arm, stats.regions[region]));
-    return std::isfinite(least) ? least : 0;
+            smallest = std::min(smallest, roughness(stats, arm, stats.regions[region]));
+    return std::isfinite(smallest) ? smallest : 0;
 }
 
 RegionResult measure_region(
@@ -212,31 +213,33 @@ RegionResult measure_region(
     out.region = set.name;
     out.pixels = set.pixels.size();
     tail_of(arm, region, out);
-    const bool heavy = out.heavy(), mean_heavy = out.mean_heavy(), referred = stats.reference.has_value();
-    const auto against = [&](const char* name, auto read, auto transform, bool no_interval) {
+    const bool heavy = out.heavy(), mean_heavy = out.mean_heavy(), has_reference = stats.reference.has_value();
+    const auto add_metric = [&](const char* name, auto read, auto transform, bool no_interval) {
         out.metrics.emplace_back(name,
-            referred ? mean_of(over_renders(arm, region, read), no_interval, transform) : missing("no reference"));
+            has_reference ? mean_of(over_renders(arm, region, read), no_interval, transform) : missing("no reference"));
     };
-    against("rmse", [](const RegionStats& r) { return r.mse; }, root_of, heavy);
+    add_metric("rmse", [](const RegionStats& r) { return r.mse; }, root_of, heavy);
     const MetricValue var = variance(arm, set, region, heavy);
     out.metrics.emplace_back("var", var);
     out.metrics.emplace_back("bias2",
-        referred ? squared_bias(arm, set, region, reference_variance(stats, region), heavy) : missing("no reference"));
-    against("relmse", [](const RegionStats& r) { return r.relmse; }, at_least_0, heavy);
-    against("mape", [](const RegionStats& r) { return r.mape; }, at_least_0, mean_heavy);
+        has_reference ? squared_bias(arm, set, region, reference_variance(stats, region), heavy)
+                      : missing("no reference"));
+    add_metric("relmse", [](const RegionStats& r) { return r.relmse; }, at_least_0, heavy);
+    add_metric("mape", [](const RegionStats& r) { return r.mape; }, at_least_0, mean_heavy);
     const Values fireflies = over_renders(arm, region, [](const RegionStats& r) { return r.fireflies; });
     out.metrics.emplace_back("fireflies",
-        referred ? value_of(count_interval(fireflies, static_cast<double>(out.pixels), confidence), false, same)
-                 : missing("no reference"));
+        has_reference
+            ? value_of(count_interval(fireflies, static_cast<double>(out.pixels), confidence), false, identity)
+            : missing("no reference"));
     out.metrics.emplace_back(
-        "y_mean", mean_of(over_renders(arm, region, [](const RegionStats& r) { return r.y; }), mean_heavy, same));
-    const auto picture = [&](const char* name, const std::optional<double>& flip) {
+        "y_mean", mean_of(over_renders(arm, region, [](const RegionStats& r) { return r.y; }), mean_heavy, identity));
+    const auto add_flip = [&](const char* name, const std::optional<double>& flip) {
         out.metrics.emplace_back(name,
             flip ? MetricValue{*flip, {}, "of the first render"}
-                 : missing(referred ? "not requested" : "no reference"));
+                 : missing(has_reference ? "not requested" : "no reference"));
     };
-    picture("flip", flips.hdr);
-    picture("flip_ldr", flips.ldr);
+    add_flip("flip", flips.hdr);
+    add_flip("flip_ldr", flips.ldr);
     costs(var, cost, out);
     out.power = arm.power[region];
     out.colour = noise_colour(out.power);
@@ -261,8 +264,8 @@ std::array<std::vector<float>, 3> photograph(
     std::array<std::vector<float>, 3> out;
     for (auto& plane : out) plane.resize(r.size());
     for (std::size_t i = 0; i < r.size(); ++i) {
-        const auto shown = [&](float x) { return std::max(0.0, exposure * static_cast<double>(x)); };
-        const Rgb rgb = neutral({shown(r[i]), shown(g[i]), shown(b[i])});
+        const auto expose = [&](float x) { return std::max(0.0, exposure * static_cast<double>(x)); };
+        const Rgb rgb = neutral({expose(r[i]), expose(g[i]), expose(b[i])});
         for (std::size_t c = 0; c < 3; ++c) out[c][i] = static_cast<float>(rgb[c]);
     }
     return out;
@@ -302,9 +305,9 @@ std::vector<Flips> measure_flip(
 namespace {
 
 bool is_grey(const Render& render) {
-    const auto same = [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); };
-    return std::equal(render.r.begin(), render.r.end(), render.g.begin(), same) &&
-        std::equal(render.r.begin(), render.r.end(), render.b.begin(), same);
+    const auto are_equal = [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+    return std::equal(render.r.begin(), render.r.end(), render.g.begin(), are_equal) &&
+        std::equal(render.r.begin(), render.r.end(), render.b.begin(), are_equal);
 }
 
 void add_value(MeanPlane& plane, std::size_t i, float x, double n) {

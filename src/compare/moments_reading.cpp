@@ -29,14 +29,15 @@ public:
         throw InputError({file_, 0, 0}, fmt::format("attribute '{}': {}", moments_text, message));
     }
     const Json& member(const Json& table, const char* key) const {
-        const auto found = table.is_object() ? table.find(key) : table.end();
-        if (!table.is_object() || found == table.end()) fail(fmt::format("expected a key '{}'", key));
-        return *found;
+        const auto entry = table.is_object() ? table.find(key) : table.end();
+        if (!table.is_object() || entry == table.end()) fail(fmt::format("expected a key '{}'", key));
+        return *entry;
     }
-    std::size_t whole(const char* key, std::size_t least, std::size_t greatest) const {
+    std::size_t whole_number(const char* key, std::size_t smallest, std::size_t largest) const {
         const Json& value = member(root_, key);
-        if (!value.is_number_unsigned() || value.get<std::uint64_t>() < least || value.get<std::uint64_t>() > greatest)
-            fail(fmt::format("{}: expected a whole number from {} to {}", key, least, greatest));
+        if (!value.is_number_unsigned() || value.get<std::uint64_t>() < smallest ||
+            value.get<std::uint64_t>() > largest)
+            fail(fmt::format("{}: expected a whole number from {} to {}", key, smallest, largest));
         return value.get<std::size_t>();
     }
     MomentsRegion region(const Json& value, int width, int height) const {
@@ -44,10 +45,10 @@ public:
         const Json &name = member(value, "name"), &box = member(value, "box");
         if (!name.is_string()) fail("regions: expected a name");
         out.name = name.get<std::string>();
-        const bool four = box.is_array() && box.size() == 4 && std::all_of(box.begin(), box.end(), [](const Json& x) {
+        const bool is_box = box.is_array() && box.size() == 4 && std::all_of(box.begin(), box.end(), [](const Json& x) {
             return x.is_number_integer() && x.get<std::int64_t>() >= 0 && x.get<std::int64_t>() < most_pixels_a_side;
         });
-        if (!four) fail("regions: expected a box of four numbers");
+        if (!is_box) fail("regions: expected a box of four numbers");
         out.box = {box[0].get<int>(), box[1].get<int>(), box[2].get<int>(), box[3].get<int>()};
         if (out.box.x0 > out.box.x1 || out.box.y0 > out.box.y1 || out.box.x1 >= width || out.box.y1 >= height)
             fail(fmt::format("regions: expected boxes in {} x {} pixels", width, height));
@@ -66,20 +67,20 @@ std::string moments_attribute(const char* kind, std::size_t region, std::size_t 
 }
 
 MomentsText parse_moments_text(const std::string& text, const std::string& file, int width, int height) {
-    const auto shallow = [](int depth, Json::parse_event_t, const Json&) {
+    const auto check_depth = [](int depth, Json::parse_event_t, const Json&) {
         if (depth > deepest) throw std::length_error("expected fewer levels");
         return true;
     };
     Json root;
     try {
-        if (text.size() <= longest_text) root = Json::parse(text, shallow, false);
+        if (text.size() <= longest_text) root = Json::parse(text, check_depth, false);
     } catch (const std::length_error&) { root = Json::value_t::discarded; }
     const TextReader reader(file, root);
     if (!root.is_object() || reader.member(root, "format") != moments_format)
         reader.fail(fmt::format("expected '{}'", moments_format));
     MomentsText out;
-    out.renders = reader.whole("renders", 1, moments_renders_most);
-    out.quantities = reader.whole("quantities", 1, colour_quantities);
+    out.renders = reader.whole_number("renders", 1, moments_renders_most);
+    out.quantities = reader.whole_number("quantities", 1, colour_quantities);
     if (out.quantities != 1 && out.quantities != colour_quantities)
         reader.fail(fmt::format("quantities: expected 1 or {}", colour_quantities));
     const Json &constant = reader.member(root, "constant"), &rounding = reader.member(root, "rounding"),
@@ -90,14 +91,14 @@ MomentsText parse_moments_text(const std::string& text, const std::string& file,
     out.rounding = rounding.get<double>();
     if (!(out.rounding >= 0 && out.rounding <= 1)) reader.fail("rounding: expected a number from 0 to 1");
     if (root.contains("levels")) {  // of files of whole numbers
-        out.steps.levels = static_cast<double>(reader.whole("levels", 2, 65536));
+        out.steps.levels = static_cast<double>(reader.whole_number("levels", 2, 65536));
         const Json& srgb = reader.member(root, "srgb");
         if (!srgb.is_boolean()) reader.fail("srgb: expected true or false");
         out.steps.srgb = srgb.get<bool>();
     }
     if (!regions.is_array() || regions.empty() || regions.size() > regions_most)
         reader.fail(fmt::format("regions: expected a list of 1 to {}", regions_most));
-    for (const Json& each : regions) out.regions.push_back(reader.region(each, width, height));
+    for (const Json& region : regions) out.regions.push_back(reader.region(region, width, height));
     return out;
 }
 
@@ -106,18 +107,18 @@ namespace {
 /// A file of moments, open.
 class MomentsFile {
 public:
-    explicit MomentsFile(const std::string& path) : open_(path), exr_(open_) {
+    explicit MomentsFile(const std::string& path) : file_(path), exr_(file_) {
         if (exr_.parts().size() != 1 || part().deep || part().tiled)
-            open_.fail("expected moments: one part of scan lines");
+            file_.fail("expected moments: one part of scan lines");
         if (part().data != part().display || part().data.x0 != 0 || part().data.y0 != 0)
-            open_.fail("expected moments in a data window and a display window that are equal and begin at (0, 0)");
+            file_.fail("expected moments in a data window and a display window that are equal and begin at (0, 0)");
         text_ = parse_moments_text(attribute(moments_text).text, path, width(), height());
     }
 
     int width() const { return static_cast<int>(part().data.width()); }
     int height() const { return static_cast<int>(part().data.height()); }
     const MomentsText& text() const { return text_; }
-    [[noreturn]] void fail(const std::string& message) const { open_.fail(message); }
+    [[noreturn]] void fail(const std::string& message) const { file_.fail(message); }
     bool has(const std::string& channel) const { return part().channel(channel) != nullptr; }
 
     /// Returns the finite numbers of an attribute. Throws InputError unless there are `count` of them.
@@ -136,8 +137,8 @@ public:
     /// Returns channels in their order, rows bottom-up.
     std::vector<std::vector<float>> planes(const std::vector<std::string>& names) const {
         for (const std::string& name : names) {
-            const ExrChannel* found = part().channel(name);
-            if (!found || found->x_sampling != 1 || found->y_sampling != 1)
+            const ExrChannel* channel = part().channel(name);
+            if (!channel || channel->x_sampling != 1 || channel->y_sampling != 1)
                 fail(fmt::format("expected a channel '{}' with a value for each pixel", name));
         }
         return exr_.read(part(), names);
@@ -155,16 +156,16 @@ private:
     const ExrPart& part() const { return exr_.parts()[0]; }
     const ExrAttribute& attribute(const std::string& name) const {
         const auto& attributes = part().attributes;
-        const auto found =
+        const auto match =
             std::find_if(attributes.begin(), attributes.end(), [&](const ExrAttribute& a) { return a.name == name; });
-        if (found == attributes.end()) fail(fmt::format("expected an attribute '{}', found none", name));
-        return *found;
+        if (match == attributes.end()) fail(fmt::format("expected an attribute '{}', found none", name));
+        return *match;
     }
     std::vector<double> finite_numbers(const std::string& name) const {
-        const std::vector<float>& found = attribute(name).numbers;
-        if (!std::all_of(found.begin(), found.end(), [](float x) { return std::isfinite(x); }))
+        const std::vector<float>& values = attribute(name).numbers;
+        if (!std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); }))
             fail(fmt::format("attribute '{}': expected finite numbers", name));
-        return {found.begin(), found.end()};
+        return {values.begin(), values.end()};
     }
     std::vector<double> not_negative(const std::string& name, std::vector<double> values) const {
         if (std::any_of(values.begin(), values.end(), [](double x) { return x < 0; }))
@@ -172,7 +173,7 @@ private:
         return values;
     }
 
-    OpenFile open_;
+    OpenFile file_;
     ExrFile exr_;
     MomentsText text_;
 };
@@ -191,13 +192,14 @@ namespace {
 /// Reads the renders in which each pixel is not finite.
 void read_failures(const MomentsFile& file, RenderStats& stats, ArmStats& to) {
     if (!file.has("failed.N")) return;
-    const std::vector<float> failed = file.planes({"failed.N"})[0];
+    const std::vector<float> failure_counts = file.planes({"failed.N"})[0];
     const auto renders = static_cast<double>(file.text().renders);
-    file.expect("failed.N", failed, [&](std::size_t i) { return is_whole(static_cast<double>(failed[i]), renders); });
-    to.not_finite.assign(failed.size(), 0);
-    for (std::size_t i = 0; i < failed.size(); ++i) {
-        to.not_finite[i] = static_cast<std::uint32_t>(failed[i]);
-        if (failed[i] > 0) stats.bad[i] = true;
+    file.expect("failed.N", failure_counts,
+        [&](std::size_t i) { return is_whole(static_cast<double>(failure_counts[i]), renders); });
+    to.not_finite.assign(failure_counts.size(), 0);
+    for (std::size_t i = 0; i < failure_counts.size(); ++i) {
+        to.not_finite[i] = static_cast<std::uint32_t>(failure_counts[i]);
+        if (failure_counts[i] > 0) stats.bad[i] = true;
     }
 }
 
@@ -225,7 +227,7 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
             file.width(), file.height()));
     const std::size_t pixels = stats.bad.size();
     const bool grey = file.text().quantities == 1;
-    const double scale = file.sizes(moments_scale, 1)[0], below = static_cast<double>(file.text().renders - 1);
+    const double scale = file.sizes(moments_scale, 1)[0], degrees = static_cast<double>(file.text().renders - 1);
     read_failures(file, stats, to);
     MeanFilm& film = to.film;
     film.count = file.text().renders;
@@ -236,7 +238,7 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
         film.planes[q].mean = read_means(file, quantity_names[q], to);
         if (q == 0) continue;
         for (const float d : read_spreads(file, fmt::format("deviation.{}", quantity_names[q])))
-            film.planes[q].m2.push_back(below * scale * scale * static_cast<double>(d) * static_cast<double>(d));
+            film.planes[q].m2.push_back(degrees * scale * scale * static_cast<double>(d) * static_cast<double>(d));
     }
     if (!grey) {
         film.planes[0].mean.resize(pixels);
@@ -244,7 +246,8 @@ void read_moments_film(const std::string& path, const Rgb& weights, RenderStats&
             film.planes[0].mean[i] = static_cast<double>(static_cast<float>(weights[0] * film.planes[1].mean[i] +
                 weights[1] * film.planes[2].mean[i] + weights[2] * film.planes[3].mean[i]));
     }
-    for (const float v : read_spreads(file, "variance.Y")) film.planes[0].m2.push_back(below * static_cast<double>(v));
+    for (const float v : read_spreads(file, "variance.Y"))
+        film.planes[0].m2.push_back(degrees * static_cast<double>(v));
     for (std::size_t k = 0; k < film.count; ++k) {
         RenderFile& render = to.files.emplace_back();
         render.path = path;
@@ -259,14 +262,14 @@ std::size_t region_in(const std::string& path, const MomentsText& text, const Re
     const ComparePlan& plan) {
     const Box box = set.box.value_or(stats.frame());
     for (std::size_t r = 0; r < text.regions.size(); ++r) {
-        const Box& stored = text.regions[r].box;
-        if (text.regions[r].name == set.name && stored.x0 == box.x0 && stored.y0 == box.y0 && stored.x1 == box.x1 &&
-            stored.y1 == box.y1)
+        const Box& stored_box = text.regions[r].box;
+        if (text.regions[r].name == set.name && stored_box.x0 == box.x0 && stored_box.y0 == box.y0 &&
+            stored_box.x1 == box.x1 && stored_box.y1 == box.y1)
             return r;
     }
-    const auto stated =
+    const auto region =
         std::find_if(plan.regions.begin(), plan.regions.end(), [&](const Region& r) { return r.name == set.name; });
-    throw InputError(stated == plan.regions.end() ? SourceLocation{path, 0, 0} : stated->at,
+    throw InputError(region == plan.regions.end() ? SourceLocation{path, 0, 0} : region->location,
         fmt::format("the moments in {} have no region '{}' of this box: expected one that was stated when the baseline "
                     "was accepted; accept the view again",
             path, set.name));
@@ -301,22 +304,23 @@ TileReading tile_mean(const RenderStats& stats, const MeanPlane& plane, std::siz
 namespace {
 
 /// Reads the statistics of one region into the r-th of `to`.
-void read_region(const MomentsFile& file, std::size_t stored, std::size_t r, std::size_t stored_planes, ArmStats& to) {
+void read_region(
+    const MomentsFile& file, std::size_t stored_region, std::size_t r, std::size_t stored_planes, ArmStats& to) {
     const std::size_t renders = to.files.size();
-    const std::vector<double> spread = file.sizes(moments_attribute("spread", stored, 0), renders);
-    to.power[r] = file.any_sizes(moments_attribute("power", stored, 0));
+    const std::vector<double> spread = file.sizes(moments_attribute("spread", stored_region, 0), renders);
+    to.power[r] = file.any_sizes(moments_attribute("power", stored_region, 0));
     if (!to.power[r].empty() && to.power[r].size() != static_cast<std::size_t>(spectrum_bins))
-        file.fail(fmt::format(
-            "attribute '{}': expected {} numbers or none", moments_attribute("power", stored, 0), spectrum_bins));
+        file.fail(fmt::format("attribute '{}': expected {} numbers or none",
+            moments_attribute("power", stored_region, 0), spectrum_bins));
     for (std::size_t q = 0; q < to.quantities.size(); ++q) {
         const std::size_t from = q < stored_planes ? q : 0;
-        const std::vector<double> means = file.numbers(moments_attribute("means", stored, from), renders),
-                                  largest = file.any_sizes(moments_attribute("largest", stored, from));
+        const std::vector<double> means = file.numbers(moments_attribute("means", stored_region, from), renders),
+                                  largest = file.any_sizes(moments_attribute("largest", stored_region, from));
         for (std::size_t k = 0; k < renders; ++k) to.quantities[q].regions[k][r] = means[k];
         to.quantities[q].largest.emplace_back(largest.begin(), largest.end());
         if (!std::is_sorted(largest.rbegin(), largest.rend()))
-            file.fail(
-                fmt::format("attribute '{}': expected descending numbers", moments_attribute("largest", stored, from)));
+            file.fail(fmt::format(
+                "attribute '{}': expected descending numbers", moments_attribute("largest", stored_region, from)));
         for (std::size_t k = 0; q == 0 && k < renders; ++k) {
             to.regions[k][r].y = means[k];
             to.regions[k][r].spread = spread[k];
@@ -324,7 +328,7 @@ void read_region(const MomentsFile& file, std::size_t stored, std::size_t r, std
     }
     to.largest.push_back(to.quantities[0].largest[r]);
     if (to.not_finite.empty()) return;
-    const std::string name = moments_attribute("groups", stored, 0);
+    const std::string name = moments_attribute("groups", stored_region, 0);
     const std::vector<double> groups = file.sizes(name, renders);
     const double pixels = static_cast<double>(file.width()) * file.height();
     for (std::size_t k = 0; k < renders; ++k) {
@@ -333,11 +337,12 @@ void read_region(const MomentsFile& file, std::size_t stored, std::size_t r, std
     }
 }
 
-void read_tiles(const MomentsFile& file, const RenderStats& stats, std::size_t q, std::size_t stored, ArmStats& to) {
+void read_tiles(
+    const MomentsFile& file, const RenderStats& stats, std::size_t q, std::size_t stored_quantity, ArmStats& to) {
     const std::size_t tiles = stats.tiles.count(), renders = to.files.size();
-    const std::vector<double> deviations = file.sizes(moments_attribute("tiles", 0, stored), tiles),
-                              largest = file.sizes(moments_attribute("tiles", 1, stored), tiles),
-                              events = file.sizes(moments_attribute("events", 0, stored), 2);
+    const std::vector<double> deviations = file.sizes(moments_attribute("tiles", 0, stored_quantity), tiles),
+                              largest = file.sizes(moments_attribute("tiles", 1, stored_quantity), tiles),
+                              events = file.sizes(moments_attribute("events", 0, stored_quantity), 2);
     QuantityReadings& readings = to.quantities[q];
     readings.rise = events[0];
     readings.fall = events[1];
@@ -353,7 +358,7 @@ void read_tiles(const MomentsFile& file, const RenderStats& stats, std::size_t q
 }  // namespace
 
 void read_moments_regions(const std::string& path, const ComparePlan& plan, const RenderStats& stats, ArmStats& to) {
-    const std::size_t renders = to.files.size(), stored = to.film.planes.size();
+    const std::size_t renders = to.files.size(), stored_planes = to.film.planes.size();
     const MomentsFile file(path);
     if (file.text().renders != renders || file.width() != stats.width || file.height() != stats.height)
         file.fail("the file was changed while it was read");
@@ -363,8 +368,8 @@ void read_moments_regions(const std::string& path, const ComparePlan& plan, cons
     if (!to.not_finite.empty()) to.failed_groups.assign(renders, std::vector<std::uint32_t>(stats.regions.size()));
     for (QuantityReadings& q : to.quantities) q.regions.assign(renders, std::vector<double>(stats.regions.size()));
     for (std::size_t r = 0; r < stats.regions.size(); ++r)
-        read_region(file, region_in(path, file.text(), stats, stats.regions[r], plan), r, stored, to);
-    for (std::size_t q = 0; q < stats.quantities; ++q) read_tiles(file, stats, q, q < stored ? q : 0, to);
+        read_region(file, region_in(path, file.text(), stats, stats.regions[r], plan), r, stored_planes, to);
+    for (std::size_t q = 0; q < stats.quantities; ++q) read_tiles(file, stats, q, q < stored_planes ? q : 0, to);
 }
 
 }  // namespace crescent

@@ -24,20 +24,20 @@ namespace {
 
 MeanInterval spread_of(const ArmStats& arm, std::size_t tile) {
     const double k = static_cast<double>(arm.files.size());
-    std::vector<double> each;
-    for (const auto& render : arm.quantities[0].tiles) each.push_back(render[tile].spread * k / (k - 1));
-    return mean_interval(each, confidence);
+    std::vector<double> spreads;
+    for (const auto& render : arm.quantities[0].tiles) spreads.push_back(render[tile].spread * k / (k - 1));
+    return mean_interval(spreads, confidence);
 }
 
 /// Returns the tiles of a region: those with at least half of their pixels in it.
 std::vector<std::size_t> tiles_in(const RenderStats& stats, const PixelSet& set) {
-    std::vector<std::size_t> inside(stats.tiles.count());
+    std::vector<std::size_t> pixel_counts(stats.tiles.count());
     for (const std::uint32_t i : set.pixels)
-        ++inside[stats.tiles.of(static_cast<int>(i) % stats.width, static_cast<int>(i) / stats.width)];
+        ++pixel_counts[stats.tiles.of(static_cast<int>(i) % stats.width, static_cast<int>(i) / stats.width)];
     std::vector<std::size_t> out;
-    for (std::size_t t = 0; t < inside.size(); ++t) {
+    for (std::size_t t = 0; t < pixel_counts.size(); ++t) {
         const Box box = stats.tiles.box(t, stats.width, stats.height);
-        if (2 * inside[t] >= static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()))
+        if (2 * pixel_counts[t] >= static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()))
             out.push_back(t);
     }
     return out;
@@ -50,22 +50,22 @@ NoiseResult::Histogram histogram(const RenderStats& stats, const PixelSet& set, 
         if (std::isnan(noise.log2_ratio[t])) continue;
         const double position = (noise.log2_ratio[t] + noise_range) / (2 * noise_range) * noise_bins;
         const auto bin = static_cast<std::size_t>(std::clamp(std::floor(position), 0.0, noise_bins - 1.0));
-        ++(noise.distinguished[t] ? out.different : out.rest)[bin];
+        ++(noise.distinguished[t] ? out.different : out.undistinguished)[bin];
     }
     return out;
 }
 
-std::string sentence(const NoiseResult& n, std::size_t tested) {
-    if (!tested)
+std::string sentence(const NoiseResult& n, std::size_t tile_count) {
+    if (!tile_count)
         return fmt::format("The noise of {} and {} was not compared: three renders of each are needed.", n.a, n.b);
-    std::size_t less = 0, more = 0;
+    std::size_t quieter = 0, noisier = 0;
     for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
-        if (n.distinguished[t]) ++(n.log2_ratio[t] < 0 ? less : more);
-    if (less + more == 0)
-        return fmt::format("No difference of the variances of {} and {} was found in {} tiles.", n.a, n.b, tested);
+        if (n.distinguished[t]) ++(n.log2_ratio[t] < 0 ? quieter : noisier);
+    if (quieter + noisier == 0)
+        return fmt::format("No difference of the variances of {} and {} was found in {} tiles.", n.a, n.b, tile_count);
     return fmt::format(
         "Of {} tiles, {} has less variance than {} in {} and more in {}; no difference was found in the others.",
-        tested, n.a, n.b, less, more);
+        tile_count, n.a, n.b, quieter, noisier);
 }
 
 }  // namespace
@@ -78,9 +78,9 @@ NoiseResult compare_noise(
     std::vector<double> p;
     for (std::size_t t = 0; t < stats.tiles.count(); ++t) {
         const MeanInterval va = spread_of(stats.arms[a], t), vb = spread_of(stats.arms[b], t);
-        const bool both = va.mean > 0 && vb.mean > 0;
-        out.log2_ratio.push_back(both ? math::log(va.mean / vb.mean) / std::numbers::ln2 : std::nan(""));
-        p.push_back(both && va.n > 2 && vb.n > 2 ? welch_test(va, vb).p : std::nan(""));
+        const bool have_noise = va.mean > 0 && vb.mean > 0;
+        out.log2_ratio.push_back(have_noise ? math::log(va.mean / vb.mean) / std::numbers::ln2 : std::nan(""));
+        p.push_back(have_noise && va.n > 2 && vb.n > 2 ? welch_test(va, vb).p : std::nan(""));
     }
     out.distinguished = discoveries(p, alpha, false);
     for (const PixelSet& set : stats.regions) out.regions.push_back(histogram(stats, set, out));
@@ -132,14 +132,14 @@ std::vector<RenderPair> pairs_of(const ArmStats& a, const ArmStats& b) {
     std::vector<RenderPair> out;
     for (std::size_t i = 0; i < a.files.size(); ++i) {
         const std::vector<std::uint64_t> numbers = own_numbers(a, i);
-        const auto found = std::count(theirs.begin(), theirs.end(), numbers);
-        if (found != 1 || numbers.empty())
+        const auto count = std::count(theirs.begin(), theirs.end(), numbers);
+        if (count != 1 || numbers.empty())
             throw InputError({a.files[i].path, 0, 0},
                 numbers.empty()
                     ? "--pair: expected a number in its name"
                     : fmt::format(
                           "--pair: expected one render of the other arm with the number {} in its name, found {}",
-                          fmt::join(numbers, ", "), found));
+                          fmt::join(numbers, ", "), count));
         out.emplace_back(
             i, static_cast<std::size_t>(std::find(theirs.begin(), theirs.end(), numbers) - theirs.begin()));
     }
@@ -158,8 +158,10 @@ bool sharper_in_pairs(const std::vector<SeedPair>& shared, const ArmStats& a, co
                  nb = static_cast<double>(b.files.size());
     double remaining = 0;  // share of the variance of a difference that remains
     for (const SeedPair& p : shared) remaining += (1 - p.correlation) / k;
-    const double paired = student_quantile(1 - level / 2, k - 1), apart = student_quantile(1 - level / 2, na + nb - 2);
-    return 2 * remaining / k * paired * paired < (1 / na + 1 / nb) * apart * apart;
+    const double paired_quantile = student_quantile(1 - level / 2, k - 1),
+                 independent_quantile = student_quantile(1 - level / 2, na + nb - 2);
+    return 2 * remaining / k * paired_quantile * paired_quantile <
+        (1 / na + 1 / nb) * independent_quantile * independent_quantile;
 }
 
 PairedRenders paired_renders(const ComparePlan& plan, const RenderStats& stats, std::size_t a, std::size_t b,
@@ -204,7 +206,7 @@ struct Ranked {
     MetricValue value;
 };
 
-bool apart(const MetricValue& better, const MetricValue& worse) {
+bool are_disjoint(const MetricValue& better, const MetricValue& worse) {
     return better.interval && worse.interval && better.interval->second < worse.interval->first;
 }
 
@@ -212,7 +214,7 @@ std::string order_text(const std::vector<Ranked>& order) {
     std::vector<std::string> out;
     for (std::size_t k = 0; k + 1 < order.size(); ++k) {
         const MetricValue &better = order[k].value, &worse = order[k + 1].value;
-        if (apart(better, worse))
+        if (are_disjoint(better, worse))
             out.push_back(fmt::format("{} before {} ({} times the variance)", order[k].arm, order[k + 1].arm,
                 figures(*worse.value / *better.value, 3)));
         else
@@ -249,9 +251,9 @@ std::vector<Ranking> rank(const CompareResult& result) {
         for (const auto measures :
             {std::span<const Measure>(at_equal_time), std::span<const Measure>(at_equal_samples)}) {
             for (const Measure& measure : measures) {
-                std::optional<Ranking> found = ranking(result, r, measure);
-                if (!found) continue;
-                out.push_back(std::move(*found));
+                std::optional<Ranking> entry = ranking(result, r, measure);
+                if (!entry) continue;
+                out.push_back(std::move(*entry));
                 break;
             }
         }
@@ -265,10 +267,11 @@ namespace {
 std::string ladder_name(const ArmResult& arm) {
     const std::string spp = arm.spp ? fmt::format("{:.0f}", *arm.spp) : "";
     if (spp.empty() || !arm.name.ends_with(spp)) return {};
-    const std::string rest = arm.name.substr(0, arm.name.size() - spp.size());
-    const std::size_t end = rest.find_last_not_of("-_.");
-    const bool apart = end != std::string::npos && (end + 1 < rest.size() || !(rest[end] >= '0' && rest[end] <= '9'));
-    return apart ? rest.substr(0, end + 1) : "";
+    const std::string stem = arm.name.substr(0, arm.name.size() - spp.size());
+    const std::size_t end = stem.find_last_not_of("-_.");
+    const bool is_separated =
+        end != std::string::npos && (end + 1 < stem.size() || !(stem[end] >= '0' && stem[end] <= '9'));
+    return is_separated ? stem.substr(0, end + 1) : "";
 }
 
 /// Fits a line to the logarithms by least squares. Its slope is a weighted sum of the logarithms, so the half-widths of
@@ -320,9 +323,9 @@ std::vector<SppLadder> ladders_of(const CompareResult& result) {
         const ArmResult& arm = result.arms[a];
         const std::string name = ladder_name(arm);
         if (name.empty()) continue;
-        auto found = std::find_if(out.begin(), out.end(), [&](const SppLadder& l) { return l.name == name; });
-        if (found == out.end()) found = out.insert(found, {name, {}, {}});
-        found->arms.push_back(a);
+        auto ladder = std::find_if(out.begin(), out.end(), [&](const SppLadder& l) { return l.name == name; });
+        if (ladder == out.end()) ladder = out.insert(ladder, {name, {}, {}});
+        ladder->arms.push_back(a);
     }
     std::erase_if(out, [](const SppLadder& l) { return l.arms.size() < 2; });
     for (SppLadder& l : out)
@@ -374,9 +377,10 @@ Row transformed(const Row& x) {
     for (std::size_t half = 1; half < size; half *= 2) {
         for (std::size_t start = 0; start < size; start += 2 * half) {
             for (std::size_t k = 0; k < half; ++k) {
-                const Complex even = out[start + k], odd = rotated(out[start + k + half], k * (size / (2 * half)));
-                out[start + k] = even + odd;
-                out[start + k + half] = even - odd;
+                const Complex even_part = out[start + k],
+                              odd_part = rotated(out[start + k + half], k * (size / (2 * half)));
+                out[start + k] = even_part + odd_part;
+                out[start + k + half] = even_part - odd_part;
             }
         }
     }
@@ -397,9 +401,9 @@ const Radial& radial() {
         for (std::size_t v = 0; v < size; ++v) {
             for (std::size_t u = 0; u < size; ++u) {
                 const long bin = std::lround(math::hypot(frequency(u), frequency(v))) - 1;
-                const bool inside = bin >= 0 && bin < spectrum_bins;
-                r.bin[v * size + u] = inside ? static_cast<double>(bin) : -1;
-                if (inside) r.count[static_cast<std::size_t>(bin)] += 1;
+                const bool has_ring = bin >= 0 && bin < spectrum_bins;
+                r.bin[v * size + u] = has_ring ? static_cast<double>(bin) : -1;
+                if (has_ring) r.count[static_cast<std::size_t>(bin)] += 1;
             }
         }
         return r;
@@ -444,9 +448,11 @@ NoiseColour noise_colour(const std::vector<double>& power) {
     const auto half = power.begin() + spectrum_bins / 2;
     const double low = std::accumulate(power.begin(), half, 0.0), high = std::accumulate(half, power.end(), 0.0);
     if (!(low + high > 0)) return NoiseColour::unknown;
-    constexpr double apart =
+    constexpr double least_ratio =
         1.25;  // 25 % more power on one side; for white noise the two differ by at most 5 % in one block
-    return low > apart * high ? NoiseColour::correlated : high > apart * low ? NoiseColour::blue : NoiseColour::white;
+    return low > least_ratio * high ? NoiseColour::correlated
+        : high > least_ratio * low  ? NoiseColour::blue
+                                    : NoiseColour::white;
 }
 
 const char* to_string(NoiseColour colour) {

@@ -104,7 +104,7 @@ TEST(NoiseOfTiles, IsComparedByTheRatioOfVariances) {
     EXPECT_TRUE(std::isnan(noise.log2_ratio[2]));
     EXPECT_EQ(noise.distinguished, (std::vector<bool>{true, false, false}));
     EXPECT_EQ(noise.regions[0].different[12], 1u);  // bins of 0.5 from -4 on
-    EXPECT_EQ(noise.regions[0].rest[8], 1u);
+    EXPECT_EQ(noise.regions[0].undistinguished[8], 1u);
 }
 
 /// An arm with one metric in one region, and an interval of this factor around it.

@@ -40,9 +40,9 @@ std::string of_exr(const OpenFile& a, const OpenFile& b) {
         const ExrPart &first = one.parts()[p], &second = other.parts()[p];
         if (first.deep || second.deep || first.data != second.data) continue;
         for (const ExrChannel& channel : first.channels) {
-            const ExrChannel* same = second.channel(channel.name);
-            const bool whole = channel.x_sampling == 1 && channel.y_sampling == 1;
-            if (!same || !whole || same->x_sampling != 1 || same->y_sampling != 1) continue;
+            const ExrChannel* counterpart = second.channel(channel.name);
+            const bool is_full_size = channel.x_sampling == 1 && channel.y_sampling == 1;
+            if (!counterpart || !is_full_size || counterpart->x_sampling != 1 || counterpart->y_sampling != 1) continue;
             add_channel(out, channel.name,
                 different_values(one.read(first, {channel.name})[0], other.read(second, {channel.name})[0]));
         }
@@ -52,18 +52,18 @@ std::string of_exr(const OpenFile& a, const OpenFile& b) {
 
 }  // namespace
 
-std::string differing_channels(const std::string& a, const std::string& b, const ReadingOptions& tested) {
+std::string differing_channels(const std::string& a, const std::string& b, const ReadingOptions& reading) {
     const OpenFile first(a), second(b);
     if (is_exr(first) && is_exr(second)) return of_exr(first, second);
-    if (tested.channels == TestedChannels::rgba && tested.channel.empty()) return "";
-    ReadingOptions options = tested;
+    if (reading.channels == TestedChannels::rgba && reading.channel.empty()) return "";
+    ReadingOptions options = reading;
     options.channel = "A";
-    const auto alpha = [&](const std::string& path) {
+    const auto read_alpha = [&](const std::string& path) {
         try {
             return read_render(path, "", options).r;
         } catch (const InputError&) { return std::vector<float>(); }  // it has no alpha
     };
-    const std::vector<float> ours = alpha(a), theirs = alpha(b);
+    const std::vector<float> ours = read_alpha(a), theirs = read_alpha(b);
     std::string out;
     if (!ours.empty() && !theirs.empty()) add_channel(out, "A", different_values(ours, theirs));
     return out;

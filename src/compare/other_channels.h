@@ -9,6 +9,6 @@ namespace crescent {
 
 /// Describes the channels that both files have, that are not tested and that differ: "A in 12 pixels, Z in 3"; "" if
 /// there are none. Throws InputError.
-std::string differing_channels(const std::string& a, const std::string& b, const ReadingOptions& tested);
+std::string differing_channels(const std::string& a, const std::string& b, const ReadingOptions& reading);
 
 }  // namespace crescent

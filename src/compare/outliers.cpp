@@ -30,19 +30,20 @@ double renders_of_both(const RenderStats& stats) {
 double pooled_squares(const RenderStats& stats, std::size_t q, std::uint32_t i) {
     const MeanFilm &a = stats.arms[0].film, &b = stats.arms[1].film;
     const double na = static_cast<double>(a.count), nb = static_cast<double>(b.count),
-                 apart = a.of(q).mean[i] - b.of(q).mean[i];
-    return a.of(q).m2[i] + b.of(q).m2[i] + apart * apart * na * nb / (na + nb);
+                 difference = a.of(q).mean[i] - b.of(q).mean[i];
+    return a.of(q).m2[i] + b.of(q).m2[i] + difference * difference * na * nb / (na + nb);
 }
 
 /// The pixels of a region and a quantity with the largest sums of squares, and the sum of all others.
 struct Bulk {
     std::size_t region = 0, quantity = 0;
     std::vector<std::uint32_t> large;  // descending
-    double rest = 0;
+    double remainder = 0;
 
     /// Returns the squared deviation above which a value is an outlier: the variance of the sum of a render.
     double limit(const RenderStats& stats, double renders) const {
-        const double variance = rest / (renders - 1), pixels = static_cast<double>(stats.regions[region].pixels.size());
+        const double variance = remainder / (renders - 1),
+                     pixels = static_cast<double>(stats.regions[region].pixels.size());
         return std::max(variance, least_deviations * least_deviations * variance / pixels);
     }
 };
@@ -59,13 +60,13 @@ Bulk bulk_of(const RenderStats& stats, std::size_t region, std::size_t quantity)
     const auto count = static_cast<std::ptrdiff_t>(most_with_outliers * static_cast<double>(squares.size()));
     if (count == 0) return out;
     std::nth_element(squares.begin(), squares.begin() + count, squares.end(), std::greater<>());
-    out.rest = std::accumulate(
+    out.remainder = std::accumulate(
         squares.begin() + count, squares.end(), 0.0, [](double sum, const auto& pixel) { return sum + pixel.first; });
     squares.resize(static_cast<std::size_t>(count));
     std::sort(squares.begin(), squares.end(), std::greater<>());
     const double renders = renders_of_both(stats), of_one = renders / (renders - 1);
     while (!squares.empty() && squares.back().first * of_one <= out.limit(stats, renders)) {
-        out.rest += squares.back().first;
+        out.remainder += squares.back().first;
         squares.pop_back();
     }
     for (const auto& [square, pixel] : squares) out.large.push_back(pixel);
@@ -129,15 +130,15 @@ private:
 void add_outliers(const RenderStats& stats, Bulk bulk, const PixelValues& values, std::vector<OutlierPixel>& out) {
     std::vector<OutlierPixel> single;
     for (const std::uint32_t i : bulk.large) {
-        const auto found = values.outlier(i, bulk.quantity);
-        if (found) single.push_back(*found);
-        else bulk.rest += pooled_squares(stats, bulk.quantity, i);
+        const auto outlier = values.outlier(i, bulk.quantity);
+        if (outlier) single.push_back(*outlier);
+        else bulk.remainder += pooled_squares(stats, bulk.quantity, i);
     }
     const double renders = renders_of_both(stats), of_one = renders / (renders - 1);
     while (!single.empty()) {  // smallest last
         const double square = pooled_squares(stats, bulk.quantity, single.back().pixel);
         if (square * of_one > bulk.limit(stats, renders)) break;
-        bulk.rest += square;
+        bulk.remainder += square;
         single.pop_back();
     }
     out.insert(out.end(), single.begin(), single.end());
@@ -159,8 +160,8 @@ void count_outlier_groups(const RenderStats& stats, OutlierPixels& out) {
     }
 }
 
-void set_outliers_apart(RenderStats& stats, const OutlierPixels& found) {
-    for (const OutlierPixel& p : found.pixels) stats.bad[p.pixel] = true;
+void set_outliers_apart(RenderStats& stats, const OutlierPixels& outliers) {
+    for (const OutlierPixel& p : outliers.pixels) stats.bad[p.pixel] = true;
     for (PixelSet& set : stats.regions) std::erase_if(set.pixels, [&](std::uint32_t i) { return stats.bad[i]; });
 }
 
@@ -176,12 +177,12 @@ double reached_by_quarter(std::vector<double> values) {
 }
 
 /// Returns the root mean square over tiles of the standard deviation over renders, without one of them.
-double tile_noise(const ArmStats& side, const std::vector<std::size_t>& tiles, std::size_t without) {
+double tile_noise(const ArmStats& side, const std::vector<std::size_t>& tiles, std::size_t left_out_render) {
     double variance = 0;
     for (const std::size_t t : tiles) {
         std::vector<double> means;
         for (std::size_t k = 0; k < side.quantities[0].tiles.size(); ++k)
-            if (k != without) means.push_back(side.quantities[0].tiles[k][t].mean);
+            if (k != left_out_render) means.push_back(side.quantities[0].tiles[k][t].mean);
         const double n = static_cast<double>(means.size());
         const double mean = std::accumulate(means.begin(), means.end(), 0.0) / n;
         double squares = 0;
@@ -197,9 +198,9 @@ std::vector<std::size_t> lit_tiles(const ArmStats& side) {
     std::vector<std::size_t> out;
     const auto& renders = side.quantities[0].tiles;
     for (std::size_t t = 0; t < renders[0].size(); ++t) {
-        const bool lit =
+        const bool is_lit =
             std::any_of(renders.begin(), renders.end(), [&](const auto& render) { return render[t].mean != 0; });
-        if (lit && std::isfinite(renders[0][t].mean)) out.push_back(t);
+        if (is_lit && std::isfinite(renders[0][t].mean)) out.push_back(t);
     }
     return out;
 }
@@ -219,12 +220,12 @@ OutlierPixels find_outliers(RenderStats& stats, const std::array<std::string, 2>
     if (large.empty()) return out;
     const PixelValues values(stats, {large.begin(), large.end()}, layers, monitor);
     for (Bulk& bulk : bulks) add_outliers(stats, std::move(bulk), values, out.pixels);
-    const auto place = [](const OutlierPixel& p) { return std::tuple(p.side, p.render, p.pixel); };
+    const auto place_of = [](const OutlierPixel& p) { return std::tuple(p.side, p.render, p.pixel); };
     std::sort(out.pixels.begin(), out.pixels.end(), [&](const OutlierPixel& a, const OutlierPixel& b) {
-        return place(a) != place(b) ? place(a) < place(b) : a.quantity < b.quantity;
+        return place_of(a) != place_of(b) ? place_of(a) < place_of(b) : a.quantity < b.quantity;
     });
     const auto last = std::unique(out.pixels.begin(), out.pixels.end(),
-        [&](const OutlierPixel& a, const OutlierPixel& b) { return place(a) == place(b); });
+        [&](const OutlierPixel& a, const OutlierPixel& b) { return place_of(a) == place_of(b); });
     out.pixels.erase(last, out.pixels.end());
     count_outlier_groups(stats, out);
     out.set_apart = out.total() > 0 && 2 * static_cast<double>(out.total()) <= renders_of_both(stats);
@@ -246,21 +247,21 @@ std::optional<OutlierRender> outlier_render(const RenderStats& stats) {
         const double degrees = static_cast<double>(n - 2 + other.files.size() - 1);
         for (std::size_t k = 0; k < n; ++k) {
             std::vector<double> deviations;
-            double own_mean = 0, others = 0;
+            double render_sum = 0, other_sum = 0;
             for (const std::size_t t : tiles) {
                 double sum = 0;
                 for (const auto& render : side.quantities[0].tiles) sum += render[t].mean;
                 const double value = side.quantities[0].tiles[k][t].mean;
-                const double rest = (sum - value) / static_cast<double>(n - 1);
-                own_mean += value;
-                others += rest;
-                deviations.push_back(std::fabs(value - rest));
+                const double mean_of_others = (sum - value) / static_cast<double>(n - 1);
+                render_sum += value;
+                other_sum += mean_of_others;
+                deviations.push_back(std::fabs(value - mean_of_others));
             }
             const double noise = std::max(other_noise, tile_noise(side, tiles, k));
             const double deviation =
                 reached_by_quarter(std::move(deviations)) / (noise * std::sqrt(1 + 1 / static_cast<double>(n - 1)));
             if (std::isnan(deviation) || (out && deviation <= out->deviation)) continue;
-            out = OutlierRender{s, k, 0, own_mean / others, deviation, student_p(deviation, degrees)};
+            out = OutlierRender{s, k, 0, render_sum / other_sum, deviation, student_p(deviation, degrees)};
         }
     }
     if (!out) return out;

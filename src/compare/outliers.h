@@ -38,7 +38,7 @@ struct OutlierPixels {
 /// have one. A value is an outlier if it is one among the values of its pixel over both sides (Grubbs 1950), and if its
 /// squared deviation is larger than the variance, over renders, of the sum of all pixels of a region that have none:
 /// such a value decides the mean of its render. If there are at most half as many groups as renders, they are set
-/// apart: `all.bad` contains their pixels, and the regions do not.
+/// apart: `stats.bad` contains their pixels, and the regions do not.
 OutlierPixels find_outliers(RenderStats& stats, const std::array<std::string, 2>& layers, ProgressMonitor& monitor);
 
 /// A render that does not belong to the other renders of its side.

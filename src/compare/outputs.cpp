@@ -49,13 +49,13 @@ Json arm_json(const ArmResult& arm, const ArmStats& readings, const std::vector<
         if (!f.variance_channels.empty()) file["variance_channels"] = f.variance_channels;
         if (!f.sample_channel.empty()) file["sample_channel"] = f.sample_channel;
         for (std::size_t r = 0; r < sets.size(); ++r) {
-            const RegionStats& read = readings.regions[k][r];
-            Json& entry = file["regions"][sets[r].name] = {{"y_mean", number(read.y)}};
+            const RegionStats& statistics = readings.regions[k][r];
+            Json& entry = file["regions"][sets[r].name] = {{"y_mean", number(statistics.y)}};
             if (referred) {
-                entry["rmse"] = number(std::sqrt(read.mse));
-                entry["relmse"] = number(read.relmse);
-                entry["mape"] = number(read.mape);
-                entry["fireflies"] = read.fireflies;
+                entry["rmse"] = number(std::sqrt(statistics.mse));
+                entry["relmse"] = number(statistics.relmse);
+                entry["mape"] = number(statistics.mape);
+                entry["fireflies"] = statistics.fireflies;
             }
         }
         out["files"].push_back(std::move(file));
@@ -65,9 +65,9 @@ Json arm_json(const ArmResult& arm, const ArmStats& readings, const std::vector<
 
 Json box_json(const Box& box) { return {box.x0, box.y0, box.x1, box.y1}; }
 
-Json found_json(const std::vector<Found>& found) {
+Json found_json(const std::vector<Found>& places) {
     Json out = Json::array();
-    for (const Found& f : found)
+    for (const Found& f : places)
         out.push_back({{"box", box_json(f.box)}, {"channel", quantity_names[f.quantity]}, {"a", number(f.a)},
             {"b", number(f.b)}, {"p", number(f.p)}});
     return out;
@@ -119,14 +119,14 @@ Json failing_json(const FailingPixels& f, int width) {
     }
     if (f.pixels.empty()) return out;
     out["box"] = box_json(box);
-    out["renders"] = {f.least, f.most};
-    out["renders_of_the_other"] = {f.other_least, f.other_most};
+    out["renders"] = {f.least_renders, f.most_renders};
+    out["renders_of_the_other"] = {f.least_other_renders, f.most_other_renders};
     return out;
 }
 
 Json non_finite_json(const NonFinite& n, int width) {
     Json out = {{"differs", n.differs()}, {"a", failing_json(n.a, width)}, {"b", failing_json(n.b, width)},
-        {"left_out", {{"both_sides", n.both}, {"one_side", n.one}, {"undecided", n.undecided}}},
+        {"left_out", {{"both_sides", n.two_sided}, {"one_side", n.one_sided}, {"undecided", n.undecided}}},
         {"groups", Json::object()}};
     for (const FailedGroups& g : n.groups)
         out["groups"][g.region] = {{"a", g.a}, {"b", g.b}, {"p", number(g.p)}, {"differs", g.differs}};
@@ -153,8 +153,8 @@ Json bias_json(const BiasResult& b, int width) {
     if (b.single)
         out["single"] = {{"pixels", b.single->pixels}, {"different", b.single->different},
             {"rms", number(b.single->rms)}, {"largest", number(b.single->largest)},
-            {"at", {b.single->at.x0, b.single->at.y0}}};
-    out["tiles"] = {{"tested", b.tiles.tested}, {"left_out", b.tiles.left_out}, {"different", b.tiles.different},
+            {"at", {b.single->place.x0, b.single->place.y0}}};
+    out["tiles"] = {{"tested", b.tiles.test_count}, {"left_out", b.tiles.left_out}, {"different", b.tiles.different},
         {"most_in", by_json(b.tiles_by)}, {"first", found_json(b.tiles_found)}};
     out["pixels"] = {{"tested", b.pixels_tested}, {"different", b.pixels_different}, {"most_in", by_json(b.pixels_by)},
         {"first", found_json(b.pixels_found)}, {"p", b.pixel_p}};
@@ -162,13 +162,13 @@ Json bias_json(const BiasResult& b, int width) {
 }
 
 Json noise_json(const NoiseResult& n) {
-    std::size_t less = 0, more = 0;
+    std::size_t quieter = 0, noisier = 0;
     for (std::size_t t = 0; t < n.log2_ratio.size(); ++t)
-        if (n.distinguished[t]) ++(n.log2_ratio[t] < 0 ? less : more);
-    Json out = {{"a", n.a}, {"b", n.b}, {"tiles", n.log2_ratio.size()}, {"less_noise", less}, {"more_noise", more},
-        {"message", n.sentence}, {"regions", Json::object()}};
+        if (n.distinguished[t]) ++(n.log2_ratio[t] < 0 ? quieter : noisier);
+    Json out = {{"a", n.a}, {"b", n.b}, {"tiles", n.log2_ratio.size()}, {"less_noise", quieter},
+        {"more_noise", noisier}, {"message", n.sentence}, {"regions", Json::object()}};
     for (const NoiseResult::Histogram& h : n.regions)
-        out["regions"][h.region] = {{"told_apart", h.different}, {"not_told_apart", h.rest}};
+        out["regions"][h.region] = {{"told_apart", h.different}, {"not_told_apart", h.undistinguished}};
     return out;
 }
 
@@ -270,9 +270,10 @@ std::string compare_sarif(
     for (std::size_t k = 0; k < cases.size(); ++k) {
         const JunitCase& c = cases[k];
         rules.push_back(c.name);
-        const bool is_in_file = k < plan.assertions.size() && plan.assertions[k].at.file == file;
+        const bool is_in_file = k < plan.assertions.size() && plan.assertions[k].location.file == file;
         if (c.state != JunitCase::State::passed)
-            results.push_back({c.name, "error", c.message, file, is_in_file ? plan.assertions[k].at.line : 0u, c.name});
+            results.push_back(
+                {c.name, "error", c.message, file, is_in_file ? plan.assertions[k].location.line : 0u, c.name});
     }
     return sarif_text(provenance.version, rules, results);
 }

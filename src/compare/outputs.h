@@ -25,13 +25,13 @@ MeanInterval mean_and_error(std::span<const double> values);
 /// The noise of a set of pixels: means over it of the variance of a pixel of one render.
 struct SetVariance {
     double pixels = 0;
-    double a = 0, b = 0;  // NaN: unknown; in pairs a is that of the difference
-    double own = 0;       // of a and b without pairing: determines how rounding errors average out
+    double a = 0, b = 0;           // NaN: unknown; in pairs a is that of the difference
+    double unpaired_variance = 0;  // of a and b without pairing: determines how rounding errors average out
     double mean_a = 0, mean_b = 0;
 };
 
 struct BiasPair {
-    BiasPair(const ComparePlan& plan, const RenderStats& readings, const CompareResult& measured, std::size_t a,
+    BiasPair(const ComparePlan& plan, const RenderStats& readings, const CompareResult& result, std::size_t a,
         std::size_t b, std::size_t quantity = 0, const PairedRenders* paired = nullptr);
 
     /// Whether the noise of both sides is estimated together, see test().
@@ -79,13 +79,13 @@ struct BiasPair {
     /// renderer's own arithmetic with sums in another order.
     double undetectable_difference(double mean_a, double mean_b, double pixels, double variance, double level) const;
 
-    const RenderStats& all;
+    const RenderStats& stats;
     const ArmStats &a, &b;
     const ArmResult& arm;
     const ArmResult* other = nullptr;  // null: the reference
     double brightest = 0;              // the largest possible value of a pixel of one render; 0: unknown
     bool referred = false, dependent = false, shared_noise = false;
-    unsigned look = 0;           // see ComparePlan
+    unsigned look_number = 0;    // see ComparePlan
     bool count_pixel_p = true;   // see ComparePlan
     double low_frequencies = 1;  // power of the noise at low frequencies over that at high ones
     std::size_t quantity = 0;    // see renders.h
@@ -97,7 +97,7 @@ private:
     /// Returns the difference of two means that the steps of the files' whole numbers hide, see
     /// undetectable_difference().
     double quantised_difference(double mean_a, double mean_b, double pixels, double variance) const;
-    std::vector<double> paired_of(const ArmStats& side, std::vector<double> each) const;
+    std::vector<double> paired_of(const ArmStats& side, std::vector<double> values) const;
     /// Returns the largest deviation by events on the brighter side.
     double rare_event(double difference) const;
     double renders_of(const ArmStats& side) const;
@@ -155,7 +155,7 @@ std::map<std::string, Picture> compare_plates(
 struct BiasPair;
 /// The signed difference of two means; the tiles and pixels in which it is significant; the ratio of two variances.
 Picture difference_plate(const BiasPair& sides, const std::string& a, const std::string& b, Theme theme);
-Picture bias_plate(const BiasPair& sides, const BiasResult& found, Theme theme);
+Picture bias_plate(const BiasPair& sides, const BiasResult& bias, Theme theme);
 Picture noise_plate(const RenderStats& stats, const NoiseResult& noise, Theme theme);
 /// Requires a ladder.
 Picture ladders_plate(const CompareResult& result, Theme theme);

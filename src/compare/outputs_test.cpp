@@ -87,7 +87,7 @@ TEST(CompareSarif, HasAResultForEachClaimThatFails) {
     EXPECT_EQ(run["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"], "compare.toml");
     ComparePlan of_file = c.plan;
     for (std::size_t k = 0; k < of_file.assertions.size(); ++k)
-        of_file.assertions[k].at = {"compare.toml", static_cast<unsigned>(10 * k + 7), 1};
+        of_file.assertions[k].location = {"compare.toml", static_cast<unsigned>(10 * k + 7), 1};
     const Json placed = Json::parse(compare_sarif(of_file, c.result, "compare.toml", {}))["runs"][0]["results"];
     EXPECT_EQ(placed[0]["locations"][0]["physicalLocation"]["region"]["startLine"], 17);
 }

@@ -51,12 +51,12 @@ Json remarks_of(const std::string& region, const StoredJson& arms) {
     for (const StoredJson& arm : arms.entries()) {
         const StoredJson r = arm.at("regions").at(region);
         const bool heavy = r.contains("heavy_tail");
-        const auto needed = heavy ? r.at("heavy_tail").at("renders_needed").optional_number() : std::nullopt;
-        const auto stated =
+        const auto renders = heavy ? r.at("heavy_tail").at("renders_needed").optional_number() : std::nullopt;
+        const auto ratio =
             (r.contains("stated_variance_ratio") ? r.at("stated_variance_ratio").optional_number() : std::nullopt);
         out.push_back({{"arm", arm.at("arm")}, {"share", heavy ? percent(r.at("largest_share").number()) : ""},
-            {"needed", needed ? fmt::format("{:.0f}", *needed) : ""},
-            {"stated_ratio", stated ? with_minus(figures(*stated, 3)) : ""}});
+            {"needed", renders ? fmt::format("{:.0f}", *renders) : ""},
+            {"stated_ratio", ratio ? with_minus(figures(*ratio, 3)) : ""}});
     }
     return out;
 }
@@ -70,9 +70,9 @@ Json region_of(const std::string& region, const StoredJson& regions, std::vector
         return metric_of(arm.at("regions").at(region).at("metrics").at(name));
     };
     for (const auto& [name, m] : first.at("metrics").items()) {
-        const bool any = std::ranges::any_of(
+        const bool is_measured = std::ranges::any_of(
             regions.entries(), [&](const StoredJson& arm) { return metric(arm, name).value.has_value(); });
-        if (any) {
+        if (is_measured) {
             names.push_back(name);
             titles.push_back(title_of(name));
         } else not_measured.push_back({{"metric", title_of(name)}, {"why", m.value("why", "")}});
@@ -123,8 +123,8 @@ Json rows_of(const StoredJson& pair) {
     Json out = Json::array();
     const std::string nothing = pair.at("identical").get<bool>() ? "identical" : "no difference found";
     for (const auto& [region, test] : pair.at("regions").items()) {
-        const auto in = test.at("differs_in").get<std::vector<std::string>>();
-        if (!in.empty()) out.push_back(row_of(region, test, "differs in " + listed(in), ""));
+        const auto quantities = test.at("differs_in").get<std::vector<std::string>>();
+        if (!quantities.empty()) out.push_back(row_of(region, test, "differs in " + listed(quantities), ""));
         else out.push_back(row_of(region, test, "", test.value("why", test.value("doubt", nothing))));
         if (!test.contains("channels")) continue;
         const auto channels = test.at("channels").items();
@@ -149,10 +149,10 @@ Json most_in(const StoredJson& counts) {
 /// Tiles and pixels that differ; false if none was tested.
 Json places_of(const StoredJson& pair) {
     const StoredJson tiles = pair.at("tiles"), pixels = pair.at("pixels");
-    const auto shown = pair.at("shown").get<std::string>();
-    const bool is_y = shown == quantity_names[0];
+    const auto quantity = pair.at("shown").get<std::string>();
+    const bool is_y = quantity == quantity_names[0];
     if (tiles.at("tested") == 0 && pixels.at("tested") == 0 && is_y) return false;
-    Json out = {{"tiles", false}, {"pixels", false}, {"maps_show", is_y ? "" : shown},
+    Json out = {{"tiles", false}, {"pixels", false}, {"maps_show", is_y ? "" : quantity},
         {"dependent", pair.at("method") == dependent_method}};
     if (tiles.at("tested") != 0)
         out["tiles"] = {{"tested", tiles.at("tested")}, {"different", tiles.at("different")},
@@ -176,22 +176,22 @@ std::vector<double> percents(const std::vector<std::uint64_t>& counts, double to
 
 /// A step chart of counts over equal bins from low to high; the second series is stacked on the first.
 std::string histogram(
-    const std::vector<double>& below, const std::vector<double>& above, Axis x, const char* what, const char* title) {
-    std::vector<double> edges, zero, low, high, shown{0};
-    const double width = (x.high - x.low) / static_cast<double>(below.size());
-    for (std::size_t k = 0; k < below.size(); ++k) {
-        const double first = below[k], second = first + (above.empty() ? 0 : above[k]);
+    const std::vector<double>& lower, const std::vector<double>& upper, Axis x, const char* what, const char* title) {
+    std::vector<double> edges, zero, low, high, values{0};
+    const double width = (x.high - x.low) / static_cast<double>(lower.size());
+    for (std::size_t k = 0; k < lower.size(); ++k) {
+        const double first = lower[k], second = first + (upper.empty() ? 0 : upper[k]);
         for (const double edge : {x.low + width * static_cast<double>(k), x.low + width * static_cast<double>(k + 1)}) {
             edges.push_back(edge);
             zero.push_back(0);
             low.push_back(first);
             high.push_back(second);
         }
-        shown.push_back(second);
+        values.push_back(second);
     }
-    Chart chart(460, 200, std::move(x), linear_axis(what, shown), title);
+    Chart chart(460, 200, std::move(x), linear_axis(what, values), title);
     chart.band(edges, zero, low, "c1");
-    if (!above.empty()) chart.band(edges, low, high, "c0");
+    if (!upper.empty()) chart.band(edges, low, high, "c0");
     return chart.str();
 }
 
@@ -220,9 +220,9 @@ Json noise_of(const StoredJson& result) {
         Json charts = Json::array();
         for (const auto& [region, counts] : n.at("regions").items()) {
             const auto different = counts.at("told_apart").get<BinCounts>();
-            auto rest = counts.at("not_told_apart").get<BinCounts>();
-            rest.resize(different.size());
-            const double tiles = sum_of(different) + sum_of(rest);
+            auto undistinguished = counts.at("not_told_apart").get<BinCounts>();
+            undistinguished.resize(different.size());
+            const double tiles = sum_of(different) + sum_of(undistinguished);
             if (tiles == 0) continue;
             const Axis x{-noise_range, noise_range, false,
                 fmt::format("log2 of the variance of {} over that of {}", n.at("a").get<std::string>(),
@@ -230,7 +230,7 @@ Json noise_of(const StoredJson& result) {
                 {-4, -2, 0, 2, 4}};
             charts.push_back({{"region", region},
                 {"chart",
-                    histogram(percents(different, tiles), percents(rest, tiles), x, "% of tiles",
+                    histogram(percents(different, tiles), percents(undistinguished, tiles), x, "% of tiles",
                         "Histogram of the variance ratio")}});
         }
         out.push_back({{"sentence", n.at("message")}, {"charts", charts}});
@@ -290,7 +290,7 @@ std::vector<LadderLine> ladder_lines(const StoredJson& result, const std::string
         for (std::size_t k = 0; k < ladder.at("arms").size(); ++k) {
             const std::vector<StoredJson> arms = result.at("arms").entries();
             const auto arm = std::ranges::find_if(
-                arms, [&](const StoredJson& each) { return each.at("arm") == ladder.at("arms").at(k).value(); });
+                arms, [&](const StoredJson& item) { return item.at("arm") == ladder.at("arms").at(k).value(); });
             if (arm == arms.end()) continue;
             line.spp.push_back(ladder.at("spp").at(k).number());
             const StoredJson metrics = arm->at("regions").at(region).at("metrics");
@@ -388,15 +388,15 @@ Json pictures_of(const std::map<std::string, std::vector<unsigned char>>& plates
 std::string compare_html(const Json& json, const std::map<std::string, std::vector<unsigned char>>& plates) {
     const StoredJson result(json);
     const auto sentence = result.at("message").get<std::string>();
-    auto found = result.at("found").get<std::vector<std::string>>();
-    std::erase(found, sentence);
+    auto findings = result.at("found").get<std::vector<std::string>>();
+    std::erase(findings, sentence);
     Json rankings = Json::array();
     for (const StoredJson& r : result.at("rankings").entries()) rankings.push_back(r.at("message"));
     const StoredJson reference = result.at("reference"), provenance = result.at("provenance");
     const double trim = result.at("trim").number();
     Json model = {{"title", result.at("title")}, {"version", provenance.at("version")},
         {"command", provenance.at("command")}, {"sentence", sentence}, {"fails", result.at("state") == "fails"},
-        {"all_hold", sentence.empty() && !result.at("assertions").empty()}, {"found", found},
+        {"all_hold", sentence.empty() && !result.at("assertions").empty()}, {"found", findings},
         {"trimmed", trim > 0 ? percent(trim) : ""}, {"has_reference", !reference.is_null()},
         {"reference_error", reference.is_null() ? Json("") : Json(reference.at("standard_error_from"))},
         {"rankings", rankings}, {"pairs", pairs_of(result)}, {"pictures", pictures_of(plates)},

@@ -19,8 +19,8 @@
 namespace crescent {
 
 Tiles::Tiles(int width, int height) {
-    const double wanted = std::sqrt(static_cast<double>(width) * height / 512);
-    size = std::max(8, static_cast<int>(std::ceil(wanted)));
+    const double side = std::sqrt(static_cast<double>(width) * height / 512);
+    size = std::max(8, static_cast<int>(std::ceil(side)));
     across = (width + size - 1) / size;
     down = (height + size - 1) / size;
 }
@@ -80,7 +80,7 @@ std::vector<std::uint64_t> numbers_in(const std::string& path) {
 
 void FirstPass::arm(ArmStats& to, const std::vector<std::string>& files, const std::string& layer,
     const std::string& name, const std::optional<double>& spp) {
-    each_render(all_.source, files, layer, monitor_, [&](const Render& render) {
+    each_render(stats_.source, files, layer, monitor_, [&](const Render& render) {
         fit(render);
         check_pixels(render, to);
         count_clipped(render);
@@ -98,19 +98,19 @@ void FirstPass::arm(ArmStats& to, const std::vector<std::string>& files, const s
 }
 
 void FirstPass::moments(ArmStats& to, const std::string& path) {
-    const Render picture = all_.source.read(path, "");
+    const Render picture = stats_.source.read(path, "");
     fit(picture);
-    read_moments_film(path, picture.weights, all_, to);
+    read_moments_film(path, picture.weights, stats_, to);
     monitor_.advance(1);
 }
 
 void FirstPass::fit(const Render& render) {
-    if (all_.bad.empty()) {
-        all_.width = render.width;
-        all_.height = render.height;
-        all_.bad.assign(render.size(), false);
+    if (stats_.bad.empty()) {
+        stats_.width = render.width;
+        stats_.height = render.height;
+        stats_.bad.assign(render.size(), false);
     }
-    ensure(render.width == all_.width && render.height == all_.height, "renders of a view have one size");
+    ensure(render.width == stats_.width && render.height == stats_.height, "renders of a view have one size");
 }
 
 void FirstPass::check_pixels(const Render& render, ArmStats& to) {
@@ -120,7 +120,7 @@ void FirstPass::check_pixels(const Render& render, ArmStats& to) {
         if (!finite) {
             if (to.not_finite.empty()) to.not_finite.assign(render.size(), 0);
             ++bad;
-            all_.bad[i] = true;
+            stats_.bad[i] = true;
             ++to.not_finite[i];
         }
         negative += finite && (render.r[i] < 0 || render.g[i] < 0 || render.b[i] < 0);
@@ -134,40 +134,40 @@ void FirstPass::check_pixels(const Render& render, ArmStats& to) {
 
 /// A channel at the largest number of its file represents any larger value.
 void FirstPass::count_clipped(const Render& render) {
-    all_.displayed |= render.displayed;
-    all_.display_referred |= render.display_referred;
+    stats_.displayed |= render.displayed;
+    stats_.display_referred |= render.display_referred;
     if (!render.display_referred) {  // a float file is not clipped
-        all_.clipped.assign(render.size(), false);
+        stats_.clipped.assign(render.size(), false);
         return;
     }
-    const bool first = all_.clipped.empty();
-    if (first) all_.clipped.assign(render.size(), true);
+    const bool is_first = stats_.clipped.empty();
+    if (is_first) stats_.clipped.assign(render.size(), true);
     for (std::size_t i = 0; i < render.size(); ++i)
-        if (!(render.r[i] >= 1 || render.g[i] >= 1 || render.b[i] >= 1)) all_.clipped[i] = false;
+        if (!(render.r[i] >= 1 || render.g[i] >= 1 || render.b[i] >= 1)) stats_.clipped[i] = false;
 }
 
 void FirstPass::report_warnings() {
-    all_.warnings = warnings_.lines();
-    all_.bad_files = warnings_.line(not_finite);
-    if (!all_.display_referred) return;
-    all_.warnings.push_back(
+    stats_.warnings = warnings_.lines();
+    stats_.bad_files = warnings_.line(not_finite);
+    if (!stats_.display_referred) return;
+    stats_.warnings.push_back(
         "The files are pictures for display: their tone curve may hide a change of radiance, or make it smaller.");
-    const auto clipped = std::count(all_.clipped.begin(), all_.clipped.end(), true);
+    const auto clipped = std::count(stats_.clipped.begin(), stats_.clipped.end(), true);
     if (clipped > 0)
-        all_.warnings.push_back(
+        stats_.warnings.push_back(
             fmt::format("{} of the pixels are clipped in all renders: a change there cannot be seen.",
-                percent(static_cast<double>(clipped) / static_cast<double>(all_.clipped.size()), 2)));
+                percent(static_cast<double>(clipped) / static_cast<double>(stats_.clipped.size()), 2)));
 }
 
 void FirstPass::check_copy(const RenderFile& file, const std::string& arm) {
-    const auto [before, fresh] = paths_by_hash_.emplace(file.hash, std::pair{file.path, arm});
-    if (fresh) return;
-    const auto& [path, other] = before->second;
-    if (other == arm)
+    const auto [entry, is_new] = paths_by_hash_.emplace(file.hash, std::pair{file.path, arm});
+    if (is_new) return;
+    const auto& [path, other_arm] = entry->second;
+    if (other_arm == arm)
         throw InputError(
             {file.path, 0, 0}, fmt::format("the same pixels as {}: renders of an arm must be independent", path));
-    warnings_.add(fmt::format("{} of {}", file.path, arm), fmt::format("the same pixels as {} of {}", path, other), 0,
-        fmt::format("the same pixels as {}", other));
+    warnings_.add(fmt::format("{} of {}", file.path, arm), fmt::format("the same pixels as {} of {}", path, other_arm),
+        0, fmt::format("the same pixels as {}", other_arm));
 }
 
 // ---- Second pass: with the means known, the statistics of each render in each region and tile. Sums run over chunks
@@ -183,9 +183,9 @@ class Largest {
 public:
     explicit Largest(std::size_t keep) : keep_(keep) {}
     /// A value that is not larger is not kept.
-    float least() const { return heap_.size() < keep_ ? -1 : keep_ ? heap_.front() : HUGE_VALF; }
+    float limit() const { return heap_.size() < keep_ ? -1 : keep_ ? heap_.front() : HUGE_VALF; }
     void add(float x) {
-        if (!(x > least())) return;
+        if (!(x > limit())) return;
         heap_.push_back(x);
         std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
         if (heap_.size() > keep_) {
@@ -213,7 +213,7 @@ double trimmed_mean(std::vector<float>& values, double trim) {
     return sum / static_cast<double>(keep);
 }
 
-/// Sums over one chunk of a region; errors above `least` are kept for the tail.
+/// Sums over one chunk of a region; errors above `limit` are kept for the tail.
 struct Part {
     RegionStats sum;
     std::vector<float> large;
@@ -233,7 +233,7 @@ struct Outliers {
 class SecondPass {
 public:
     SecondPass(const ComparePlan& plan, const RenderStats& stats, const MeanFilm* reference)
-        : plan_(plan), all_(stats), reference_(reference), samples_(seed_samples(stats)) {}
+        : plan_(plan), stats_(stats), reference_(reference), samples_(seed_samples(stats)) {}
 
     void render(const Render& render, ArmStats& arm, std::vector<Largest>& largest,
         std::vector<std::vector<Largest>>& deviations) {
@@ -242,25 +242,25 @@ public:
             for (std::size_t i = c * chunk; i < std::min(y_.size(), (c + 1) * chunk); ++i) y_[i] = render.y(i);
         });
         std::vector<RegionStats> regions;
-        for (std::size_t r = 0; r < all_.regions.size(); ++r) {
-            regions.push_back(region(all_.regions[r], arm.film, largest[r]));
-            spectrum(all_.regions[r], arm, arm.power[r]);
+        for (std::size_t r = 0; r < stats_.regions.size(); ++r) {
+            regions.push_back(region(stats_.regions[r], arm.film, largest[r]));
+            spectrum(stats_.regions[r], arm, arm.power[r]);
         }
         arm.regions.push_back(std::move(regions));
         const std::span<const float> values[] = {y_, render.r, render.g, render.b, render.alpha};
-        if (all_.quantities == 1) region_means<1>({values[0]}, arm, deviations);
-        else if (all_.quantities == most_quantities)
+        if (stats_.quantities == 1) region_means<1>({values[0]}, arm, deviations);
+        else if (stats_.quantities == most_quantities)
             region_means<most_quantities>({values[0], values[1], values[2], values[3], values[4]}, arm, deviations);
         else region_means<colour_quantities>({values[0], values[1], values[2], values[3]}, arm, deviations);
-        for (std::size_t q = 0; q < all_.quantities; ++q) tiles(values[q], arm, q);
-        if (!arm.not_finite.empty()) arm.failed_groups.push_back(failed_groups(render, all_));
+        for (std::size_t q = 0; q < stats_.quantities; ++q) tiles(values[q], arm, q);
+        if (!arm.not_finite.empty()) arm.failed_groups.push_back(failed_groups(render, stats_));
         arm.sampled.push_back(residuals(y_, arm.film, samples_));
     }
 
 private:
     double y(std::size_t i) const { return static_cast<double>(y_[i]); }
 
-    Part part(const PixelSet& set, std::size_t begin, const MeanFilm& film, float least) const {
+    Part part(const PixelSet& set, std::size_t begin, const MeanFilm& film, float limit) const {
         Part out;
         RegionStats& sum = out.sum;
         const std::size_t end = std::min(set.pixels.size(), begin + chunk);
@@ -279,16 +279,16 @@ private:
                 sum.relmse += squared / (ref * ref + epsilon);
                 sum.mape += std::fabs(e) / (std::fabs(ref) + epsilon);
             }
-            if (const auto x = static_cast<float>(squared); x > least) out.large.push_back(x);
+            if (const auto x = static_cast<float>(squared); x > limit) out.large.push_back(x);
         }
         return out;
     }
 
     RegionStats region(const PixelSet& set, const MeanFilm& film, Largest& largest) const {
         std::vector<Part> parts((set.pixels.size() + chunk - 1) / chunk);
-        const float least = largest.least();
+        const float limit = largest.limit();
         parallel_for(
-            std::size_t{0}, parts.size(), [&](std::size_t c) { parts[c] = part(set, c * chunk, film, least); });
+            std::size_t{0}, parts.size(), [&](std::size_t c) { parts[c] = part(set, c * chunk, film, limit); });
         RegionStats out;
         for (const Part& p : parts) {
             out.y += p.sum.y;
@@ -326,16 +326,16 @@ private:
     /// The spectrum of the error: about the mean of the renders, rescaled because this mean removes 1/K of it, or about
     /// the reference.
     void spectrum(const PixelSet& set, const ArmStats& arm, std::vector<double>& power) const {
-        const MeanFilm* about = arm.film.count > 1 ? &arm.film : reference_;
-        if (!set.box || !about) return;
+        const MeanFilm* centre = arm.film.count > 1 ? &arm.film : reference_;
+        if (!set.box || !centre) return;
         const double renders = static_cast<double>(arm.film.count);
         const double scale = arm.film.count > 1 ? std::sqrt(renders / (renders - 1)) : 1;
         add_spectrum(
             power, *set.box,
             [&](int x, int row) {
-                const auto i =
-                    static_cast<std::size_t>(row) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
-                return all_.bad[i] ? 0.0 : scale * (y(i) - about->y()[i]);
+                const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(stats_.width) +
+                    static_cast<std::size_t>(x);
+                return stats_.bad[i] ? 0.0 : scale * (y(i) - centre->y()[i]);
             },
             plan_.spectrum_blocks);
     }
@@ -346,10 +346,10 @@ private:
     std::array<double, count> region(const std::array<std::span<const float>, count>& values, const PixelSet& set,
         const MeanFilm& film, const std::array<Largest*, count>& largest) const {
         std::vector<std::array<QuantityPart, count>> parts((set.pixels.size() + chunk - 1) / chunk);
-        std::array<float, count> least{};
+        std::array<float, count> limits{};
         std::array<const double*, count> mean{};
         for (std::size_t q = 0; q < count; ++q) {
-            least[q] = largest[q]->least();
+            limits[q] = largest[q]->limit();
             mean[q] = film.of(q).mean.data();
         }
         parallel_for(std::size_t{0}, parts.size(), [&](std::size_t c) {
@@ -359,7 +359,7 @@ private:
                 for (std::size_t q = 0; q < count; ++q) {
                     const double value = static_cast<double>(values[q][i]), deviation = value - mean[q][i];
                     sum[q] += value;
-                    if (const auto x = static_cast<float>(deviation * deviation); x > least[q])
+                    if (const auto x = static_cast<float>(deviation * deviation); x > limits[q])
                         parts[c][q].large.push_back(x);
                 }
             }
@@ -384,8 +384,8 @@ private:
         for (int j = box.y0; j <= box.y1; ++j) {
             for (int x = box.x0; x <= box.x1; ++x) {
                 const auto i =
-                    static_cast<std::size_t>(j) * static_cast<std::size_t>(all_.width) + static_cast<std::size_t>(x);
-                if (all_.bad[i]) continue;
+                    static_cast<std::size_t>(j) * static_cast<std::size_t>(stats_.width) + static_cast<std::size_t>(x);
+                if (stats_.bad[i]) continue;
                 const double value = static_cast<double>(values[i]), deviation = value - plane.mean[i],
                              spread = deviation * deviation;
                 out.mean += value;
@@ -406,10 +406,10 @@ private:
     template <std::size_t count> void region_means(const std::array<std::span<const float>, count>& values,
         ArmStats& arm, std::vector<std::vector<Largest>>& largest) const {
         for (std::size_t q = 0; q < count; ++q) arm.quantities[q].regions.emplace_back();
-        for (std::size_t r = 0; r < all_.regions.size(); ++r) {
+        for (std::size_t r = 0; r < stats_.regions.size(); ++r) {
             std::array<Largest*, count> of_region{};
             for (std::size_t q = 0; q < count; ++q) of_region[q] = &largest[q][r];
-            const auto means = region<count>(values, all_.regions[r], arm.film, of_region);
+            const auto means = region<count>(values, stats_.regions[r], arm.film, of_region);
             for (std::size_t q = 0; q < count; ++q) arm.quantities[q].regions.back().push_back(means[q]);
         }
     }
@@ -417,11 +417,11 @@ private:
     void tiles(std::span<const float> values, ArmStats& arm, std::size_t q) const {
         const MeanPlane& plane = arm.film.of(q);
         QuantityReadings& to = arm.quantities[q];
-        std::vector<TileReading> readings(all_.tiles.count());
+        std::vector<TileReading> readings(stats_.tiles.count());
         std::vector<Outliers> rare(readings.size());
         const double lone = lone_share(arm.film.count);
         parallel_for(std::size_t{0}, readings.size(), [&](std::size_t t) {
-            readings[t] = tile(values, all_.tiles.box(t, all_.width, all_.height), plane, lone, rare[t]);
+            readings[t] = tile(values, stats_.tiles.box(t, stats_.width, stats_.height), plane, lone, rare[t]);
         });
         to.tiles.push_back(std::move(readings));
         for (const Outliers& o : rare) {
@@ -431,7 +431,7 @@ private:
     }
 
     const ComparePlan& plan_;
-    const RenderStats& all_;
+    const RenderStats& stats_;
     const MeanFilm* reference_;
     const SeedSamples samples_;
     std::vector<float> y_;

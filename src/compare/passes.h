@@ -55,7 +55,7 @@ private:
 
 class FirstPass {
 public:
-    FirstPass(RenderStats& stats, ProgressMonitor& monitor) : all_(stats), monitor_(monitor) {}
+    FirstPass(RenderStats& stats, ProgressMonitor& monitor) : stats_(stats), monitor_(monitor) {}
     /// Reads every file of an arm into `to`; `spp`: samples per pixel, if the plan states them. Throws InputError at
     /// the first file that does not fit.
     void arm(ArmStats& to, const std::vector<std::string>& files, const std::string& layer, const std::string& name,
@@ -71,7 +71,7 @@ private:
     void count_clipped(const Render& render);
     void check_copy(const RenderFile& file, const std::string& arm);
 
-    RenderStats& all_;
+    RenderStats& stats_;
     ProgressMonitor& monitor_;
     FileWarnings warnings_;
     std::map<std::string, std::pair<std::string, std::string>> paths_by_hash_;  // hash -> path, arm

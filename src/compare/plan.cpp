@@ -20,14 +20,14 @@ Node text_node(const std::string& text, const SourceLocation& place) {
     Node node;
     node.kind = Node::Kind::text;
     node.text = text;
-    node.at = place;
+    node.location = place;
     return node;
 }
 
 void move_to(Node& node, const SourceLocation& place) {
-    node.at = place;
+    node.location = place;
     for (Member& member : node.members) {
-        member.at = place;
+        member.location = place;
         move_to(member.value, place);
     }
 }
@@ -47,9 +47,9 @@ Node value_of(const CompareFlag& flag, const SourceLocation& place) {
 }
 
 Node& child(Node& parent, const std::string& key, const SourceLocation& place) {
-    if (Member* found = parent.find(key)) return found->value;
+    if (Member* member = parent.find(key)) return member->value;
     parent.members.push_back({key, place, Node{}});
-    parent.members.back().value.at = place;
+    parent.members.back().value.location = place;
     return parent.members.back().value;
 }
 
@@ -68,7 +68,7 @@ void put(Node& root, const CompareFlag& flag, std::set<std::string>& begun) {
     if (begun.insert(fmt::format("{}", fmt::join(flag.path, "."))).second) {
         to = Node{};
         to.kind = Node::Kind::array;
-        to.at = place;
+        to.location = place;
     }
     to.members.push_back({"", place, std::move(value)});
 }
@@ -90,13 +90,13 @@ void from_folder(Node& root, const std::string& file) {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
     if (folder.empty()) return;
     const auto member_of = [](Node& node, const char* key) {
-        Member* found = node.find(key);
-        return found ? &found->value : nullptr;
+        Member* member = node.find(key);
+        return member ? &member->value : nullptr;
     };
     from_folder(member_of(root, "reference"), folder, true);
     for (const auto& [table, key] : {std::pair{"arms", "files"}, std::pair{"masks", "file"}})
-        if (Node* named = member_of(root, table))
-            for (Member& member : named->members)
+        if (Node* node = member_of(root, table))
+            for (Member& member : node->members)
                 from_folder(member_of(member.value, key), folder, std::string_view(key) == "files");
 }
 
@@ -105,29 +105,29 @@ void check_names(ParseContext& context, ComparePlan& plan) {
     for (const Region& r : plan.regions) regions.push_back(r.name);
     for (const MaskPlan& m : plan.masks) {
         if (std::count(regions.begin(), regions.end(), m.name))
-            context.report("masks." + m.name, m.at, fmt::format("the name '{}' is a region already", m.name));
+            context.report("masks." + m.name, m.location, fmt::format("the name '{}' is a region already", m.name));
         regions.push_back(m.name);
     }
     for (const Region& r : plan.regions)
         if (r.name == whole_frame)
-            context.report("regions.frame", r.at, "the name 'frame' stands for all pixels: expected another");
+            context.report("regions.frame", r.location, "the name 'frame' stands for all pixels: expected another");
     for (const RenderArm& a : plan.arms) arms.push_back(a.name);
     for (AssertionPlan& a : plan.assertions) {
         std::string why;
         const auto check = parse_comparison(a.text, why, compare_words());
         if (!check) {
-            context.report(a.name, a.at, fmt::format("assertions.{}.check: {}", a.name, why));
+            context.report(a.name, a.location, fmt::format("assertions.{}.check: {}", a.name, why));
             continue;
         }
         a.check = *check;
         for (const ParsedQuantity* q : {&a.check.left, &a.check.right}) {
             if (q->number) continue;
             if (!std::count(arms.begin(), arms.end(), q->adapter))
-                context.report(a.name, a.at,
+                context.report(a.name, a.location,
                     fmt::format("{}: no arm '{}': expected one of {}{}", a.text, q->adapter, listed(arms, ", "),
                         hint(q->adapter, arms)));
             if (!std::count(regions.begin(), regions.end(), q->region))
-                context.report(a.name, a.at,
+                context.report(a.name, a.location,
                     fmt::format("{}: no region '{}': expected one of {}{}", a.text, q->region, listed(regions, ", "),
                         hint(q->region, regions)));
         }

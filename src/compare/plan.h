@@ -20,7 +20,7 @@ namespace crescent {
 /// One arm: files of independent renders of the same view. `files` are paths or patterns (*, ?, [..], %d for digits).
 struct RenderArm {
     std::string name;
-    SourceLocation at;
+    SourceLocation location;
     std::vector<std::string> files;
     bool moments = false;           // one file with the moments of the renders, see renders.h
     std::string layer;              // part or layer to read; "": the beauty
@@ -31,7 +31,7 @@ struct RenderArm {
 /// Pixels where a mask's luminance is above 0 (a render, or a black and white picture in NPY or PFM).
 struct MaskPlan {
     std::string name;
-    SourceLocation at;
+    SourceLocation location;
     std::string file;
 };
 
@@ -70,7 +70,7 @@ struct ComparePlan {
     Expectation expect = Expectation::nothing;
     int spectrum_blocks = 1024;  // of the noise's spectrum, see noise.h
     bool count_pixel_p = true;   // whether the histogram of p over pixels is computed, for the report
-    unsigned look = 0;           // number of this look, of several that share the level; 0: it is the only one
+    unsigned look_number = 0;    // number of this look, of several that share the level; 0: it is the only one
     double smallest = 0.01;      // with expect = "same": the relative difference of Y that must be detectable
     ReadingOptions reading() const {
         return {.encoding = encoding, .space = space, .channels = channels, .channel = channel};

@@ -118,10 +118,10 @@ Box crop_of(const RenderStats& stats) {
 /// A column of a sheet: the whole frame above, the first region below it, at the same scale in every column.
 struct Column {
     std::string name;
-    Block whole, close;
+    Block frame, crop;
 };
 struct Fits {
-    Fit whole, close;
+    Fit frame, crop;
 };
 Fits fits(const RenderStats& stats, const Rect& band, std::size_t columns) {
     const double w = std::floor(column(band, columns, 0).w);
@@ -135,14 +135,14 @@ void draw_plate(Canvas& c, const RenderStats& stats, const Rect& band, const std
         Rect slot = column(band, columns.size(), i);
         c.text({slot.x, slot.y, slot.w, 30}, escaped(columns[i].name), with(with_px(title_text, 22), Align::centre));
         slot.y += 36;
-        const Rect r = framed(c, columns[i].whole, slot);
+        const Rect r = framed(c, columns[i].frame, slot);
         const double sx = r.w / stats.width, sy = r.h / stats.height;
         const Rect cut{
             r.x + crop.x0 * sx, r.y + (stats.height - 1 - crop.y1) * sy, crop.width() * sx, crop.height() * sy};
         if (crop.width() < stats.width || crop.height() < stats.height)
             outline_over(c, cut.inset(-1), photograph_accent);
         slot.y += r.h + 16;
-        framed(c, columns[i].close, slot);
+        framed(c, columns[i].crop, slot);
     }
 }
 
@@ -153,7 +153,7 @@ std::string crop_words(const RenderStats& stats) {
 
 struct Residual {
     std::string name;
-    std::vector<float> plane;  // |Y - about|
+    std::vector<float> plane;  // |Y - centre|
 };
 
 /// Returns the 98th percentile of the residuals, from at most a million of each arm.
@@ -167,9 +167,9 @@ double scale_of(const std::vector<Residual>& residuals) {
 }
 
 Picture errors(
-    const RenderStats& stats, const std::vector<Residual>& residuals, const std::string& about, Theme theme) {
+    const RenderStats& stats, const std::vector<Residual>& residuals, const std::string& centre, Theme theme) {
     Canvas c(sheet_width, sheet_height, ground, 1, theme);
-    header(c, true, "|Y − " + about + "| of one render of each arm, linear, one scale");
+    header(c, true, "|Y − " + centre + "| of one render of each arm, linear, one scale");
     Rect band = content_band;
     band.w -= bar_room;
     const double top = scale_of(residuals);
@@ -182,7 +182,7 @@ Picture errors(
                 top;
         };
         columns.push_back(
-            {r.name, turbo_block(stats.frame(), f.whole, value), turbo_block(crop_of(stats), f.close, value)});
+            {r.name, turbo_block(stats.frame(), f.frame, value), turbo_block(crop_of(stats), f.crop, value)});
     }
     draw_plate(c, stats, band, columns);
     bar(c, {band.right() + gap, band.y + 40, 24, 360}, [](double t) { return turbo(t); },
@@ -200,26 +200,26 @@ void shown_renders(const ComparePlan& plan, const RenderStats& stats, std::map<s
     std::vector<Residual> residuals;
     const auto add = [&](const std::string& name, const Render& render) {
         const View view{render.width, render.height, render.r.data(), render.g.data(), render.b.data(), nullptr};
-        columns.push_back({name, photograph_block(view, stats.frame(), f.whole, plan.exposure),
-            photograph_block(view, crop_of(stats), f.close, plan.exposure)});
+        columns.push_back({name, photograph_block(view, stats.frame(), f.frame, plan.exposure),
+            photograph_block(view, crop_of(stats), f.crop, plan.exposure)});
     };
     for (std::size_t a = 0; a < arms; ++a) {
         const Render r = stats.source.read(stats.arms[a].files[0].path, plan.arms[a].layer);
         add(plan.arms[a].name, in_rec709(stats, r));
-        const MeanFilm& about = stats.reference ? stats.reference->film : stats.arms[a].film;
-        if (!stats.reference && about.count < 2) continue;
+        const MeanFilm& centre = stats.reference ? stats.reference->film : stats.arms[a].film;
+        if (!stats.reference && centre.count < 2) continue;
         Residual residual{plan.arms[a].name, std::vector<float>(r.size())};
         for (std::size_t i = 0; i < r.size(); ++i)
-            residual.plane[i] = static_cast<float>(std::fabs(static_cast<double>(r.y(i)) - about.y()[i]));
+            residual.plane[i] = static_cast<float>(std::fabs(static_cast<double>(r.y(i)) - centre.y()[i]));
         residuals.push_back(std::move(residual));
     }
     if (stats.reference) add("reference", in_rec709(stats, stats.reference->film));
     Canvas c(sheet_width, sheet_height, ground, 1, plan.theme);
     header(c, false, "one render of each arm");
     draw_plate(c, stats, content_band, columns);
-    const char* rest = arms < stats.arms.size() ? "; further arms are not shown" : "";
+    const char* remark = arms < stats.arms.size() ? "; further arms are not shown" : "";
     out["renders"] = finished(c, "The whole frame and, below it, the first region, enlarged alike in every column.",
-        fmt::format("exposure {}; {}{}", figures(plan.exposure), crop_words(stats), rest));
+        fmt::format("exposure {}; {}{}", figures(plan.exposure), crop_words(stats), remark));
     if (!residuals.empty())
         out["errors"] = errors(stats, residuals, stats.reference ? "Y<sub>ref</sub>" : "mean over renders", plan.theme);
 }
@@ -227,9 +227,9 @@ void shown_renders(const ComparePlan& plan, const RenderStats& stats, std::map<s
 /// Returns whether a pair is drawn: of many arms, only the pairs with the first one, because a page would have too many
 /// maps.
 bool shown_pair(const CompareResult& result, const std::string& a, const std::string& b) {
-    constexpr std::size_t few = 4;
+    constexpr std::size_t most_arms = 4;
     const std::string& first = result.arms[0].name;
-    return result.arms.size() <= few || a == first || b == first || b == the_reference;
+    return result.arms.size() <= most_arms || a == first || b == first || b == the_reference;
 }
 
 }  // namespace
@@ -240,12 +240,12 @@ std::map<std::string, Picture> compare_plates(
     shown_renders(plan, stats, out);
     if (!result.ladders.empty()) out["ladders"] = ladders_plate(result, plan.theme);
     for (std::size_t k = 0; k < result.bias.size(); ++k) {
-        const BiasResult& found = result.bias[k];
-        if (!shown_pair(result, found.a, found.b)) continue;
-        const BiasPair sides(plan, stats, result, found.arm_a, found.arm_b, found.shown());
-        const std::string pair = fmt::format("{}-{}", found.a, sides.referred ? "reference" : found.b);
-        out["difference-" + pair] = difference_plate(sides, found.a, found.b, plan.theme);
-        if (!found.tiles.p.empty()) out["bias-" + pair] = bias_plate(sides, found, plan.theme);
+        const BiasResult& bias = result.bias[k];
+        if (!shown_pair(result, bias.a, bias.b)) continue;
+        const BiasPair sides(plan, stats, result, bias.arm_a, bias.arm_b, bias.shown());
+        const std::string pair = fmt::format("{}-{}", bias.a, sides.referred ? "reference" : bias.b);
+        out["difference-" + pair] = difference_plate(sides, bias.a, bias.b, plan.theme);
+        if (!bias.tiles.p.empty()) out["bias-" + pair] = bias_plate(sides, bias, plan.theme);
     }
     for (const NoiseResult& n : result.noise)
         if (shown_pair(result, n.a, n.b)) out[fmt::format("noise-{}-{}", n.a, n.b)] = noise_plate(stats, n, plan.theme);
@@ -268,12 +268,12 @@ LadderCurve curve_of(const CompareResult& result, std::size_t ladder, std::size_
     out.name = escaped(l.name);
     out.ink = series[ladder % series_count];
     for (const std::size_t a : l.arms) {
-        const RegionResult& measured = result.arms[a].regions[region];
-        const MetricValue metric = ladder_metric(measured.metric("rmse"), measured.metric("var"));
+        const RegionResult& metrics = result.arms[a].regions[region];
+        const MetricValue metric = ladder_metric(metrics.metric("rmse"), metrics.metric("var"));
         out.n.push_back(*result.arms[a].spp);
         out.value.push_back(metric.value.value_or(nan));
         out.interval.push_back(metric.interval.value_or(std::pair(nan, nan)));
-        out.heavy |= measured.heavy();
+        out.heavy |= metrics.heavy();
     }
     const MetricValue& slope = l.slopes[region].second;
     out.slope = slope.value.value_or(nan);
@@ -293,15 +293,15 @@ void draw_plate(Canvas& c, const CompareResult& result) {
     const char* what = ladder_metric_name(result.arms[0].regions[0].metric("rmse"));
     header(c, true, fmt::format("{} of one render over its samples a pixel", what));
     const std::vector<std::size_t> columns = columns_of(result);
-    const std::size_t shown = std::min(most_curves, result.ladders.size());
+    const std::size_t curve_count = std::min(most_curves, result.ladders.size());
     for (std::size_t i = 0; i < columns.size(); ++i) {
         std::vector<LadderCurve> curves;
-        for (std::size_t l = 0; l < shown; ++l) curves.push_back(curve_of(result, l, columns[i]));
+        for (std::size_t l = 0; l < curve_count; ++l) curves.push_back(curve_of(result, l, columns[i]));
         const std::string& region = result.arms[0].regions[columns[i]].region;
         draw_ladder_chart(c, column(content_band, columns.size(), i),
             fmt::format("{}<sub>{}</sub> against N", what, escaped(region)), curves);
     }
-    const std::size_t left_out = result.ladders.size() - shown;
+    const std::size_t left_out = result.ladders.size() - curve_count;
     finish(c,
         "The power of N with which each falls, and its interval. Independent samples alone fall as N<sup>−0.50</sup>; "
         "what falls slower has a bias or a heavy tail.",
@@ -356,7 +356,7 @@ Block tile_block(const RenderStats& stats, const Fit& f, const std::vector<doubl
 /// Returns the 98th percentile of the differences, from at most a million pixels.
 double scale_of(const BiasPair& s) {
     std::vector<double> sizes;
-    const auto& pixels = s.all.regions.back().pixels;
+    const auto& pixels = s.stats.regions.back().pixels;
     const std::size_t step = pixels.size() / 1000000 + 1;
     for (std::size_t k = 0; k < pixels.size(); k += step)
         sizes.push_back(std::fabs(s.mean_a(pixels[k]) - s.mean_b(pixels[k])));
@@ -367,15 +367,15 @@ double scale_of(const BiasPair& s) {
 
 /// Returns whether a pixel is not finite on one side, which is a difference; other pixels that are not finite have the
 /// ground's colour.
-bool fails(const BiasResult& found, std::size_t pixel) {
-    const auto in = [&](const std::vector<std::uint32_t>& pixels) {
+bool fails(const BiasResult& bias, std::size_t pixel) {
+    const auto contains = [&](const std::vector<std::uint32_t>& pixels) {
         return std::binary_search(pixels.begin(), pixels.end(), static_cast<std::uint32_t>(pixel));
     };
-    return in(found.non_finite.a.pixels) || in(found.non_finite.b.pixels);
+    return contains(bias.non_finite.a.pixels) || contains(bias.non_finite.b.pixels);
 }
 
-std::string failing_words(const BiasResult& found) {
-    const std::size_t pixels = found.non_finite.a.pixels.size() + found.non_finite.b.pixels.size();
+std::string failing_words(const BiasResult& bias) {
+    const std::size_t pixels = bias.non_finite.a.pixels.size() + bias.non_finite.b.pixels.size();
     return pixels ? fmt::format(" Magenta: {} pixels are not finite on one side.", pixels) : "";
 }
 
@@ -388,12 +388,12 @@ Picture difference_plate(const BiasPair& s, const std::string& a, const std::str
     Rect band = content_band;
     band.w -= bar_room;
     const double top = scale_of(s);
-    const Fit f = fit(s.all.width, s.all.height, std::floor(band.w), std::floor(band.h));
+    const Fit f = fit(s.stats.width, s.stats.height, std::floor(band.w), std::floor(band.h));
     const auto value = [&](int x, int y) {
-        const std::size_t i = pixel(s.all, x, y);
-        return s.all.bad[i] ? std::nan("") : (s.mean_a(i) - s.mean_b(i)) / top;
+        const std::size_t i = pixel(s.stats, x, y);
+        return s.stats.bad[i] ? std::nan("") : (s.mean_a(i) - s.mean_b(i)) / top;
     };
-    framed(c, diverging_block(s.all.frame(), f, theme, value), band);
+    framed(c, diverging_block(s.stats.frame(), f, theme, value), band);
     bar(c, {band.right() + gap, band.y + 20, 24, 360}, signed_colours(theme), ends(top));
     return finished(c,
         fmt::format(
@@ -403,47 +403,47 @@ Picture difference_plate(const BiasPair& s, const std::string& a, const std::str
             "means over {} and {} renders; the scale ends at the 98th percentile", s.a.files.size(), s.b.files.size()));
 }
 
-Picture bias_plate(const BiasPair& s, const BiasResult& found, Theme theme) {
+Picture bias_plate(const BiasPair& s, const BiasResult& bias, Theme theme) {
     Canvas c(sheet_width, sheet_height, ground, 1, theme);
     const char* name = quantity_names[s.quantity];
-    header(c, true, fmt::format("where {} and {} differ: mean <i>{}</i>", escaped(found.a), escaped(found.b), name));
+    header(c, true, fmt::format("where {} and {} differ: mean <i>{}</i>", escaped(bias.a), escaped(bias.b), name));
     Rect band = content_band;
     band.w -= bar_room;
     double top = 0;
-    const std::vector<double>& tiles = found.tiles.difference[s.quantity];
+    const std::vector<double>& tiles = bias.tiles.difference[s.quantity];
     for (std::size_t t = 0; t < tiles.size(); ++t)
-        if (found.tiles.differs[t]) top = std::max(top, std::fabs(tiles[t]));
-    for (const Found& f : found.pixels_found)
+        if (bias.tiles.differs[t]) top = std::max(top, std::fabs(tiles[t]));
+    for (const Found& f : bias.pixels_found)
         if (f.quantity == s.quantity) top = std::max(top, std::fabs(f.a - f.b));
     top = top > 0 ? top : 1;
-    const bool by_pixel = !found.pixel_p.empty();
-    const Rect left_rect = titled(
-        c, column(band, by_pixel ? 2 : 1, 0), fmt::format("{} of {} tiles", found.tiles.different, found.tiles.tested));
-    const Fit f = fit(s.all.width, s.all.height, std::floor(left_rect.w), std::floor(left_rect.h));
-    framed(c, tile_block(s.all, f, tiles, found.tiles.differs, top, theme), left_rect);
-    if (by_pixel) {
+    const bool has_pixel_tests = !bias.pixel_p.empty();
+    const Rect left_rect = titled(c, column(band, has_pixel_tests ? 2 : 1, 0),
+        fmt::format("{} of {} tiles", bias.tiles.different, bias.tiles.test_count));
+    const Fit f = fit(s.stats.width, s.stats.height, std::floor(left_rect.w), std::floor(left_rect.h));
+    framed(c, tile_block(s.stats, f, tiles, bias.tiles.differs, top, theme), left_rect);
+    if (has_pixel_tests) {
         const Rect right =
-            titled(c, column(band, 2, 1), fmt::format("{} of {} pixels", found.pixels_different, found.pixels_tested));
-        const std::vector<std::uint32_t>& differ = found.different_pixels;
+            titled(c, column(band, 2, 1), fmt::format("{} of {} pixels", bias.pixels_different, bias.pixels_tested));
+        const std::vector<std::uint32_t>& different_pixels = bias.different_pixels;
         framed(c,
-            nearest_block(s.all.frame(), f,
+            nearest_block(s.stats.frame(), f,
                 [&](int x, int y) {
-                    const std::size_t i = pixel(s.all, x, y);
-                    if (s.all.bad[i]) return fails(found, i) ? not_a_number_colour : ground_pixel(theme);
-                    const bool differs =
-                        std::binary_search(differ.begin(), differ.end(), static_cast<std::uint32_t>(i));
+                    const std::size_t i = pixel(s.stats, x, y);
+                    if (s.stats.bad[i]) return fails(bias, i) ? not_a_number_colour : ground_pixel(theme);
+                    const bool differs = std::binary_search(
+                        different_pixels.begin(), different_pixels.end(), static_cast<std::uint32_t>(i));
                     return diverging(differs ? visible((s.mean_a(i) - s.mean_b(i)) / top) : 0, theme);
                 }),
             right);
     }
     bar(c, {band.right() + gap, band.y + 40, 24, 360}, signed_colours(theme), ends(top));
     return finished(c,
-        fmt::format("Orange: {} is brighter{}. Blue: {} is brighter. Grey: no difference found.{}", escaped(found.a),
-            s.quantity == 0 ? "" : fmt::format(" in {}", name), escaped(found.b), failing_words(found)),
+        fmt::format("Orange: {} is brighter{}. Blue: {} is brighter. Grey: no difference found.{}", escaped(bias.a),
+            s.quantity == 0 ? "" : fmt::format(" in {}", name), escaped(bias.b), failing_words(bias)),
         fmt::format("{} over renders, false discoveries controlled after {}; tiles of {} × {} pixels, {} left out",
-            found.paired ? "Student’s test of pairs" : "Welch’s test",
-            found.dependent ? "Benjamini and Yekutieli" : "Benjamini and Hochberg", s.all.tiles.size, s.all.tiles.size,
-            found.tiles.left_out));
+            bias.paired ? "Student’s test of pairs" : "Welch’s test",
+            bias.dependent ? "Benjamini and Yekutieli" : "Benjamini and Hochberg", s.stats.tiles.size,
+            s.stats.tiles.size, bias.tiles.left_out));
 }
 
 Picture noise_plate(const RenderStats& stats, const NoiseResult& n, Theme theme) {

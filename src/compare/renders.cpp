@@ -29,10 +29,10 @@ Render::Render(std::string path, int w, int h) : Render(std::move(path), w, h, e
 }
 
 bool Render::is_uniform() const {
-    const auto same = [](const std::vector<float>& plane) {
+    const auto is_constant = [](const std::vector<float>& plane) {
         return std::all_of(plane.begin(), plane.end(), [&](float value) { return value == plane[0]; });
     };
-    return same(r) && same(g) && same(b);
+    return is_constant(r) && is_constant(g) && is_constant(b);
 }
 
 bool Render::is_finite(std::size_t i) const {
@@ -69,15 +69,15 @@ Render kept(Render render, const ReadingOptions& options) {
     if (!options.channel.empty()) {
         const std::vector<std::pair<std::string, std::vector<float>*>> channels = {
             {"R", &render.r}, {"G", &render.g}, {"B", &render.b}, {"A", &render.alpha}};
-        const auto found = std::find_if(
+        const auto match = std::find_if(
             channels.begin(), channels.end(), [&](const auto& channel) { return channel.first == options.channel; });
-        if (found == channels.end() || found->second->empty())
+        if (match == channels.end() || match->second->empty())
             throw InputError({render.file, 0, 0},
                 fmt::format(
                     "no channel '{}': expected one of R, G, B{}", options.channel, render.alpha.empty() ? "" : ", A"));
         if (options.channel == "A") render.steps.srgb = false;
-        const std::vector<float> only = *found->second;
-        render.r = render.g = render.b = only;
+        const std::vector<float> plane = *match->second;
+        render.r = render.g = render.b = plane;
     }
     if (options.channels == TestedChannels::rgb || !options.channel.empty()) render.alpha.clear();
     else if (render.alpha.empty())
@@ -125,9 +125,9 @@ namespace {
 
 void add_set(RenderStats& stats, PixelSet set, const SourceLocation& place) {
     if (set.pixels.empty()) throw InputError(place, set.name + ": expected a pixel above 0, found none");
-    const auto bad = [&](std::uint32_t i) { return stats.bad[i]; };
-    std::copy_if(set.pixels.begin(), set.pixels.end(), std::back_inserter(set.left_out), bad);
-    std::erase_if(set.pixels, bad);
+    const auto is_bad = [&](std::uint32_t i) { return stats.bad[i]; };
+    std::copy_if(set.pixels.begin(), set.pixels.end(), std::back_inserter(set.left_out), is_bad);
+    std::erase_if(set.pixels, is_bad);
     stats.regions.push_back(std::move(set));
 }
 
@@ -149,25 +149,25 @@ PixelSet masked(CommonView& view, const MaskPlan& plan) {
 void regions(const ComparePlan& plan, RenderStats& stats, CommonView& view) {
     for (const Region& r : plan.regions) {
         if (r.box.x1 >= stats.width || r.box.y1 >= stats.height)
-            throw InputError(r.at,
+            throw InputError(r.location,
                 fmt::format(
                     "{}expected a box on the images of {} x {} pixels{}, x from 0 to {} and y from 0 to {}, found "
                     "[{}, {}, {}, {}]",
-                    r.at.line > 0 ? fmt::format("regions.{}.box: ", r.name) : "", stats.width, stats.height,
+                    r.location.line > 0 ? fmt::format("regions.{}.box: ", r.name) : "", stats.width, stats.height,
                     stats.arms[0].files.empty() ? "" : fmt::format(" ({})", stats.arms[0].files[0].path),
                     stats.width - 1, stats.height - 1, r.box.x0, r.box.y0, r.box.x1, r.box.y1));
-        add_set(stats, boxed(r.name, r.box, stats.width), r.at);
+        add_set(stats, boxed(r.name, r.box, stats.width), r.location);
     }
-    for (const MaskPlan& m : plan.masks) add_set(stats, masked(view, m), m.at);
+    for (const MaskPlan& m : plan.masks) add_set(stats, masked(view, m), m.location);
     add_set(stats, boxed(whole_frame, stats.frame(), stats.width), {plan.file, 0, 0});
 }
 
 /// Y alone if every render is grey.
 std::size_t quantities_of(const RenderStats& stats) {
     const auto in_colour = [](const ArmStats& arm) { return arm.film.planes.size() > 1; };
-    const bool any = std::any_of(stats.arms.begin(), stats.arms.end(), in_colour);
+    const bool has_colour = std::any_of(stats.arms.begin(), stats.arms.end(), in_colour);
     if (!stats.arms.empty() && stats.arms[0].film.planes.size() == most_quantities) return most_quantities;
-    return any || (stats.reference && in_colour(*stats.reference)) ? colour_quantities : 1;
+    return has_colour || (stats.reference && in_colour(*stats.reference)) ? colour_quantities : 1;
 }
 
 }  // namespace
@@ -216,7 +216,7 @@ struct Files {
 
 Files files_of(const ComparePlan& plan, const RenderSource& source) {
     Files out;
-    for (const RenderArm& arm : plan.arms) out.arms.push_back(source.expand(arm.files, arm.at));
+    for (const RenderArm& arm : plan.arms) out.arms.push_back(source.expand(arm.files, arm.location));
     if (!plan.reference.empty()) out.reference = source.expand(plan.reference, {plan.file, 0, 0});
     for (const auto& files : out.arms) out.total += files.size();
     out.total += out.reference.size();
@@ -225,15 +225,15 @@ Files files_of(const ComparePlan& plan, const RenderSource& source) {
 
 void share_windows(CommonView& view, const ComparePlan& plan, const Files& files, ProgressMonitor& monitor) {
     monitor.begin("data windows", static_cast<double>(files.total));
-    const auto each = [&](const std::vector<std::string>& paths, const std::string& layer) {
+    const auto share_files = [&](const std::vector<std::string>& paths, const std::string& layer) {
         for (const std::string& path : paths) {
             monitor.check();
             view.share(path, layer);
             monitor.advance(1);
         }
     };
-    for (std::size_t a = 0; a < files.arms.size(); ++a) each(files.arms[a], plan.arms[a].layer);
-    each(files.reference, plan.reference_layer);
+    for (std::size_t a = 0; a < files.arms.size(); ++a) share_files(files.arms[a], plan.arms[a].layer);
+    share_files(files.reference, plan.reference_layer);
 }
 
 }  // namespace

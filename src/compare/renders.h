@@ -86,7 +86,7 @@ void convert(Render& render, const Matrix3& m);
 void from_xyz(Render& render);
 
 // Readers of each format; read_render() selects one by the first bytes.
-Render read_exr(const OpenFile& file, const std::string& layer, const ReadingOptions& options);
+Render read_exr(const OpenFile& file, const std::string& layer_name, const ReadingOptions& options);
 Render read_pfm(const OpenFile& file);
 Render read_npy(const OpenFile& file);
 
@@ -253,12 +253,12 @@ struct JointP {
     double p = std::nan("");
     std::size_t quantity = 0;
 };
-/// `each`: p of each quantity, NaN if it was not tested.
-inline JointP joint_p(std::span<const double> each) {
+/// `values`: p of each quantity, NaN if it was not tested.
+inline JointP joint_p(std::span<const double> values) {
     JointP out;
-    for (std::size_t q = 0; q < each.size(); ++q) {
-        const double p = std::min(1.0, each[q] / level_share(q, each.size()));
-        if (std::isnan(each[q]) || p >= out.p) continue;
+    for (std::size_t q = 0; q < values.size(); ++q) {
+        const double p = std::min(1.0, values[q] / level_share(q, values.size()));
+        if (std::isnan(values[q]) || p >= out.p) continue;
         out = {p, q};
     }
     return out;

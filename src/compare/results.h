@@ -51,7 +51,7 @@ struct ArmResult {
     std::size_t renders = 0;
     std::optional<double> spp, seconds;
     std::vector<RegionResult> regions;
-    const RegionResult& region(const std::string& wanted) const;
+    const RegionResult& region(const std::string& region_name) const;
 };
 
 /// One test of equal means in a region: of Y, and of each channel if renders are in colour.
@@ -65,7 +65,7 @@ struct MeanTest {
     double information = 0;          // of a test that holds at any time, see anytime.h; 0: it is made once
     double smallest = 0;             // the relative difference that would have been found with a probability of 90 %
     std::string why;                 // why it was not tested; "" if it was
-    std::string needed;              // how many renders are needed for a test; "" if `why` says it
+    std::string requirement;         // how many renders are needed for a test; "" if `why` says it
     std::string caveat;              // a cause other than a bias for a small p; "" if there is none
     std::vector<MeanTest> channels;  // R, G, B
     double joint_p = std::nan("");   // of "no difference in any of them", see renders.h
@@ -79,7 +79,7 @@ struct PlaceTests {
     std::vector<std::size_t> quantity;            // per place: the quantity of that p
     std::vector<std::vector<double>> difference;  // [quantity][place]: mean of a minus that of b
     std::vector<bool> differs;
-    std::size_t tested = 0, left_out = 0, different = 0;
+    std::size_t test_count = 0, left_out = 0, different = 0;
 };
 
 /// A place that differs: a box with both ends inclusive, and both means in it of the quantity that differs the most.
@@ -94,7 +94,7 @@ struct SingleDifference {
     std::uint64_t pixels = 0, different = 0;  // finite pixels
     double rms = 0;                           // of the difference of Y
     double largest = 0;                       // largest difference of a channel
-    Box at;                                   // the pixel with that difference
+    Box place;                                // the pixel with that difference
 };
 
 /// An explanation of a difference other than a bias: events on the darker side that are in none of its renders with the
@@ -144,7 +144,7 @@ struct NoiseResult {
     struct Histogram {
         std::string region;
         std::vector<std::uint64_t> different,
-            rest;  // tiles per bin of log2_ratio (noise_bins); the outermost bins are open
+            undistinguished;  // tiles per bin of log2_ratio (noise_bins); the outermost bins are open
     };
     std::vector<Histogram> regions;
     std::string sentence;

@@ -26,9 +26,9 @@ constexpr std::size_t blocks_least = 8;  // fewer blocks cannot reach this level
 /// Adds up to pixels_a_block pixels of a block, evenly spaced.
 void take_block(const RenderStats& stats, const Box& box, SeedSamples& to) {
     const std::size_t count = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height());
-    const std::size_t taken = std::min(count, pixels_a_block);
-    for (std::size_t k = 0; k < taken; ++k) {
-        const std::size_t index = k * count / taken, across = static_cast<std::size_t>(box.width());
+    const std::size_t sample_count = std::min(count, pixels_a_block);
+    for (std::size_t k = 0; k < sample_count; ++k) {
+        const std::size_t index = k * count / sample_count, across = static_cast<std::size_t>(box.width());
         const auto i = (static_cast<std::size_t>(box.y0) + index / across) * static_cast<std::size_t>(stats.width) +
             static_cast<std::size_t>(box.x0) + index % across;
         if (!stats.bad[i]) to.pixels.push_back(static_cast<std::uint32_t>(i));
@@ -38,7 +38,7 @@ void take_block(const RenderStats& stats, const Box& box, SeedSamples& to) {
 
 struct Correlation {
     double r = 0;
-    bool found = false;
+    bool is_significant = false;
 };
 
 /// The quantiles of Student's t for means of n values at one level; each is computed once.
@@ -94,14 +94,14 @@ bool shares_seeds(const Correlations& r, const std::vector<RenderPair>& pairs) {
         for (std::size_t k = 0; k < pairs.size(); ++k) out += r[pairs[k].first][pairs[order[k]].second];
         return out;
     };
-    const double stated = sum();
+    const double stated_sum = sum();
     std::uint32_t state = 0x5eed;
     for (std::size_t n = 0; n < permutations; ++n) {
         for (std::size_t k = order.size() - 1; k > 0; --k) {  // Fisher and Yates
             state = seed_of(state, static_cast<std::uint32_t>(k));
             std::swap(order[k], order[state % (k + 1)]);
         }
-        if (!std::is_sorted(order.begin(), order.end()) && sum() >= stated) return false;
+        if (!std::is_sorted(order.begin(), order.end()) && sum() >= stated_sum) return false;
     }
     return true;
 }
@@ -134,15 +134,16 @@ std::vector<std::vector<double>> deviations(const ArmStats& arm, const SeedSampl
 /// pixel weighted by its variance on both sides.
 void estimate_correlations(
     const ArmStats& a, const ArmStats& b, const SeedSamples& samples, std::vector<SeedPair>& pairs) {
-    const auto of_a = deviations(a, samples, pairs, &SeedPair::a), of_b = deviations(b, samples, pairs, &SeedPair::b);
+    const auto deviations_a = deviations(a, samples, pairs, &SeedPair::a),
+               deviations_b = deviations(b, samples, pairs, &SeedPair::b);
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         double product = 0, squares_a = 0, squares_b = 0;
         for (std::size_t i = 0; i < samples.pixels.size(); ++i) {
             const double variance = a.film.variance(samples.pixels[i]) + b.film.variance(samples.pixels[i]);
             if (!(variance > 0)) continue;
-            product += of_a[k][i] * of_b[k][i] / variance;
-            squares_a += of_a[k][i] * of_a[k][i] / variance;
-            squares_b += of_b[k][i] * of_b[k][i] / variance;
+            product += deviations_a[k][i] * deviations_b[k][i] / variance;
+            squares_a += deviations_a[k][i] * deviations_a[k][i] / variance;
+            squares_b += deviations_b[k][i] * deviations_b[k][i] / variance;
         }
         if (squares_a > 0 && squares_b > 0) pairs[k].correlation = product / std::sqrt(squares_a * squares_b);
     }
@@ -174,32 +175,32 @@ std::vector<SeedPair> shared_seeds(const RenderStats& stats, const ArmStats& a, 
     if (a.files.size() < 2 || b.files.size() < 2 || a.sampled.empty() || b.sampled.empty()) return {};
     const SeedSamples samples = seed_samples(stats);
     MeanLimits limits(shared_seed_level / static_cast<double>(a.files.size() * b.files.size()));
-    std::vector<SeedPair> found;
+    std::vector<SeedPair> pairs;
     Correlations all_r(a.files.size(), std::vector<double>(b.files.size()));
     double largest = 0;
     for (std::size_t i = 0; i < a.files.size(); ++i)
         for (std::size_t j = 0; j < b.files.size(); ++j) {
             const Correlation c = correlation(a.sampled[i], b.sampled[j], samples, limits);
             all_r[i][j] = c.r;
-            if (c.found) {
-                found.push_back({i, j, c.r});
+            if (c.is_significant) {
+                pairs.push_back({i, j, c.r});
                 largest = std::max(largest, c.r);
             }
         }
-    std::erase_if(found, [&](const SeedPair& p) { return p.correlation < largest / 2; });
+    std::erase_if(pairs, [&](const SeedPair& p) { return p.correlation < largest / 2; });
     std::vector<std::size_t> partners_a(a.files.size()), partners_b(b.files.size());
-    for (const SeedPair& p : found) {
+    for (const SeedPair& p : pairs) {
         ++partners_a[p.a];
         ++partners_b[p.b];
     }
-    std::erase_if(found, [&](const SeedPair& p) { return partners_a[p.a] > 1 || partners_b[p.b] > 1; });
-    if (found.size() < std::min(a.files.size(), b.files.size()))
-        if (const std::vector<RenderPair> named = named_pairs(a, b); shares_seeds(all_r, named)) {
-            found.clear();
-            for (const auto& [i, j] : named) found.push_back({i, j, all_r[i][j]});
+    std::erase_if(pairs, [&](const SeedPair& p) { return partners_a[p.a] > 1 || partners_b[p.b] > 1; });
+    if (pairs.size() < std::min(a.files.size(), b.files.size()))
+        if (const std::vector<RenderPair> name_pairs = named_pairs(a, b); shares_seeds(all_r, name_pairs)) {
+            pairs.clear();
+            for (const auto& [i, j] : name_pairs) pairs.push_back({i, j, all_r[i][j]});
         }
-    if (found.size() > 1) estimate_correlations(a, b, samples, found);
-    return found;
+    if (pairs.size() > 1) estimate_correlations(a, b, samples, pairs);
+    return pairs;
 }
 
 }  // namespace crescent

@@ -36,12 +36,12 @@ std::uint64_t hash_of(const Render& render) {
 /// Returns a plane of window `from` in window `to`: 0 outside.
 std::vector<float> placed(const std::vector<float>& plane, const PixelWindow& from, const PixelWindow& to) {
     std::vector<float> out(to.pixels(), 0.0f);
-    const PixelWindow both = intersection(from, to);
-    if (both.empty()) return out;
-    for (std::int64_t y = both.y0; y <= both.y1; ++y) {  // rows are bottom-up
-        const std::int64_t source = (from.y1 - y) * from.width() + (both.x0 - from.x0);
-        const std::int64_t target = (to.y1 - y) * to.width() + (both.x0 - to.x0);
-        std::copy_n(plane.begin() + source, both.width(), out.begin() + target);
+    const PixelWindow overlap = intersection(from, to);
+    if (overlap.empty()) return out;
+    for (std::int64_t y = overlap.y0; y <= overlap.y1; ++y) {  // rows are bottom-up
+        const std::int64_t source = (from.y1 - y) * from.width() + (overlap.x0 - from.x0);
+        const std::int64_t target = (to.y1 - y) * to.width() + (overlap.x0 - to.x0);
+        std::copy_n(plane.begin() + source, overlap.width(), out.begin() + target);
     }
     return out;
 }
@@ -87,12 +87,12 @@ Render CommonView::read_mask(const std::string& path) {
         return of_mask.width() == w.width() && of_mask.height() == w.height();
     };
     const PixelWindow window = crop_ ? shared_ : frame;
-    const bool whole = fits(frame);
-    if (!whole && !fits(window))
+    const bool fits_frame = fits(frame);
+    if (!fits_frame && !fits(window))
         throw InputError({path, 0, 0},
             fmt::format("expected {} x {} pixels as the renders have, found {} x {}", window.width(), window.height(),
                 of_mask.width(), of_mask.height()));
-    const PixelWindow& corner = whole ? frame : window;  // the origin of the mask is ignored
+    const PixelWindow& corner = fits_frame ? frame : window;  // the origin of the mask is ignored
     const std::int64_t x = corner.x0 - of_mask.x0, y = corner.y0 - of_mask.y0;
     const PixelWindow data = mask.data;
     mask.data = {data.x0 + x, data.y0 + y, data.x1 + x, data.y1 + y};
@@ -136,17 +136,17 @@ void CommonView::convert_primaries(Render& render) const {
 }
 
 void CommonView::check_unchanged(const Render& render, const std::string& layer) {
-    const Reading now{.state = render.state, .width = render.width, .height = render.height, .hash = render.hash};
-    const auto [at, first_time] = first_readings_.emplace(std::pair{render.file, layer}, now);
-    if (first_time) return;
-    const Reading& before = at->second;
-    const FileState &a = before.state, &b = now.state;
+    const Reading reading{.state = render.state, .width = render.width, .height = render.height, .hash = render.hash};
+    const auto [entry, is_first] = first_readings_.emplace(std::pair{render.file, layer}, reading);
+    if (is_first) return;
+    const Reading& first_reading = entry->second;
+    const FileState &a = first_reading.state, &b = reading.state;
     const std::string what = a.device != b.device || a.inode != b.inode ? "it is another file"
-        : a.size != b.size                                         ? fmt::format("{} bytes, now {}", a.size, b.size)
-        : a.modified != b.modified                                 ? "it was written meanwhile"
-        : before.width != now.width || before.height != now.height ? "its size in pixels"
-        : before.hash != now.hash                                  ? "its pixels"
-                                                                   : "";
+        : a.size != b.size         ? fmt::format("{} bytes, now {}", a.size, b.size)
+        : a.modified != b.modified ? "it was written meanwhile"
+        : first_reading.width != reading.width || first_reading.height != reading.height ? "its size in pixels"
+        : first_reading.hash != reading.hash                                             ? "its pixels"
+                                                                                         : "";
     if (!what.empty())
         throw InputError({render.file, 0, 0},
             fmt::format("the file changed since it was first read ({}): compare renders that are complete", what));

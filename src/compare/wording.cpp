@@ -25,50 +25,51 @@ namespace {
 /// Sums over pixels that are visited row by row, from the left.
 class Visit {
 public:
-    explicit Visit(const BiasPair& sides) : Visit(sides.all, sides.a, sides.b, sides.quantity) {
+    explicit Visit(const BiasPair& sides) : Visit(sides.stats, sides.a, sides.b, sides.quantity) {
         if (sides.differences) paired_ = &sides.differences->film;
     }
     Visit(const RenderStats& stats, const ArmStats& a, const ArmStats& b, std::size_t quantity)
-        : all_(stats), a_(a.film), b_(b.film), quantity_(quantity) {}
+        : stats_(stats), a_(a.film), b_(b.film), quantity_(quantity) {}
 
     void pixel(std::size_t i) {
-        if (all_.bad[i]) return;
+        if (stats_.bad[i]) return;
         const double a = a_.of(quantity_).mean[i], b = b_.of(quantity_).mean[i], d = a - b;
         out_.pixels += 1;
         out_.mean_a += a;
         out_.mean_b += b;
-        const double own_a = a_.variance(i, quantity_), own_b = b_.variance(i, quantity_);
-        out_.a += paired_ ? paired_->variance(i, quantity_) : own_a;
-        out_.b += paired_ ? 0 : own_b;
-        out_.own += own_a + own_b;
-        const bool neighbours = pairs_started_ && last_ + 1 == i && i % static_cast<std::size_t>(all_.width) != 0;
-        if (neighbours) {
-            rough_ += (d - before_) * (d - before_) / 2;
-            pairs_ += 1;
+        const double variance_a = a_.variance(i, quantity_), variance_b = b_.variance(i, quantity_);
+        out_.a += paired_ ? paired_->variance(i, quantity_) : variance_a;
+        out_.b += paired_ ? 0 : variance_b;
+        out_.unpaired_variance += variance_a + variance_b;
+        const bool are_neighbours = pairs_started_ && last_ + 1 == i && i % static_cast<std::size_t>(stats_.width) != 0;
+        if (are_neighbours) {
+            roughness_ += (d - last_difference_) * (d - last_difference_) / 2;
+            pair_count_ += 1;
         }
         last_ = i;
-        before_ = d;
+        last_difference_ = d;
         pairs_started_ = true;
     }
     /// `low`: the noise over a whole set relative to that between neighbours.
-    SetVariance done(double low) const {
+    SetVariance result(double low) const {
         SetVariance out = out_;
-        for (double* sum : {&out.a, &out.b, &out.own, &out.mean_a, &out.mean_b}) *sum /= out.pixels;
-        const double of_a = std::isnan(out.a) ? 0 : out.a / static_cast<double>(a_.count);
-        if (std::isnan(out.b)) out.b = pairs_ > 0 ? std::max(0.0, rough_ / pairs_ - of_a) * low : 0;
-        if (!paired_) out.own = out.a + out.b;
+        for (double* sum : {&out.a, &out.b, &out.unpaired_variance, &out.mean_a, &out.mean_b}) *sum /= out.pixels;
+        const double variance_of_a = std::isnan(out.a) ? 0 : out.a / static_cast<double>(a_.count);
+        if (std::isnan(out.b))
+            out.b = pair_count_ > 0 ? std::max(0.0, roughness_ / pair_count_ - variance_of_a) * low : 0;
+        if (!paired_) out.unpaired_variance = out.a + out.b;
         return out;
     }
 
 private:
-    const RenderStats& all_;
+    const RenderStats& stats_;
     const MeanFilm &a_, &b_;
     const MeanFilm* paired_ = nullptr;
     const std::size_t quantity_;
     SetVariance out_;
     std::size_t last_ = 0;
     bool pairs_started_ = false;
-    double before_ = 0, rough_ = 0, pairs_ = 0;
+    double last_difference_ = 0, roughness_ = 0, pair_count_ = 0;
 };
 
 MeanInterval floored_at(MeanInterval m, double variance_of_one) {
@@ -132,22 +133,22 @@ MeanInterval mean_and_error(std::span<const double> values) {
     return out;
 }
 
-BiasPair::BiasPair(const ComparePlan& plan, const RenderStats& readings, const CompareResult& measured,
-    std::size_t first, std::size_t second, std::size_t quantity_count, const PairedRenders* paired)
-    : all(readings),
+BiasPair::BiasPair(const ComparePlan& plan, const RenderStats& readings, const CompareResult& result, std::size_t first,
+    std::size_t second, std::size_t quantity_count, const PairedRenders* paired)
+    : stats(readings),
       a(readings.arms[first]),
       b(second < readings.arms.size() ? readings.arms[second] : *readings.reference),
-      arm(measured.arms[first]),
+      arm(result.arms[first]),
       quantity(quantity_count) {
-    const Rgb weights = luminance_weights_of(all.primaries);  // a channel may be 1 / weight times as bright as Y
+    const Rgb weights = luminance_weights_of(stats.primaries);  // a channel may be 1 / weight times as bright as Y
     referred = second >= readings.arms.size();
     brightest = plan.brightest.value_or(0);
     count_pixel_p = plan.count_pixel_p;
     shared_noise = plan.shared_noise;
-    look = plan.look;
+    look_number = plan.look_number;
     if (const double weight = quantity > 0 && quantity < colour_quantities ? weights[quantity - 1] : 1; weight > 0)
         brightest /= weight;
-    if (!referred) other = &measured.arms[second];
+    if (!referred) other = &result.arms[second];
     const RegionResult& frame = arm.region(whole_frame);
     dependent = frame.colour == NoiseColour::correlated;
     if (other) dependent |= other->region(whole_frame).colour == NoiseColour::correlated;
@@ -172,10 +173,10 @@ std::vector<double> BiasPair::tile_means(const ArmStats& side, std::size_t tile)
     return paired_of(side, std::move(out));
 }
 
-std::vector<double> BiasPair::paired_of(const ArmStats& side, std::vector<double> each) const {
-    if (!pairs) return each;
+std::vector<double> BiasPair::paired_of(const ArmStats& side, std::vector<double> values) const {
+    if (!pairs) return values;
     std::vector<double> out;
-    for (const auto& [i, j] : *pairs) out.push_back(each[&side == &a ? i : j]);
+    for (const auto& [i, j] : *pairs) out.push_back(values[&side == &a ? i : j]);
     return out;
 }
 
@@ -184,11 +185,12 @@ double BiasPair::renders_of(const ArmStats& side) const {
 }
 
 std::string BiasPair::heavy_in(std::size_t region) const {
-    if (differences) return heavy_deviations(all, *differences, quantity, region) ? "the differences of the pairs" : "";
+    if (differences)
+        return heavy_deviations(stats, *differences, quantity, region) ? "the differences of the pairs" : "";
     for (const ArmResult* result : {&arm, other}) {
         if (!result) continue;
         const bool heavy = quantity == 0 ? result->regions[region].mean_heavy()
-                                         : heavy_deviations(all, result == &arm ? a : b, quantity, region);
+                                         : heavy_deviations(stats, result == &arm ? a : b, quantity, region);
         if (heavy) return result->name;
     }
     return "";
@@ -204,14 +206,14 @@ SetVariance BiasPair::noise_of(const Box& box) const {
     for (int j = box.y0; j <= box.y1; ++j)
         for (int i = box.x0; i <= box.x1; ++i)
             visit.pixel(
-                static_cast<std::size_t>(j) * static_cast<std::size_t>(all.width) + static_cast<std::size_t>(i));
-    return visit.done(low_frequencies);
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(stats.width) + static_cast<std::size_t>(i));
+    return visit.result(low_frequencies);
 }
 
 SetVariance BiasPair::noise_of(const PixelSet& set) const {
     Visit visit(*this);
     for (const std::uint32_t i : set.pixels) visit.pixel(i);
-    return visit.done(low_frequencies);
+    return visit.result(low_frequencies);
 }
 
 bool BiasPair::pools() const {
@@ -245,9 +247,9 @@ std::optional<Welch> BiasPair::pooled_test(
 Welch BiasPair::test(
     const std::vector<double>& va, const std::vector<double>& vb, const SetVariance& noise, bool floored) const {
     if (pairs) {
-        std::vector<double> each;
-        for (std::size_t k = 0; k < pairs->size(); ++k) each.push_back(va[k] - vb[k]);
-        const MeanInterval mean = mean_and_error(each);
+        std::vector<double> pair_differences;
+        for (std::size_t k = 0; k < pairs->size(); ++k) pair_differences.push_back(va[k] - vb[k]);
+        const MeanInterval mean = mean_and_error(pair_differences);
         return with_p(paired_test(floored ? floored_at(mean, noise.a / noise.pixels) : mean));
     }
     if (const auto pooled = pooled_test(va, vb, noise, floored)) return with_p(*pooled);
@@ -259,28 +261,28 @@ Welch BiasPair::test(
 }
 
 double BiasPair::information() const {
-    if (look == 0) return 0;
+    if (look_number == 0) return 0;
     if (pairs) return static_cast<double>(pairs->size());
     const double n = static_cast<double>(a.files.size()), m = static_cast<double>(b.files.size());
     return n * m / (n + m);
 }
 
 Welch BiasPair::with_p(Welch test) const {
-    if (look > 0 && test.se > 0) test.p = anytime_p(test.difference / test.se, test.df, information());
+    if (look_number > 0 && test.se > 0) test.p = anytime_p(test.difference / test.se, test.df, information());
     return test;
 }
 
 double BiasPair::detectable_difference(const Welch& test, double level) const {
-    if (look == 0) return detectable(test, level);
+    if (look_number == 0) return detectable(test, level);
     if (!(test.df > 0) || !std::isfinite(test.se)) return HUGE_VAL;
     return test.se * (anytime_quantile(level, test.df, information()) + student_quantile(0.9, test.df));
 }
 
 double BiasPair::rare_event(double difference) const {
-    const QuantityReadings& read = (difference < 0 ? a : b).quantities[quantity];
+    const QuantityReadings& readings = (difference < 0 ? a : b).quantities[quantity];
     if (pools() && (difference < 0 ? a : b).files.size() < 2)  // one render has no outliers among its values
         return std::max({brightest, a.quantities[quantity].rise, b.quantities[quantity].rise});
-    if (!differences) return std::max(brightest, read.rise);
+    if (!differences) return std::max(brightest, readings.rise);
     const QuantityReadings& paired = differences->quantities[quantity];  // an event in b alone is a fall of a - b
     return std::max(brightest, difference < 0 ? paired.rise : paired.fall);
 }
@@ -292,10 +294,10 @@ double BiasPair::missable_difference(double difference, double pixels, double le
 }
 
 std::optional<MissedEvents> BiasPair::events_for(const Found& place, double pixels, double level) const {
-    const bool ours = place.a < place.b;
-    const ArmStats& lower = ours ? a : b;
+    const bool is_a_darker = place.a < place.b;
+    const ArmStats& lower = is_a_darker ? a : b;
     if (lower.files.size() < 2) return {};
-    MissedEvents out{ours ? arm.name : other ? other->name : the_reference, 0, 0, 0};
+    MissedEvents out{is_a_darker ? arm.name : other ? other->name : the_reference, 0, 0, 0};
     out.one_in = pixels * renders_of(lower) / -math::log(level);
     out.size = std::fabs(place.a - place.b) * out.one_in;
     const double mean = std::min(place.a, place.b);
@@ -306,13 +308,13 @@ std::optional<MissedEvents> BiasPair::events_for(const Found& place, double pixe
 double BiasPair::undetectable_difference(
     double mean_a, double mean_b, double pixels, double variance, double level) const {
     constexpr double roundings = 4;
-    constexpr double reordered = 0x1p-18;  // of a float sum of up to 64 similar terms, each rounded to 2^-24
-    const double rounded = a.film.rounding * std::fabs(mean_a) + b.film.rounding * std::fabs(mean_b);
-    const double left_over = variance > 0 ? std::min(1.0, rounded / std::sqrt(variance)) : 1;
+    constexpr double reordering = 0x1p-18;  // of a float sum of up to 64 similar terms, each rounded to 2^-24
+    const double rounding = a.film.rounding * std::fabs(mean_a) + b.film.rounding * std::fabs(mean_b);
+    const double left_over = variance > 0 ? std::min(1.0, rounding / std::sqrt(variance)) : 1;
     const double steps = quantised_difference(mean_a, mean_b, pixels, variance);
-    const double arithmetic = differences ? reordered * (std::fabs(mean_a) + std::fabs(mean_b)) : 0;
+    const double arithmetic = differences ? reordering * (std::fabs(mean_a) + std::fabs(mean_b)) : 0;
     return std::max({missable_difference(mean_a - mean_b, pixels, level),
-        roundings * rounded * std::max(left_over, 1 / std::sqrt(pixels)), steps, arithmetic});
+        roundings * rounding * std::max(left_over, 1 / std::sqrt(pixels)), steps, arithmetic});
 }
 
 double BiasPair::quantised_difference(double mean_a, double mean_b, double pixels, double variance) const {
@@ -326,15 +328,15 @@ double BiasPair::quantised_difference(double mean_a, double mean_b, double pixel
     // Noise dithers (Widrow & Kollar 2008, "Quantization Noise", 2): the mean of values rounded to steps of q is wrong
     // by at most q / pi times their characteristic function at 2 pi / q, which is 1 / sqrt(1 + (2 pi sigma / q)^2) for
     // exponential noise and smaller for smoother noise.
-    const double of_step = steps > 0 ? 2 * std::numbers::pi * std::sqrt(variance) / steps : 0;
-    const double share = std::min(1.0, 1 / std::sqrt(1 + of_step * of_step));
+    const double relative_noise = steps > 0 ? 2 * std::numbers::pi * std::sqrt(variance) / steps : 0;
+    const double share = std::min(1.0, 1 / std::sqrt(1 + relative_noise * relative_noise));
     return safety * steps * (variance > 0 ? std::max(share / std::numbers::pi, 1 / std::sqrt(pixels)) : 1);
 }
 
 double roughness(const RenderStats& stats, const ArmStats& arm, const PixelSet& set) {
     Visit visit(stats, arm, *stats.reference, 0);
     for (const std::uint32_t i : set.pixels) visit.pixel(i);
-    return visit.done(1).b;
+    return visit.result(1).b;
 }
 
 // ---- The results about means, in one sentence.
@@ -357,11 +359,11 @@ std::string of_channel(std::size_t quantity) {
     return quantity == 0 ? "" : fmt::format("{} ", quantity_names[quantity]);
 }
 
-std::string places(const std::vector<Found>& found, std::uint64_t total) {
+std::string places(const std::vector<Found>& entries, std::uint64_t total) {
     std::vector<std::string> out;
-    for (const Found& f : found)
+    for (const Found& f : entries)
         out.push_back(fmt::format("{} ({}{})", place(f), of_channel(f.quantity), relative(f.a, f.b)));
-    return fmt::format("{}{}", fmt::join(out, ", "), total > found.size() ? " and more" : "");
+    return fmt::format("{}{}", fmt::join(out, ", "), total > entries.size() ? " and more" : "");
 }
 
 /// Returns " in R", or " (12 most in R, 4 in B)": the quantities in which places differ the most; "" if only Y.
@@ -391,7 +393,7 @@ std::vector<std::string> differences(const RenderStats& stats, const BiasResult&
         for (const MeanTest& channel : t.channels) mean_difference(b, t.region, channel.region, channel, out);
     }
     if (b.tiles.different)
-        out.push_back(fmt::format("{} of {} tiles differ{}: {}", b.tiles.different, b.tiles.tested,
+        out.push_back(fmt::format("{} of {} tiles differ{}: {}", b.tiles.different, b.tiles.test_count,
             by_quantity(b.tiles_by), places(b.tiles_found, b.tiles.different)));
     if (b.pixels_different)
         out.push_back(fmt::format("{} of {} pixels differ{}: {}", b.pixels_different, b.pixels_tested,
@@ -403,29 +405,30 @@ std::string counted(std::size_t count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-std::string renders_of(std::uint32_t least, std::uint32_t greatest, std::size_t renders) {
+std::string renders_of(std::uint32_t smallest, std::uint32_t greatest, std::size_t renders) {
     if (greatest == 0) return "in none";
-    if (least == renders) return renders == 1 ? "in its render" : fmt::format("in all {} renders", renders);
-    if (least == greatest) return fmt::format("in {} of {} renders", greatest, renders);
-    return fmt::format("in {} to {} of {} renders", least, greatest, renders);
+    if (smallest == renders) return renders == 1 ? "in its render" : fmt::format("in all {} renders", renders);
+    if (smallest == greatest) return fmt::format("in {} of {} renders", greatest, renders);
+    return fmt::format("in {} to {} of {} renders", smallest, greatest, renders);
 }
 
 std::string failing(const FailingPixels& pixels, const std::string& name, std::size_t renders, const std::string& other,
     std::size_t other_renders, int width) {
     return fmt::format("{} of {} {} not finite {}, and {} of {}: {}", counted(pixels.pixels.size(), "pixel"), name,
-        pixels.pixels.size() == 1 ? "is" : "are", renders_of(pixels.least, pixels.most, renders),
-        renders_of(pixels.other_least, pixels.other_most, other_renders), other, places_of(pixels, width));
+        pixels.pixels.size() == 1 ? "is" : "are", renders_of(pixels.least_renders, pixels.most_renders, renders),
+        renders_of(pixels.least_other_renders, pixels.most_other_renders, other_renders), other,
+        places_of(pixels, width));
 }
 
 /// Describes pixels that are not finite without a difference between the sides.
 std::string excluded(const BiasResult& b) {
     std::string out;
-    if (b.non_finite.both)
-        out += fmt::format(" {} not finite on both sides {} left out.", counted(b.non_finite.both, "pixel"),
-            b.non_finite.both == 1 ? "is" : "are");
-    if (b.non_finite.one)
+    if (b.non_finite.two_sided)
+        out += fmt::format(" {} not finite on both sides {} left out.", counted(b.non_finite.two_sided, "pixel"),
+            b.non_finite.two_sided == 1 ? "is" : "are");
+    if (b.non_finite.one_sided)
         out += fmt::format(" {} not finite on one side, in so few renders that the rates may be equal, {} left out.",
-            counted(b.non_finite.one, "pixel"), b.non_finite.one == 1 ? "is" : "are");
+            counted(b.non_finite.one_sided, "pixel"), b.non_finite.one_sided == 1 ? "is" : "are");
     if (b.non_finite.undecided)
         out += fmt::format(
             " {} of those not finite in half of the renders of one side or more and in none of the other: more "
@@ -438,14 +441,14 @@ std::string excluded(const BiasResult& b) {
 std::string seeds(const BiasResult& b) {
     if (b.shared.empty()) return "";
     const auto smaller = [](const SeedPair& x, const SeedPair& y) { return x.correlation < y.correlation; };
-    const auto [least, most] = std::minmax_element(b.shared.begin(), b.shared.end(), smaller);
-    const std::string low = figures(least->correlation, 2), high = figures(most->correlation, 2);
-    const std::string found = fmt::format(" {} of {} and {} share random numbers (their noise correlates by {}): ",
+    const auto [lowest, highest] = std::minmax_element(b.shared.begin(), b.shared.end(), smaller);
+    const std::string low = figures(lowest->correlation, 2), high = figures(highest->correlation, 2);
+    const std::string sentence = fmt::format(" {} of {} and {} share random numbers (their noise correlates by {}): ",
         b.all_shared ? "The renders" : counted(b.shared.size(), "pair") + " of renders", b.a, b.b,
         low == high ? low : low + " to " + high);
-    if (b.paired && b.all_shared) return found + "they were compared in pairs.";
-    if (b.paired) return found + "these were compared, in pairs.";
-    return found + "a test of pairs would be no sharper, so all were compared as if independent.";
+    if (b.paired && b.all_shared) return sentence + "they were compared in pairs.";
+    if (b.paired) return sentence + "these were compared, in pairs.";
+    return sentence + "a test of pairs would be no sharper, so all were compared as if independent.";
 }
 
 /// A t-test cannot detect events that are in no render. States how rare and bright they would have to be, so that the
@@ -471,10 +474,10 @@ std::string failing_pixels(const RenderStats& stats, const BiasResult& b) {
         out.push_back(failing(b.non_finite.a, b.a, renders_a, b.b, renders_b, stats.width));
     if (!b.non_finite.b.pixels.empty())
         out.push_back(failing(b.non_finite.b, b.b, renders_b, b.a, renders_a, stats.width));
-    const bool everywhere = (b.non_finite.a.pixels.empty() || b.non_finite.a.least == renders_a) &&
-        (b.non_finite.b.pixels.empty() || b.non_finite.b.least == renders_b);
+    const bool is_everywhere = (b.non_finite.a.pixels.empty() || b.non_finite.a.least_renders == renders_a) &&
+        (b.non_finite.b.pixels.empty() || b.non_finite.b.least_renders == renders_b);
     for (const FailedGroups& g : b.non_finite.groups)
-        if (g.differs && !everywhere)
+        if (g.differs && !is_everywhere)
             out.push_back(
                 fmt::format("in {} {} of such pixels over all renders of {} and {} over those of {} (p = {:.2g})",
                     g.region, counted(g.a, "group"), b.a, g.b, b.b, g.p));
@@ -497,7 +500,7 @@ std::string single(const BiasResult& b) {
         "{} and {} are one render each: {} of {} pixels differ, the RMS of the difference of Y is {}, the largest "
         "difference of a channel is {} at ({}, {}); whether that is noise cannot be tested with fewer than two renders "
         "of each",
-        b.a, b.b, s.different, s.pixels, figures(s.rms, 3), figures(s.largest, 3), s.at.x0, s.at.y0);
+        b.a, b.b, s.different, s.pixels, figures(s.rms, 3), figures(s.largest, 3), s.place.x0, s.place.y0);
 }
 
 }  // namespace
@@ -512,49 +515,49 @@ std::string sentence_of(const RenderStats& stats, const BiasResult& b, double al
         return fmt::format("{} differs from {}: {}.{}{}", b.a, b.b, fmt::join(differences(stats, b), "; "),
             missed_events_sentence(b), notes);
     if (b.single) return single(b) + "." + notes;
-    std::vector<std::string> found, not_tested;
+    std::vector<std::string> sizes, not_tested;
     for (const MeanTest& t : b.regions) {
         if (!t.caveat.empty()) not_tested.push_back(fmt::format("{}: {}", t.region, t.caveat));
-        else if (t.why.empty()) found.push_back(smallest_seen(t));
-        else not_tested.push_back(fmt::format("{}: {}{}", t.region, t.why, t.needed));
+        else if (t.why.empty()) sizes.push_back(smallest_seen(t));
+        else not_tested.push_back(fmt::format("{}: {}{}", t.region, t.why, t.requirement));
         for (const MeanTest& c : t.channels)
             if (t.why.empty() && !c.why.empty())
-                not_tested.push_back(fmt::format("{} in {}: {}{}", c.region, t.region, c.why, c.needed));
+                not_tested.push_back(fmt::format("{} in {}: {}{}", c.region, t.region, c.why, c.requirement));
     }
-    std::string out = found.empty() ? fmt::format("{} and {} could not be compared", b.a, b.b)
+    std::string out = sizes.empty() ? fmt::format("{} and {} could not be compared", b.a, b.b)
                                     : fmt::format(
                                           "No difference between {} and {} was found; one of {} would have been, "
                                           "nine times out of ten (alpha {})",
-                                          b.a, b.b, fmt::join(found, ", "), figures(alpha, 2));
+                                          b.a, b.b, fmt::join(sizes, ", "), figures(alpha, 2));
     if (!not_tested.empty()) out += fmt::format("; not tested: {}", fmt::join(not_tested, "; "));
     return out + "." + notes;
 }
 
 std::vector<std::string> found_about_means(const CompareResult& result, bool with_stated_pair) {
-    constexpr std::size_t few = 6;
-    const auto quiet = [](const BiasResult& b) {
+    constexpr std::size_t most_pairs = 6;
+    const auto is_quiet = [](const BiasResult& b) {
         return !b.differs() && !b.identical && !b.non_finite.any() && b.shared.empty() &&
             std::all_of(b.regions.begin(), b.regions.end(),
                 [](const MeanTest& t) { return t.why.empty() && t.caveat.empty(); });
     };
     std::vector<std::string> out;
-    std::size_t rest = 0;
+    std::size_t quiet_pairs = 0;
     double smallest = 0;
     for (std::size_t k = 0; k < result.bias.size(); ++k) {
         const BiasResult& b = result.bias[k];
-        if (result.bias.size() > few && quiet(b)) {
-            ++rest;
+        if (result.bias.size() > most_pairs && is_quiet(b)) {
+            ++quiet_pairs;
             smallest = std::max(smallest, b.regions.back().smallest);
         } else if (with_stated_pair || result.stated_pair != k) {
             out.push_back(b.sentence);
         }
     }
-    if (rest)
+    if (quiet_pairs)
         out.push_back(
             fmt::format("In {} of {} pairs no difference was found; one of {} of mean Y in {} would have been in each "
                         "of them, nine "
                         "times out of ten.",
-                rest, result.bias.size(), percent(smallest, 2), result.bias[0].regions.back().region));
+                quiet_pairs, result.bias.size(), percent(smallest, 2), result.bias[0].regions.back().region));
     return out;
 }
 

@@ -42,7 +42,7 @@ TEST(TwoSides, HaveTheNoiseOfTheirPixels) {
     EXPECT_EQ(all.pixels, 2);
     EXPECT_NEAR(all.a, 5.0 / 6, 1e-6);
     EXPECT_NEAR(all.b, (20.0 / 3 + 5.0 / 12) / 2, 1e-6);
-    EXPECT_NEAR(all.own, all.a + all.b, 1e-12);
+    EXPECT_NEAR(all.unpaired_variance, all.a + all.b, 1e-12);
     EXPECT_NEAR(all.mean_a, (2.5 + 5) / 2, 1e-6);
     EXPECT_NEAR(first.b, 20.0 / 3, 1e-6);
     EXPECT_NEAR(four.pair().noise_of(four.all.regions[0]).b, all.b, 1e-12);

@@ -47,17 +47,17 @@ std::vector<std::string> all_words(const std::vector<QuantityWord>& quantities) 
 
 class Parser {
 public:
-    Parser(std::string_view text, std::string& why, const std::vector<QuantityWord>& words)
-        : rest_(text), why_(why), words_(words) {}
+    Parser(std::string_view text, std::string& message, const std::vector<QuantityWord>& words)
+        : remainder_(text), message_(message), words_(words) {}
 
     std::optional<Comparison> comparison() {
         Comparison c;
         if (!side(c.left)) return {};
         blanks();
         for (const std::string_view op : {"<=", ">=", "==", "<", ">"})
-            if (c.op.empty() && rest_.starts_with(op)) c.op = op;
+            if (c.op.empty() && remainder_.starts_with(op)) c.op = op;
         if (c.op.empty()) return fail("<, <=, >, >= or =="), std::nullopt;
-        rest_.remove_prefix(c.op.size());
+        remainder_.remove_prefix(c.op.size());
         if (!side(c.right) || !end()) return {};
         return c;
     }
@@ -73,45 +73,45 @@ private:
         return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '-';
     }
     void blanks() {
-        while (!rest_.empty() && rest_.front() == ' ') rest_.remove_prefix(1);
+        while (!remainder_.empty() && remainder_.front() == ' ') remainder_.remove_prefix(1);
     }
     bool take(char c) {
         blanks();
-        if (rest_.empty() || rest_.front() != c) return false;
-        rest_.remove_prefix(1);
+        if (remainder_.empty() || remainder_.front() != c) return false;
+        remainder_.remove_prefix(1);
         return true;
     }
     bool fail(std::string_view expected) {
         blanks();
-        why_ = rest_.empty() ? fmt::format("expected {} at the end", expected)
-                             : fmt::format("expected {}, found '{}'", expected, rest_.substr(0, 40));
+        message_ = remainder_.empty() ? fmt::format("expected {} at the end", expected)
+                                      : fmt::format("expected {}, found '{}'", expected, remainder_.substr(0, 40));
         return false;
     }
     bool end() {
         blanks();
-        return rest_.empty() || fail("nothing more");
+        return remainder_.empty() || fail("nothing more");
     }
     std::string word() {
         blanks();
-        const auto length =
-            static_cast<std::size_t>(std::find_if_not(rest_.begin(), rest_.end(), is_word) - rest_.begin());
-        const std::string taken(rest_.substr(0, length));
-        rest_.remove_prefix(length);
-        return taken;
+        const auto length = static_cast<std::size_t>(
+            std::find_if_not(remainder_.begin(), remainder_.end(), is_word) - remainder_.begin());
+        const std::string word(remainder_.substr(0, length));
+        remainder_.remove_prefix(length);
+        return word;
     }
     bool number(double& to) {
         blanks();
-        std::string_view text = rest_.starts_with('+') ? rest_.substr(1) : rest_;
+        std::string_view text = remainder_.starts_with('+') ? remainder_.substr(1) : remainder_;
         const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), to);
         if (error != std::errc{} || !std::isfinite(to)) return fail("a finite number");
-        rest_ = std::string_view(stop, static_cast<std::size_t>(text.data() + text.size() - stop));
+        remainder_ = std::string_view(stop, static_cast<std::size_t>(text.data() + text.size() - stop));
         return true;
     }
 
     bool side(ParsedQuantity& q) {
         blanks();
-        if (rest_.empty()) return fail("a quantity or a number");
-        if (std::string_view("0123456789+-.").find(rest_.front()) != std::string_view::npos)
+        if (remainder_.empty()) return fail("a quantity or a number");
+        if (std::string_view("0123456789+-.").find(remainder_.front()) != std::string_view::npos)
             return number(q.number.emplace());
         const std::string name = word();
         const std::size_t dot = name.find('.');
@@ -121,14 +121,14 @@ private:
             std::find_if(words_.begin(), words_.end(), [&](const QuantityWord& w) { return w.word == q.word; });
         if (quantity == words_.end()) {
             const std::vector<std::string> valid = all_words(words_);
-            why_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(valid, ", "),
+            message_ = fmt::format("no quantity '{}': expected one of {}{}", q.word.substr(0, 64), listed(valid, ", "),
                 hint(q.word, valid));
             return false;
         }
         if (quantity->of_region != !q.region.empty()) {
-            const bool whole_image = quantity->of_region && quantity->adapter == QuantityOf::compared;
-            why_ = fmt::format("expected {}{}, found '{}'", form_of(*quantity),
-                whole_image ? ", where REGION is a region, a mask or 'frame', the whole image" : "",
+            const bool covers_image = quantity->of_region && quantity->adapter == QuantityOf::compared;
+            message_ = fmt::format("expected {}{}, found '{}'", form_of(*quantity),
+                covers_image ? ", where REGION is a region, a mask or 'frame', the whole image" : "",
                 name.substr(0, 64));
             return false;
         }
@@ -151,11 +151,11 @@ private:
         double value = 0;
         if (!number(value)) return false;
         if (!(value > 0) || (name == "n" && (value > 16777216 || value != std::floor(value)))) {
-            why_ = fmt::format("expected {}, found {}", name == "n" ? "n from 1 to 16777216" : "s above 0", value);
+            message_ = fmt::format("expected {}, found {}", name == "n" ? "n from 1 to 16777216" : "s above 0", value);
             return false;
         }
         if (name == "n" ? q.n > 0 : q.s > 0) {
-            why_ = fmt::format("expected one {}=, found two", name);
+            message_ = fmt::format("expected one {}=, found two", name);
             return false;
         }
         if (name == "n") q.n = static_cast<std::uint64_t>(value);
@@ -163,14 +163,14 @@ private:
         return true;
     }
 
-    std::string_view rest_;
-    std::string& why_;
+    std::string_view remainder_;
+    std::string& message_;
     const std::vector<QuantityWord>& words_;
 };
 
 template <class T> std::string missing(const std::vector<T>& candidates, const char* what, const std::string& name) {
     std::vector<std::string> names;
-    for (const T& one : candidates) names.push_back(one.name);
+    for (const T& candidate : candidates) names.push_back(candidate.name);
     if (std::count(names.begin(), names.end(), name)) return "";
     return fmt::format("no {} '{}': expected one of {}{}", what, name.substr(0, 64),
         names.empty() ? "(none)" : listed(names, ", "), hint(name, names));
@@ -179,12 +179,12 @@ template <class T> std::string missing(const std::vector<T>& candidates, const c
 /// Returns null if there is no such word.
 const QuantityWord* word_of(const ParsedQuantity& q) {
     const auto& words = quantity_words();
-    const auto found = std::ranges::find(words, q.word, &QuantityWord::word);
-    return found == words.end() ? nullptr : &*found;
+    const auto match = std::ranges::find(words, q.word, &QuantityWord::word);
+    return match == words.end() ? nullptr : &*match;
 }
 
 std::string resolve_run(ParsedQuantity& q, const Experiment& e) {
-    if (std::string why = missing(e.arms, "arm", q.adapter); !why.empty()) return why;
+    if (std::string message = missing(e.arms, "arm", q.adapter); !message.empty()) return message;
     const ArmPlan& arm = *e.find_arm(q.adapter);
     if (arm.n.empty()) return "";
     if (q.n == 0) q.n = word_of(q)->of_single_samples ? arm.n.back() : e.n_of(arm);
@@ -230,14 +230,14 @@ std::string form_of(const QuantityWord& word) {
 }
 
 std::optional<Comparison> parse_comparison(
-    std::string_view text, std::string& why, const std::vector<QuantityWord>& words) {
-    return Parser(text, why, words).comparison();
+    std::string_view text, std::string& message, const std::vector<QuantityWord>& words) {
+    return Parser(text, message, words).comparison();
 }
 
 std::string resolve_quantity(ParsedQuantity& q, const Experiment& e) {
     if (q.number) return "";
     if (!q.region.empty())
-        if (std::string why = missing(e.regions, "region", q.region); !why.empty()) return why;
+        if (std::string message = missing(e.regions, "region", q.region); !message.empty()) return message;
     const QuantityWord* info = word_of(q);
     switch (info ? info->adapter : QuantityOf::none) {
         case QuantityOf::none:
@@ -258,19 +258,19 @@ namespace {
 bool is_number(const Comparison& c) { return c.left.number && c.right.number; }
 
 void resolve(ParseContext& context, AssertionPlan& plan, const std::string& path) {
-    std::string why;
-    std::optional<Comparison> check = parse_comparison(plan.text, why);
+    std::string message;
+    std::optional<Comparison> check = parse_comparison(plan.text, message);
     if (check && is_number(*check)) {
         check.reset();
-        why = "expected a quantity on one side at least, found two numbers";
+        message = "expected a quantity on one side at least, found two numbers";
     }
     if (check)
-        if (why = resolve_quantity(check->left, context.e); why.empty())
-            why = resolve_quantity(check->right, context.e);
+        if (message = resolve_quantity(check->left, context.e); message.empty())
+            message = resolve_quantity(check->right, context.e);
     for (const std::string_view word : {"tail", "flip"})
-        if (why.empty() && plan.median && (check->left.word == word || check->right.word == word))
-            why = fmt::format("expected over = \"seed\": {} is not measured at every seed", word);
-    if (!why.empty()) return context.report(path, fmt::format("{}: {}", path, why));
+        if (message.empty() && plan.median && (check->left.word == word || check->right.word == word))
+            message = fmt::format("expected over = \"seed\": {} is not measured at every seed", word);
+    if (!message.empty()) return context.report(path, fmt::format("{}: {}", path, message));
     plan.check = *std::move(check);
 }
 

@@ -54,10 +54,10 @@ const std::vector<QuantityWord>& quantity_words();
 /// Returns "rmse.REGION(ARM, n=N, s=S)".
 std::string form_of(const QuantityWord& word);
 
-/// Parses an assertion over a list of words; for invalid text, returns nothing and sets `why` to
+/// Parses an assertion over a list of words; for invalid text, returns nothing and sets `message` to
 /// what was expected.
 std::optional<Comparison> parse_comparison(
-    std::string_view text, std::string& why, const std::vector<QuantityWord>& words = quantity_words());
+    std::string_view text, std::string& message, const std::vector<QuantityWord>& words = quantity_words());
 /// Fills in a missing n: the experiment's, or for bad and largest the arm's highest sample count, which includes all
 /// others. Returns the error in the names, "" if all of them will be measured.
 std::string resolve_quantity(ParsedQuantity& quantity, const Experiment& experiment);

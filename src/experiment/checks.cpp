@@ -29,7 +29,7 @@ bool leaves_folder(const std::filesystem::path& path) {
 
 template <class T> std::vector<std::string> names_of(const std::vector<T>& items) {
     std::vector<std::string> names;
-    for (const T& one : items) names.push_back(one.name);
+    for (const T& item : items) names.push_back(item.name);
     return names;
 }
 
@@ -78,12 +78,12 @@ void check_material(ParseContext& context, std::size_t surface) {
     const Material& m = context.e.material(surface);
     if (!context.is_valid(path + ".brdf") || !(m.rho_s > 0)) return;
     const LobeInfo& lobe = lobe_info(m.brdf);
-    const bool by_alpha = lobe.parameter == LobeParameter::alpha;
-    if (by_alpha && !m.alpha && context.is_valid(path + ".alpha"))
+    const bool takes_alpha = lobe.parameter == LobeParameter::alpha;
+    if (takes_alpha && !m.alpha && context.is_valid(path + ".alpha"))
         context.report(path + ".alpha",
             fmt::format("missing key 'alpha' in [{}]: expected the roughness of its {} lobe, from 0.0001 to 1", path,
                 lobe.name));
-    if (!by_alpha && !m.s && context.is_valid(path + ".s"))
+    if (!takes_alpha && !m.s && context.is_valid(path + ".s"))
         context.report(path + ".s",
             fmt::format(
                 "missing key 's' in [{}]: expected the exponent of its lobe (rho_s > 0), a number above 0", path));
@@ -93,14 +93,14 @@ void check_material(ParseContext& context, std::size_t surface) {
 /// the smallest product, 1e-15, leaves eight digits for the weight of a sample.
 constexpr double least_radiance = 1e-9, least_albedo = 1e-6;
 
-/// Reports a colour whose largest channel is above 0 and below `least`.
-void check_not_lost(ParseContext& context, const std::string& path, const Rgb& color, double least) {
+/// Reports a colour whose largest channel is above 0 and below `limit`.
+void check_not_lost(ParseContext& context, const std::string& path, const Rgb& color, double limit) {
     const double largest = std::ranges::max(color);
-    if (largest <= 0 || largest >= least || !context.is_valid(path)) return;
+    if (largest <= 0 || largest >= limit || !context.is_valid(path)) return;
     context.report(path,
         fmt::format("{}: expected 0, or a largest channel of at least {:g}, found {:g}, whose square is lost in single "
                     "precision",
-            path, least, largest));
+            path, limit, largest));
 }
 
 void check_magnitudes(ParseContext& context) {
@@ -121,17 +121,17 @@ void check_magnitudes(ParseContext& context) {
 
 /// What an arm reaches: a combination reaches what any of its samplers reaches; a sampler whose code is not built in
 /// counts as reaching everything. Combinations that contain themselves are reported elsewhere.
-Reaches reaches_of(const Experiment& e, const std::string& name, std::set<std::string>& seen) {
+Reaches reaches_of(const Experiment& e, const std::string& name, std::set<std::string>& visited_arms) {
     Reaches out{.fill = false, .lights = false, .sky = false, .triangles = false};
     const ArmPlan* arm = e.find_arm(name);
     if (arm && arm->is_combination()) {
-        if (!seen.insert(name).second) return out;
+        if (!visited_arms.insert(name).second) return out;
         for (const std::string& part : arm->combination.of) {
-            const Reaches more = reaches_of(e, part, seen);
-            out.fill |= more.fill;
-            out.lights |= more.lights;
-            out.sky |= more.sky;
-            out.triangles |= more.triangles;
+            const Reaches part_reaches = reaches_of(e, part, visited_arms);
+            out.fill |= part_reaches.fill;
+            out.lights |= part_reaches.lights;
+            out.sky |= part_reaches.sky;
+            out.triangles |= part_reaches.triangles;
         }
         return out;
     }
@@ -145,24 +145,26 @@ void check_reached_light(ParseContext& context) {
         if (!context.is_valid(table)) return;
     const Experiment& e = context.e;
     const auto shines = [](const auto& light) { return std::ranges::max(light.radiance) > 0; };
-    const bool lights = std::ranges::any_of(e.disks, shines) || std::ranges::any_of(e.lights, shines),
-               triangles = std::ranges::any_of(e.meshes, &MeshObject::emits), fill = std::ranges::max(e.fill) > 0;
+    const bool has_lights = std::ranges::any_of(e.disks, shines) || std::ranges::any_of(e.lights, shines),
+               has_triangles = std::ranges::any_of(e.meshes, &MeshObject::emits),
+               has_fill = std::ranges::max(e.fill) > 0;
     for (const ArmPlan& arm : e.arms) {
-        std::set<std::string> seen;
-        const Reaches reaches = reaches_of(e, arm.name, seen);
-        if ((reaches.fill && fill) || (reaches.lights && lights) || (reaches.triangles && triangles) ||
+        std::set<std::string> visited_arms;
+        const Reaches reaches = reaches_of(e, arm.name, visited_arms);
+        if ((reaches.fill && has_fill) || (reaches.lights && has_lights) || (reaches.triangles && has_triangles) ||
             (reaches.sky && e.sky))
             continue;
-        std::string reached;
-        for (const auto& [of, name] : {std::pair(reaches.fill, "the fill"), {reaches.lights, "disks and lights"},
-                 {reaches.triangles, "triangles that emit"}, {reaches.sky, "a sky"}})
-            if (of) reached += (reached.empty() ? "" : " and ") + std::string(name);
-        if (reached.empty()) continue;  // a combination of nothing, which is reported elsewhere
+        std::string reached_lights;
+        for (const auto& [is_reached, name] :
+            {std::pair(reaches.fill, "the fill"), {reaches.lights, "disks and lights"},
+                {reaches.triangles, "triangles that emit"}, {reaches.sky, "a sky"}})
+            if (is_reached) reached_lights += (reached_lights.empty() ? "" : " and ") + std::string(name);
+        if (reached_lights.empty()) continue;  // a combination of nothing, which is reported elsewhere
         context.report("arms." + arm.name,
             fmt::format("arms.{}: {} only {}, and the experiment has no such light: every sample would be 0", arm.name,
                 arm.is_combination() ? fmt::format("the samplers {} reach", fmt::join(arm.combination.of, ", "))
                                      : fmt::format("the sampler '{}' reaches", arm.sampler),
-                reached));
+                reached_lights));
     }
 }
 
@@ -190,10 +192,10 @@ void check_light(ParseContext& context) {
     const auto is_dark = [](const auto& light) {
         return light.radiance[0] + light.radiance[1] + light.radiance[2] <= 0;
     };
-    const bool dark = std::all_of(disks.begin(), disks.end(), is_dark) &&
+    const bool is_unlit = std::all_of(disks.begin(), disks.end(), is_dark) &&
         std::all_of(lights.begin(), lights.end(), is_dark) &&
         std::ranges::none_of(context.e.meshes, [](const MeshObject& mesh) { return mesh.emits(); });
-    if (dark && !context.e.sky && context.is_valid("meshes") && context.is_valid("disks") &&
+    if (is_unlit && !context.e.sky && context.is_valid("meshes") && context.is_valid("disks") &&
         context.is_valid("lights") && context.is_valid("fill") && context.is_valid("fill.radiance") &&
         fill[0] + fill[1] + fill[2] <= 0)
         context.report(
@@ -205,8 +207,8 @@ void check_external_arms(ParseContext& context) {
         const std::string path = "arms." + arm.name;
         const std::array keys = {
             std::pair("exec", arm.exec), std::pair("plugin", arm.plugin), std::pair("python", arm.python)};
-        const auto given = std::ranges::count_if(keys, [](const auto& key) { return key.second.has_value(); });
-        if (given + int(!arm.sampler.empty()) + int(arm.is_combination()) > 1)
+        const auto key_count = std::ranges::count_if(keys, [](const auto& key) { return key.second.has_value(); });
+        if (key_count + int(!arm.sampler.empty()) + int(arm.is_combination()) > 1)
             context.report(
                 path, fmt::format("{}: expected one of sampler, kind, exec, plugin and python, found several", path));
         if (arm.python && !arm.python->empty() && python_file(*arm.python).empty() &&
@@ -280,16 +282,16 @@ void check_furnaces(ParseContext& context) {
 /// Checks that no two arms write their films into one file.
 void check_film_files(ParseContext& context) {
     const Experiment& e = context.e;
-    std::map<std::string, std::string, std::less<>> taken = {{std::string(reference_file), "the references"}};
+    std::map<std::string, std::string, std::less<>> owners = {{std::string(reference_file), "the references"}};
     if (e.exponent)
         for (const double s : e.exponent->s)
             if (s != e.s())
-                taken.emplace(film_file(e.exponent->arm, s, e.s()), fmt::format("{} at s = {}", e.exponent->arm, s));
+                owners.emplace(film_file(e.exponent->arm, s, e.s()), fmt::format("{} at s = {}", e.exponent->arm, s));
     for (const ArmPlan& arm : e.arms)
-        if (const auto other = taken.find(arm.name); other != taken.end())
+        if (const auto owner = owners.find(arm.name); owner != owners.end())
             context.report("arms." + arm.name,
                 fmt::format("arms.{}: films/{}.exr is where those of {} go: expected another name", arm.name, arm.name,
-                    other->second));
+                    owner->second));
 }
 
 }  // namespace
@@ -310,11 +312,11 @@ void check_geometry(ParseContext& context) {
 void check_names(ParseContext& context) {
     const std::vector<std::string> arms = names_of(context.e.arms), shapes = context.e.surface_names();
     for (const Reference& r : context.references) {
-        const bool arm = r.type == Type::arm, sampler = r.type == Type::sampler;
-        if (sampler && is_unfinished_combination(context, r.path)) continue;
-        const std::vector<std::string> valid = sampler ? sampler_words() : arm ? arms : shapes;
+        const bool is_arm = r.type == Type::arm, is_sampler = r.type == Type::sampler;
+        if (is_sampler && is_unfinished_combination(context, r.path)) continue;
+        const std::vector<std::string> valid = is_sampler ? sampler_words() : is_arm ? arms : shapes;
         if (std::count(valid.begin(), valid.end(), r.name)) continue;
-        const char* what = sampler ? "sampler" : arm ? "arm" : "shape";
+        const char* what = is_sampler ? "sampler" : is_arm ? "arm" : "shape";
         context.report(r.path,
             fmt::format("{}: no {} '{}': expected one of {}{}", r.path, what, r.name.substr(0, 64),
                 valid.empty() ? "(none)" : listed(valid, ", "), hint(r.name, valid)));
@@ -327,12 +329,12 @@ void check_names(ParseContext& context) {
         if (const Shape* shape = context.e.find_shape(name))
             context.report(path + name,
                 fmt::format("duplicate name '{}': expected a {} with another name than the shape at {}", name, what,
-                    to_string(shape->at)));
+                    to_string(shape->location)));
         for (const MeshObject& mesh : context.e.meshes)
             if (mesh.name == name && path != "meshes.")
                 context.report(path + name,
                     fmt::format("duplicate name '{}': expected a {} with another name than the mesh at {}", name, what,
-                        to_string(mesh.at)));
+                        to_string(mesh.location)));
     };
     for (const MeshObject& mesh : context.e.meshes) unlike_shapes("mesh", "meshes.", mesh.name);
     for (const DiskLight& disk : context.e.disks) unlike_shapes("disk", "disks.", disk.name);
@@ -342,7 +344,7 @@ void check_names(ParseContext& context) {
             if (disk.name == light.name)
                 context.report("lights." + light.name,
                     fmt::format("duplicate name '{}': expected a light with another name than the disk at {}",
-                        light.name, to_string(disk.at)));
+                        light.name, to_string(disk.location)));
     }
 }
 

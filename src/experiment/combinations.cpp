@@ -39,18 +39,18 @@ private:
         Techniques parts;
         for (const std::string& name : arm.combination.of) parts.push_back(part(arm, name, "of"));
         const std::optional<std::string>& target = arm.combination.target;
-        const bool own_target = target && *target != target_product && *target != target_brdf;
+        const bool has_target = target && *target != target_product && *target != target_brdf;
         combination = std::make_shared<Combination>(arm.name, arm.combination, std::move(parts),
-            own_target ? part(arm, *target, "target") : nullptr, experiment_.place_of(path + ".weights"),
+            has_target ? part(arm, *target, "target") : nullptr, experiment_.place_of(path + ".weights"),
             experiment_.place_of(path + ".probabilities"), weight_function(arm, path));
         return combination;
     }
 
     std::shared_ptr<const SamplerAdapter> weight_function(const ArmPlan& arm, const std::string& path) const {
         if (!arm.combination.weights_python) return nullptr;
-        if (const auto given = samplers_.find(arm.name);
-            given != samplers_.end() && given->second->declaration().weighs)
-            return given->second;
+        if (const auto entry = samplers_.find(arm.name);
+            entry != samplers_.end() && entry->second->declaration().weighs)
+            return entry->second;
         throw InputError(experiment_.place_of(path + ".weights_python"),
             fmt::format("{}.weights_python: expected a run in Python (crescent.run): the program cannot call '{}'",
                 path, *arm.combination.weights_python));
@@ -141,8 +141,8 @@ public:
             }
             names(arm, path);
             form(arm, path);
-            const bool good = lists(arm, path);
-            if (good) sums(arm, path);
+            const bool is_evaluable = lists(arm, path);
+            if (is_evaluable) sums(arm, path);
         }
     }
 
@@ -153,13 +153,13 @@ private:
 
     void keys_without_kind(const ArmPlan& arm, const std::string& path) {
         const CombinationPlan& c = arm.combination;
-        const std::array given = {std::pair("of", !c.of.empty()), std::pair("heuristic", c.heuristic.has_value()),
+        const std::array keys = {std::pair("of", !c.of.empty()), std::pair("heuristic", c.heuristic.has_value()),
             std::pair("draw", c.draw.has_value()), std::pair("weights", !c.weights.empty()),
             std::pair("weights_python", c.weights_python.has_value()),
             std::pair("probabilities", !c.probabilities.empty()), std::pair("samples", !c.samples.empty()),
             std::pair("candidates", c.candidates.has_value()), std::pair("target", c.target.has_value())};
-        for (const auto& [key, has] : given)
-            if (has)
+        for (const auto& [key, is_given] : keys)
+            if (is_given)
                 return report(fmt::format("{}.{}", path, key),
                     fmt::format("expected a kind beside it in [{}]: one of mis, mixture, ris", path));
     }
@@ -207,13 +207,13 @@ private:
     }
 
     bool contains(const ArmPlan& arm, const std::string& name) const {
-        std::set<std::string> seen;
+        std::set<std::string> visited_names;
         std::vector<const ArmPlan*> pending = {&arm};
         while (!pending.empty()) {
-            const ArmPlan* next = pending.back();
+            const ArmPlan* pending_arm = pending.back();
             pending.pop_back();
-            if (!seen.insert(next->name).second) continue;
-            for (const std::string& part : next->combination.of) {
+            if (!visited_names.insert(pending_arm->name).second) continue;
+            for (const std::string& part : pending_arm->combination.of) {
                 if (part == name) return true;
                 if (const ArmPlan* other = context_.e.find_arm(part); other && other->is_combination())
                     pending.push_back(other);
@@ -225,8 +225,8 @@ private:
     /// Returns the number of samplers that a sample of an arm evaluates, at most one more than may be. A part that
     /// occurs several times counts each time; an arm within itself, which is reported elsewhere, counts once.
     std::size_t sampler_count(const ArmPlan& arm) {
-        const auto [known, is_new] = sampler_counts_.try_emplace(arm.name, 1);
-        if (!is_new) return known->second;
+        const auto [entry, is_new] = sampler_counts_.try_emplace(arm.name, 1);
+        if (!is_new) return entry->second;
         std::size_t sum = 0;
         std::vector<std::string> parts = arm.combination.of;
         if (arm.combination.target) parts.push_back(*arm.combination.target);
@@ -245,24 +245,25 @@ private:
                 fmt::format("expected at most {} samplers, found more: a part that occurs several times counts each "
                             "time",
                     most_samplers));
-        const std::size_t least = c.kind == CombinationKind::ris ? 1 : 2;
-        if (!c.of.empty() && (c.of.size() < least || c.of.size() > most_parts))
-            report(path + ".of", fmt::format("expected {} to {} samplers, found {}", least, most_parts, c.of.size()));
+        const std::size_t least_parts = c.kind == CombinationKind::ris ? 1 : 2;
+        if (!c.of.empty() && (c.of.size() < least_parts || c.of.size() > most_parts))
+            report(path + ".of",
+                fmt::format("expected {} to {} samplers, found {}", least_parts, most_parts, c.of.size()));
         for (std::size_t i = 0; i < c.of.size(); ++i)
-            if (const std::string why = why_no_part(arm, c.of[i]); !why.empty()) {
+            if (const std::string reason = why_no_part(arm, c.of[i]); !reason.empty()) {
                 const std::string place_of_part = fmt::format("{}.of.{}", path, i);
                 context_.report(context_.e.places.contains(place_of_part) ? place_of_part : path + ".of",
-                    fmt::format("{}: {}", place_of_part, why));
+                    fmt::format("{}: {}", place_of_part, reason));
             }
         if (!c.target || *c.target == target_product || *c.target == target_brdf) return;
-        if (std::string why = why_no_part(arm, *c.target); !why.empty()) {
-            if (why.starts_with("no arm")) {
+        if (std::string reason = why_no_part(arm, *c.target); !reason.empty()) {
+            if (reason.starts_with("no arm")) {
                 std::vector<std::string> valid = valid_names(arm);
                 valid.insert(valid.begin(), {target_product, target_brdf});
-                why = fmt::format("no target '{}': expected one of {}{}", c.target->substr(0, 64), listed(valid, ", "),
-                    hint(*c.target, valid));
+                reason = fmt::format("no target '{}': expected one of {}{}", c.target->substr(0, 64),
+                    listed(valid, ", "), hint(*c.target, valid));
             }
-            report(path + ".target", why);
+            report(path + ".target", reason);
         }
     }
 
@@ -284,24 +285,24 @@ private:
     /// Returns whether the weights can be evaluated.
     bool lists(const ArmPlan& arm, const std::string& path) {
         const CombinationPlan& c = arm.combination;
-        bool good = !c.of.empty() && context_.is_valid(path + ".of");
+        bool is_evaluable = !c.of.empty() && context_.is_valid(path + ".of");
         const auto list = [&](const std::string& key, const std::vector<std::string>& texts, bool of_direction) {
             if (texts.empty() || !context_.is_valid(path + "." + key)) return;
             try {
                 (void)WeightList(texts, c.of.size(), of_direction, {});
             } catch (const InputError& error) {
                 report(path + "." + key, error.diagnostics().front().message);
-                good = false;
+                is_evaluable = false;
             }
         };
-        if (!good) return false;
+        if (!is_evaluable) return false;
         list("weights", c.weights, c.kind == CombinationKind::mis);
         list("probabilities", c.probabilities, false);
         if (!c.samples.empty() && c.samples.size() != 1 && c.samples.size() != c.of.size())
             report(path + ".samples",
                 fmt::format(
                     "expected one integer, or {}, one for each of 'of', found {}", c.of.size(), c.samples.size()));
-        return good;
+        return is_evaluable;
     }
 
     /// Evaluates the weights on the materials of the scene, at random directions and densities.

@@ -42,12 +42,12 @@ public:
         const std::pair<std::uint64_t, std::uint64_t> key(hash.high64, hash.low64);
         {
             const Guard guard(lock_);
-            if (const auto found = packs_.find(key); found != packs_.end())
-                if (std::shared_ptr<const MeshPack> pack = found->second.lock()) return pack;
+            if (const auto entry = packs_.find(key); entry != packs_.end())
+                if (std::shared_ptr<const MeshPack> pack = entry->second.lock()) return pack;
         }
         std::shared_ptr<const MeshPack> pack = read_mesh(bytes, file);
         const Guard guard(lock_);
-        std::erase_if(packs_, [](const auto& one) { return one.second.expired(); });
+        std::erase_if(packs_, [](const auto& entry) { return entry.second.expired(); });
         packs_[key] = pack;
         return pack;
     }
@@ -68,9 +68,9 @@ bool is_no_regular_file(const std::string& path) {
 
 bool leads_out(const std::string& folder, const std::string& path) {
     std::error_code error;
-    const std::filesystem::path inside = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error),
+    const std::filesystem::path root = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error),
                                 file = std::filesystem::weakly_canonical(path, error);
-    return !error && *file.lexically_relative(inside).begin() == "..";
+    return !error && *file.lexically_relative(root).begin() == "..";
 }
 
 std::shared_ptr<const MeshPack> mesh_in_file(const std::string& path) {

@@ -13,7 +13,7 @@ namespace crescent {
 namespace {
 
 template <class T> const T* find_named(const std::vector<T>& items, std::string_view name) {
-    const auto it = std::find_if(items.begin(), items.end(), [&](const T& one) { return one.name == name; });
+    const auto it = std::find_if(items.begin(), items.end(), [&](const T& item) { return item.name == name; });
     return it == items.end() ? nullptr : &*it;
 }
 
@@ -82,8 +82,8 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
     }
     if (experiment.sky)
         if (std::string note = note_on_sky(*experiment.sky); !note.empty()) out.push_back(std::move(note));
-    if (const std::string why = why_no_evidence(experiment); experiment.note_evidence && !why.empty())
-        out.push_back("note_evidence measures nothing: " + why);
+    if (const std::string reason = why_no_evidence(experiment); experiment.note_evidence && !reason.empty())
+        out.push_back("note_evidence measures nothing: " + reason);
     return out;
 }
 
@@ -91,15 +91,15 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
 // shape if there is a control.
 
 const Shape* evidence_shape(const Experiment& experiment) {
-    const auto phong = [](const Shape& shape) {
+    const auto is_phong = [](const Shape& shape) {
         return shape.material.rho_s > 0 && shape.material.brdf == lobe_named("phong");
     };
     if (experiment.exponent) {
         const Shape* shape = experiment.find_shape(experiment.exponent->shape);
-        return shape && phong(*shape) ? shape : nullptr;
+        return shape && is_phong(*shape) ? shape : nullptr;
     }
-    const auto found = std::ranges::find_if(experiment.shapes, phong);
-    return found == experiment.shapes.end() ? nullptr : &*found;
+    const auto match = std::ranges::find_if(experiment.shapes, is_phong);
+    return match == experiment.shapes.end() ? nullptr : &*match;
 }
 
 std::string why_no_evidence(const Experiment& experiment) {
@@ -130,9 +130,9 @@ std::string source_of(const CombinationPlan& plan) {
                 parts, plan.target.value_or(target_product));
         case CombinationKind::mis: break;
     }
-    const bool power = plan.heuristic == MisHeuristic::power;
+    const bool is_power = plan.heuristic == MisHeuristic::power;
     const char* heuristic = !plan.weights.empty() ? "a weighted sum"
-        : power                                   ? "the power heuristic"
+        : is_power                                ? "the power heuristic"
                                                   : "the balance heuristic";
     return fmt::format("{} of {}{}", heuristic, parts, plan.draw == MisDraw::one ? ", one of them a sample" : "");
 }
@@ -150,14 +150,16 @@ std::string missed_light(const ArmPlan& arm, const Experiment& experiment) {
     const SamplerInfo* info = find_arm_info(arm.sampler);
     if (!info) return "";
     const auto shines = [](const auto& light) { return light.radiance[0] + light.radiance[1] + light.radiance[2] > 0; };
-    const bool lights = std::ranges::any_of(experiment.disks, shines) || std::ranges::any_of(experiment.lights, shines);
+    const bool has_lights =
+        std::ranges::any_of(experiment.disks, shines) || std::ranges::any_of(experiment.lights, shines);
     const Rgb& fill = experiment.fill;
     std::string out;
-    for (const auto& [there, reached, name] :
+    for (const auto& [is_present, is_reached, name] :
         {std::tuple(fill[0] + fill[1] + fill[2] > 0, info->reaches.fill, "the fill"),
-            {lights, info->reaches.lights, "the lights"}, {experiment.sky.has_value(), info->reaches.sky, "the sky"},
+            {has_lights, info->reaches.lights, "the lights"},
+            {experiment.sky.has_value(), info->reaches.sky, "the sky"},
             {std::ranges::any_of(experiment.meshes, &MeshObject::emits), info->reaches.triangles, "the triangles"}})
-        if (there && !reached) out += (out.empty() ? "" : " and ") + std::string(name);
+        if (is_present && !is_reached) out += (out.empty() ? "" : " and ") + std::string(name);
     return out;
 }
 

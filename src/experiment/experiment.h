@@ -102,7 +102,7 @@ struct ArmPlan {
     std::string name;              // as it appears in films and tables
     std::string sampler;           // a word of arms/all.h; "": what exec, plugin or python names
     std::vector<std::uint64_t> n;  // ascending samples per pixel
-    SourceLocation at;
+    SourceLocation location;
     // A command, the file of a shared library, a sampler in Python as "FILE.py:NAME" or "module:NAME".
     std::optional<std::string> exec = {}, plugin = {}, python = {};
     CombinationPlan combination = {};  // of other arms and samplers
@@ -116,14 +116,14 @@ struct ExponentControl {
     std::uint64_t n = 0;
     std::vector<double> s;
     std::string shape;  // whose s is used: SceneData::s_of
-    SourceLocation at;
+    SourceLocation location;
 };
 
 /// Named pixels in which errors are measured.
 struct Region {
     std::string name;
     Box box;  // the whole image if the file gives none
-    SourceLocation at;
+    SourceLocation location;
     bool has_box = true;      // whether the file gives it
     std::string mesh, shape;  // whose pixels they are; "": those of any
     int surface = any_surface;
@@ -159,7 +159,7 @@ struct FurnacePlan {
     FurnacePart part = FurnacePart::combined;
     std::string shape;  // whose material is used
     std::uint64_t n = 0;
-    SourceLocation at;
+    SourceLocation location;
 };
 
 /// One figure. `runs` names what it shows; crops are boxes in image pixels, or the whole frame.
@@ -174,7 +174,7 @@ struct PlatePlan {
     std::vector<PlateRun> runs;
     std::optional<Box> crop;
     std::string caption;  // shown alone under the picture
-    SourceLocation at;
+    SourceLocation location;
 };
 
 /// A comparison that must hold. Quantities are looked up by name (see metrics/metrics.h).
@@ -183,7 +183,7 @@ struct AssertionPlan {
     std::string text;     // as in the file, e.g. "rmse.H(phong) < rmse.H(cosine)"
     Comparison check;     // the same, parsed; every n is filled in
     bool median = false;  // over seeds, else at the published seed
-    SourceLocation at;
+    SourceLocation location;
 };
 
 /// A scene, and the computations requested for it.

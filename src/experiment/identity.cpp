@@ -135,10 +135,10 @@ private:
     void tables_in_a_list(const Section& section, const void* parent) {
         std::string entries;
         for (std::size_t i = 0; i < section.family.size(parent); ++i) {
-            std::string one;
+            std::string entry;
             for (const auto& [key, value] : keys(section, section.family.at(parent, i)))
-                one += fmt::format("{}{} = {}", one.empty() ? "" : ", ", key, value);
-            entries += fmt::format("{}{{{}}}", entries.empty() ? "" : ", ", one);
+                entry += fmt::format("{}{} = {}", entry.empty() ? "" : ", ", key, value);
+            entries += fmt::format("{}{{{}}}", entries.empty() ? "" : ", ", entry);
         }
         text_ += fmt::format("{} = [{}]\n", section.name, entries);
     }
@@ -164,21 +164,21 @@ std::string text_of(const Published& published) {
 std::string canonical_text(const Experiment& experiment) { return Writer(experiment)(); }
 
 std::uint64_t hash(const Experiment& experiment) {
-    Experiment counted = experiment;
-    counted.seeds = 1;                                  // a longer series is more of the same experiment
-    if (experiment.figures) counted.published.reset();  // their content counts, not their path
+    Experiment normal_form = experiment;
+    normal_form.seeds = 1;                                  // a longer series is more of the same experiment
+    if (experiment.figures) normal_form.published.reset();  // their content counts, not their path
     if (experiment.sky && experiment.sky->content) {
-        counted.sky->file.clear();
-        counted.sky->layer.reset();
+        normal_form.sky->file.clear();
+        normal_form.sky->layer.reset();
     }
-    for (MeshObject& mesh : counted.meshes) {
+    for (MeshObject& mesh : normal_form.meshes) {
         const std::optional<std::string> content = mesh.pack ? content_of(mesh) : mesh.content;
         if (!content) continue;
         mesh.file = *content;
         mesh.content.reset();
         for (const TextureKey& key : texture_keys) (mesh.*key.texture).file.reset();
     }
-    std::string text = canonical_text(counted);
+    std::string text = canonical_text(normal_form);
     if (experiment.figures) text += text_of(*experiment.figures);
     text += sampler_file_hashes(experiment);
     if (experiment.s_of != (experiment.exponent ? experiment.exponent->shape : ""))  // made in code: no key says it

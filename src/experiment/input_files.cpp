@@ -18,13 +18,14 @@ namespace crescent {
 
 void load_sky(SkyLight& sky) {
     std::shared_ptr<const RgbImage> image = sky_in_file(sky.file, sky.layer.value_or(""));
-    sky.raised = 0;
+    sky.raised_count = 0;
     if (smallest_number(*image) < 0) {
-        const auto raised = std::make_shared<RgbImage>(*image);
-        sky.raised = raise_to_zero(*raised);
-        image = raised;
+        const auto raised_image = std::make_shared<RgbImage>(*image);
+        sky.raised_count = raise_to_zero(*raised_image);
+        image = raised_image;
     }
-    if (const std::string why = why_no_sky(*image, sky.scale); !why.empty()) throw InputError({sky.file, 0, 0}, why);
+    if (const std::string reason = why_no_sky(*image, sky.scale); !reason.empty())
+        throw InputError({sky.file, 0, 0}, reason);
     const std::string content = content_hash(*image);
     if (sky.content && sky.content != content)
         throw InputError(
@@ -34,16 +35,16 @@ void load_sky(SkyLight& sky) {
 }
 
 std::string note_on_sky(const SkyLight& sky) {
-    if (sky.raised == 0) return "";
-    return fmt::format("sky: {}, at most {:g} % of its energy, count{} as 0", counted(sky.raised, "number[s] below 0"),
-        100 * negative_share, sky.raised == 1 ? "s" : "");
+    if (sky.raised_count == 0) return "";
+    return fmt::format("sky: {}, at most {:g} % of its energy, count{} as 0",
+        counted(sky.raised_count, "number[s] below 0"), 100 * negative_share, sky.raised_count == 1 ? "s" : "");
 }
 
 namespace {
 
-/// Returns the path of a file that the experiment `beside` names, which is in its folder or below.
-std::string path_inside(const std::string& beside, const std::string& file) {
-    const std::filesystem::path folder = std::filesystem::path(beside).parent_path();
+/// Returns the path of a file that `experiment_file` names, which is in its folder or below.
+std::string path_inside(const std::string& experiment_file, const std::string& file) {
+    const std::filesystem::path folder = std::filesystem::path(experiment_file).parent_path();
     const std::string path = (folder / file).string();
     if (leads_out(folder.string(), path))
         throw InputError({path, 0, 0},
@@ -54,11 +55,12 @@ std::string path_inside(const std::string& beside, const std::string& file) {
 
 }  // namespace
 
-void load_texture(Texture& texture, TextureOf property, const std::string& beside) {
+void load_texture(Texture& texture, TextureOf property, const std::string& experiment_file) {
     if (!texture.file || texture.image) return;
-    const std::string file = path_inside(beside, *texture.file);
+    const std::string file = path_inside(experiment_file, *texture.file);
     std::shared_ptr<const RgbImage> image = texture_in_file(file);
-    if (const std::string why = why_no_texture(*image, property); !why.empty()) throw InputError({file, 0, 0}, why);
+    if (const std::string reason = why_no_texture(*image, property); !reason.empty())
+        throw InputError({file, 0, 0}, reason);
     texture.image = std::move(image);
 }
 
@@ -118,12 +120,12 @@ std::string sampler_file_hashes(const Experiment& experiment) {
 }
 
 void refuse_code(const Experiment& experiment) {
-    std::vector<Diagnostic> found;
+    std::vector<Diagnostic> diagnostics;
     for (const ArmPlan& arm : experiment.arms) {
         const std::optional<std::string>& weights = arm.combination.weights_python;
         if (!arm.is_external() && !weights) continue;
         const std::string path = key_of_code(arm);
-        found.push_back({experiment.place_of(path),
+        diagnostics.push_back({experiment.place_of(path),
             fmt::format("{}: with --no-code, expected a built-in sampler (key 'sampler'); found code to run: '{}'",
                 path,
                 arm.exec         ? *arm.exec
@@ -131,7 +133,7 @@ void refuse_code(const Experiment& experiment) {
                     : arm.python ? *arm.python
                                  : *weights)});
     }
-    if (!found.empty()) throw InputError(std::move(found));
+    if (!diagnostics.empty()) throw InputError(std::move(diagnostics));
 }
 
 // ---- Reads the files of meshes and their textures. A mesh must be within 1000 km of the origin, the range of all
@@ -170,8 +172,8 @@ bool has_two_sides(const Mesh& mesh, std::size_t axis) {
     for (std::size_t t = 0; t < mesh.triangles.size() && !(ends[0] && ends[1]); ++t) {
         const Vec3d a = widen(mesh.corner(t, 0)), b = widen(mesh.corner(t, 1)), c = widen(mesh.corner(t, 2)),
                     n = cross(b - a, c - a);
-        const double along[3] = {n.x, n.y, n.z};
-        if (along[axis] != 0) ends[along[axis] > 0] = true;
+        const double components[3] = {n.x, n.y, n.z};
+        if (components[axis] != 0) ends[components[axis] > 0] = true;
     }
     return ends[0] && ends[1];
 }
@@ -212,24 +214,24 @@ void check_thickness(const Experiment& e, const MeshObject& mesh) {
 }
 
 /// The product of alpha and the smallest texel is a roughness too.
-void check_roughness(const Experiment& e, const MeshObject& mesh, std::vector<Diagnostic>& found) {
+void check_roughness(const Experiment& e, const MeshObject& mesh, std::vector<Diagnostic>& diagnostics) {
     const auto& image = mesh.alpha_texture.image;
     if (!image || !mesh.material.alpha) return;
-    const double least = *mesh.material.alpha * static_cast<double>(smallest_number(*image));
+    const double least_roughness = *mesh.material.alpha * static_cast<double>(smallest_number(*image));
     const std::string path = "meshes." + mesh.name + ".alpha_texture";
-    if (least < least_alpha)
-        found.push_back({e.place_of(path),
+    if (least_roughness < least_alpha)
+        diagnostics.push_back({e.place_of(path),
             fmt::format("{}: expected a roughness of at least {:g} everywhere, found alpha times the smallest texel = "
                         "{:.3g}",
-                path, least_alpha, least)});
+                path, least_alpha, least_roughness)});
 }
 
-void check_uv(const Experiment& e, const MeshObject& mesh, std::vector<Diagnostic>& found) {
+void check_uv(const Experiment& e, const MeshObject& mesh, std::vector<Diagnostic>& diagnostics) {
     if (!mesh.pack->mesh.uv.empty()) return;
     for (const TextureKey& key : texture_keys) {
         const std::string path = fmt::format("meshes.{}.{}", mesh.name, key.name);
         if ((mesh.*key.texture).image)
-            found.push_back({e.place_of(path),
+            diagnostics.push_back({e.place_of(path),
                 fmt::format("{}: expected a mesh with texture coordinates, found none in '{}'", path, mesh.file)});
     }
 }
@@ -237,7 +239,7 @@ void check_uv(const Experiment& e, const MeshObject& mesh, std::vector<Diagnosti
 }  // namespace
 
 void read_meshes(Experiment& experiment) {
-    std::vector<Diagnostic> found;
+    std::vector<Diagnostic> diagnostics;
     for (MeshObject& mesh : experiment.meshes) {
         const std::string path = "meshes." + mesh.name;
         /// A mistake in a file that a key names is reported at the key, with the place in the file.
@@ -246,9 +248,9 @@ void read_meshes(Experiment& experiment) {
                 work();
             } catch (const InputError& error) {
                 const Diagnostic& first = error.diagnostics().front();
-                const bool located = first.at.file == experiment.file && first.at.line > 0;
-                found.push_back({located ? first.at : experiment.place_of(key),
-                    located ? first.message : fmt::format("{}: {}", key, error.what())});
+                const bool is_located = first.location.file == experiment.file && first.location.line > 0;
+                diagnostics.push_back({is_located ? first.location : experiment.place_of(key),
+                    is_located ? first.message : fmt::format("{}: {}", key, error.what())});
             }
         };
         if (!mesh.pack)
@@ -260,17 +262,17 @@ void read_meshes(Experiment& experiment) {
         for (const TextureKey& key : texture_keys)
             at_key(fmt::format("{}.{}", path, key.name),
                 [&] { load_texture(mesh.*key.texture, key.of, experiment.file); });
-        if (!mesh.pack || !found.empty()) continue;
-        check_uv(experiment, mesh, found);
-        check_roughness(experiment, mesh, found);
+        if (!mesh.pack || !diagnostics.empty()) continue;
+        check_uv(experiment, mesh, diagnostics);
+        check_roughness(experiment, mesh, diagnostics);
         const std::string content = content_of(mesh);
         if (mesh.content && *mesh.content != content)
-            found.push_back({experiment.place_of(path + ".content"),
+            diagnostics.push_back({experiment.place_of(path + ".content"),
                 fmt::format("{0}.content: expected a mesh and textures with the content {1}, found {2}", path,
                     *mesh.content, content)});
         mesh.content = content;
     }
-    throw_if_any(std::move(found));
+    throw_if_any(std::move(diagnostics));
 }
 
 }  // namespace crescent

@@ -27,9 +27,9 @@ void load_sky(SkyLight& sky);
 /// Returns how many numbers of a sky's file count as 0; "" if none.
 std::string note_on_sky(const SkyLight& sky);
 
-/// Reads a texture that has no image yet, next to the experiment's file `beside`. Throws InputError with the file and
+/// Reads a texture that has no image yet, next to `experiment_file`. Throws InputError with the file and
 /// the texel.
-void load_texture(Texture& texture, TextureOf property, const std::string& beside);
+void load_texture(Texture& texture, TextureOf property, const std::string& experiment_file);
 
 /// Reads the file of every mesh that has none yet; throws InputError with the place of its key.
 void read_meshes(Experiment& experiment);

@@ -64,7 +64,7 @@ TEST_F(MeshFiles, HaveAContentThatStandsForThem) {
     } catch (const InputError& error) {
         EXPECT_THAT(
             error.what(), testing::HasSubstr("meshes.a.content: expected a mesh and textures with the content"));
-        EXPECT_GT(error.diagnostics().front().at.line, 0u);
+        EXPECT_GT(error.diagnostics().front().location.line, 0u);
     }
 }
 

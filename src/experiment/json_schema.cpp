@@ -18,10 +18,10 @@ constexpr std::string_view name_pattern = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$"; 
 constexpr int most_schema_characters = 4096, most_schema_items = 64, longest_title = 200;
 
 /// Returns a number of the key's range; box coordinates and counts are integers.
-Json number(const Key& key, bool whole) {
-    Json out = {{"type", whole ? "integer" : "number"}};
+Json number(const Key& key, bool is_whole) {
+    Json out = {{"type", is_whole ? "integer" : "number"}};
     if (key.range.low == key.range.high) return out;
-    const auto bound = [&](double x) { return whole ? Json(static_cast<std::int64_t>(x)) : Json(x); };
+    const auto bound = [&](double x) { return is_whole ? Json(static_cast<std::int64_t>(x)) : Json(x); };
     out[key.range.low_open ? "exclusiveMinimum" : "minimum"] = bound(key.range.low);
     out[key.range.high_open ? "exclusiveMaximum" : "maximum"] = bound(key.range.high);
     return out;
@@ -33,9 +33,9 @@ Json list(const Json& item, int count) {
 
 /// An ascending list, or a bare number for a list of one.
 Json one_or_more(const Json& item) {
-    Json many = {{"type", "array"}, {"items", item}, {"minItems", 1}, {"maxItems", most_schema_items}};
-    many["uniqueItems"] = true;
-    return {{"anyOf", {item, many}}};
+    Json array = {{"type", "array"}, {"items", item}, {"minItems", 1}, {"maxItems", most_schema_items}};
+    array["uniqueItems"] = true;
+    return {{"anyOf", {item, array}}};
 }
 
 Json type_of(const Key& key) {
@@ -96,13 +96,13 @@ Json property(const Key& key) {
 Json kinds_of(const Section& section, const std::vector<std::string>& kinds) {
     Json rules = Json::array();
     for (const std::string& kind : kinds) {
-        Json needed = Json::array(), foreign = Json::object();
+        Json required_keys = Json::array(), foreign_keys = Json::object();
         for (const Key& key : section.keys) {
-            if (!has_kind(key, kind)) foreign[std::string(key.name)] = false;
-            else if (key.need == Requirement::required && !key.kinds.empty()) needed.push_back(key.name);
+            if (!has_kind(key, kind)) foreign_keys[std::string(key.name)] = false;
+            else if (key.need == Requirement::required && !key.kinds.empty()) required_keys.push_back(key.name);
         }
         rules.push_back({{"if", {{"properties", {{"kind", {{"const", kind}}}}}, {"required", {"kind"}}}},
-            {"then", {{"required", needed}, {"properties", foreign}}}});
+            {"then", {{"required", required_keys}, {"properties", foreign_keys}}}});
     }
     return rules;
 }
@@ -124,31 +124,31 @@ Json table(const Section& section) {
     if (!required.empty()) out["required"] = required;
     const Key* kind = section.find_key("kind");
     const auto of_some_kinds = [](const Key& k) { return !k.kinds.empty(); };
-    const bool by_kind = std::any_of(section.keys.begin(), section.keys.end(), of_some_kinds);
-    if (kind && by_kind) out["allOf"] = kinds_of(section, kind->words);
+    const bool has_kinds = std::any_of(section.keys.begin(), section.keys.end(), of_some_kinds);
+    if (kind && has_kinds) out["allOf"] = kinds_of(section, kind->words);
     return out;
 }
 
 /// Returns a table, tables under names of the user's choice, or a list of tables.
 Json family(const Section& section) {
-    const Json one = table(section);
-    const Json listed = {{"type", "array"}, {"items", one}, {"description", section.means}};
-    Json named = {{"type", "object"}, {"description", section.means}};
+    const Json entry = table(section);
+    const Json array = {{"type", "array"}, {"items", entry}, {"description", section.means}};
+    Json object = {{"type", "object"}, {"description", section.means}};
     switch (section.many) {
-        case Multiplicity::one: return one;
-        case Multiplicity::list: return listed;
+        case Multiplicity::one: return entry;
+        case Multiplicity::list: return array;
         case Multiplicity::named:
-            named["patternProperties"] = {{name_pattern, one}};
-            named["additionalProperties"] = false;
-            if (section.need == Requirement::required) named["minProperties"] = 1;
-            return named;
+            object["patternProperties"] = {{name_pattern, entry}};
+            object["additionalProperties"] = false;
+            if (section.need == Requirement::required) object["minProperties"] = 1;
+            return object;
         case Multiplicity::titled: break;
     }
-    named["additionalProperties"] = one;  // [assertions."any text"], or a list whose tables contain their own name
-    Json item = one;
+    object["additionalProperties"] = entry;  // [assertions."any text"], or a list whose tables contain their own name
+    Json item = entry;
     item["properties"]["name"] = {{"type", "string"}, {"minLength", 1}, {"maxLength", longest_title}};
     item["required"].push_back("name");
-    return {{"anyOf", {named, Json{{"type", "array"}, {"items", item}}}}, {"description", section.means}};
+    return {{"anyOf", {object, Json{{"type", "array"}, {"items", item}}}}, {"description", section.means}};
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TEST_P(AMistake, IsFoundWhereItStandsInWordsThatHelp) {
         FAIL() << "accepted: " << m.new_text;
     } catch (const InputError& error) {
         const Diagnostic& first = error.diagnostics().front();
-        EXPECT_EQ(to_string(first.at), to_string(SourceLocation{"x.toml", m.line, m.column})) << error.what();
+        EXPECT_EQ(to_string(first.location), to_string(SourceLocation{"x.toml", m.line, m.column})) << error.what();
         EXPECT_THAT(first.message, HasSubstr(m.phrase)) << error.what();
         EXPECT_EQ(error.diagnostics().size(), m.mistakes) << error.what();
     }
@@ -338,7 +338,7 @@ TEST(Mistakes, AllAreReportedAtOnceInFileOrder) {
         FAIL();
     } catch (const InputError& error) {
         std::vector<std::string> at;
-        for (const Diagnostic& c : error.diagnostics()) at.push_back(to_string(c.at));
+        for (const Diagnostic& c : error.diagnostics()) at.push_back(to_string(c.location));
         EXPECT_THAT(
             at, testing::ElementsAre("x.toml:4:9", "x.toml:29:8", "x.toml:31:1", "x.toml:43:7", "--set seed=-1"));
     }
@@ -353,7 +353,7 @@ TEST(Mistakes, TheFirstNameGivenTwiceIsReported) {
         FAIL();
     } catch (const InputError& error) {
         ASSERT_EQ(error.diagnostics().size(), 1u) << error.what();
-        EXPECT_EQ(to_string(error.diagnostics()[0].at), "x.toml:11:12");
+        EXPECT_EQ(to_string(error.diagnostics()[0].location), "x.toml:11:12");
     }
 }
 

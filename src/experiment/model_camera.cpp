@@ -27,10 +27,11 @@ double norm(Vec3d v) { return std::sqrt(dot(v, v)); }
 
 /// The direction with the cosine `cosine` to an axis that is nearest to d.
 Vec3d tilted(Vec3d d, Vec3d axis, double cosine) {
-    Vec3d rest = d - dot(d, axis) * axis;
-    if (norm(rest) < 1e-6) rest = cross(axis, std::fabs(axis.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0});
+    Vec3d perpendicular = d - dot(d, axis) * axis;
+    if (norm(perpendicular) < 1e-6)
+        perpendicular = cross(axis, std::fabs(axis.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0});
     const double sign = dot(d, axis) < 0 ? -1 : 1;
-    return sign * cosine * axis + std::sqrt(1 - cosine * cosine) * normalize(rest);
+    return sign * cosine * axis + std::sqrt(1 - cosine * cosine) * normalize(perpendicular);
 }
 
 /// From the model towards the eye.
@@ -52,10 +53,10 @@ Vec3d direction_to_eye(const ModelPoints::Axes& axes) {
 bool ModelPoints::may_be_seen(const Camera& camera, double aspect) const {
     const Vec3d forward = normalize(camera.target - camera.eye), right = normalize(cross(forward, camera.up)),
                 up = cross(right, forward);
-    const double high = math::tan(camera.vfov_deg * pi / 360), wide = high * aspect;
+    const double half_height = math::tan(camera.vfov_deg * pi / 360), half_width = half_height * aspect;
     // Inner normals of the sides of what is seen.
-    const std::array<Vec3d, 5> sides = {
-        forward, wide * forward + right, wide * forward - right, high * forward + up, high * forward - up};
+    const std::array<Vec3d, 5> sides = {forward, half_width * forward + right, half_width * forward - right,
+        half_height * forward + up, half_height * forward - up};
     return std::ranges::all_of(sides, [&](const Vec3d& side) {
         return std::ranges::any_of(
             points_, [&](const Vec3f& point) { return dot(widen(point) - camera.eye, side) > 0; });
@@ -126,9 +127,9 @@ ModelPoints::Axes ModelPoints::axes() const {
         out.low[k] = points_.empty() ? 0 : INFINITY;
         out.high[k] = points_.empty() ? 0 : -INFINITY;
         for (const Vec3f& p : points_) {
-            const double along = dot(widen(p) - middle, out.axis[k]);
-            out.low[k] = std::min(out.low[k], along);
-            out.high[k] = std::max(out.high[k], along);
+            const double position = dot(widen(p) - middle, out.axis[k]);
+            out.low[k] = std::min(out.low[k], position);
+            out.high[k] = std::max(out.high[k], position);
         }
         const double offset = dot(middle, out.axis[k]);
         out.low[k] += offset;
@@ -156,9 +157,9 @@ public:
         constexpr int most_steps = 64;
         for (int step = 0; step < most_steps; ++step) {
             const auto [i, j] = ends(tangent_);
-            const double next = (offsets_[i] - offsets_[j]) / (depths_[i] + depths_[j]);
-            if (!(next > tangent_)) break;
-            tangent_ = next;
+            const double estimate = (offsets_[i] - offsets_[j]) / (depths_[i] + depths_[j]);
+            if (!(estimate > tangent_)) break;
+            tangent_ = estimate;
         }
     }
     double tangent() const { return tangent_; }
@@ -191,23 +192,23 @@ std::string camera_table(const ModelPoints& points, double aspect) {
     const Bounds& box = points.box();
     const double radius = 0.5 * norm(widen(box.high) - widen(box.low));
     const double distance = radius / math::sin(half_view * pi / 180);
-    const Vec3d towards = direction_to_eye(axes), middle = 0.5 * (widen(box.low) + widen(box.high));
-    const bool is_from_above = std::fabs(towards.y) > 0.95;
+    const Vec3d eye_direction = direction_to_eye(axes), middle = 0.5 * (widen(box.low) + widen(box.high));
+    const bool is_from_above = std::fabs(eye_direction.y) > 0.95;
     const Vec3d up = is_from_above ? Vec3d{0, 0, -1} : Vec3d{0, 1, 0};
-    const Vec3d across = normalize(cross(-1.0 * towards, up)), above = cross(across, -1.0 * towards);
-    std::vector<double> depths, to_the_right, upwards;
+    const Vec3d right = normalize(cross(-1.0 * eye_direction, up)), vertical = cross(right, -1.0 * eye_direction);
+    std::vector<double> depths, horizontal_offsets, vertical_offsets;
     for (const Vec3f& point : points.points()) {
-        const Vec3d from_middle = widen(point) - middle;
-        depths.push_back(distance - dot(from_middle, towards));
-        to_the_right.push_back(dot(from_middle, across));
-        upwards.push_back(dot(from_middle, above));
+        const Vec3d offset = widen(point) - middle;
+        depths.push_back(distance - dot(offset, eye_direction));
+        horizontal_offsets.push_back(dot(offset, right));
+        vertical_offsets.push_back(dot(offset, vertical));
     }
-    const Fit wide(std::move(to_the_right), depths), high(std::move(upwards), depths);
-    const double tangent = std::max(wide.tangent() / aspect, high.tangent());
-    const Vec3d target = middle + wide.middle() * across + high.middle() * above;
+    const Fit horizontal_fit(std::move(horizontal_offsets), depths), vertical_fit(std::move(vertical_offsets), depths);
+    const double tangent = std::max(horizontal_fit.tangent() / aspect, vertical_fit.tangent());
+    const Vec3d target = middle + horizontal_fit.middle() * right + vertical_fit.middle() * vertical;
     const double detail = std::clamp(axes.extent(1), 1e-6 * radius, radius);
     return fmt::format("[camera]\neye = {}\ntarget = {}\n{}vfov_deg = {:.6g}\n",
-        point_in_table(target + distance * towards, detail), point_in_table(target, detail),
+        point_in_table(target + distance * eye_direction, detail), point_in_table(target, detail),
         is_from_above ? "up = [0, 0, -1]\n" : "", 2 * math::atan2(margin * tangent, 1.0) * 180 / pi);
 }
 

@@ -28,12 +28,12 @@ private:
 
 /// A disk that the ball sees as large as 0.2 sr from above and the left, and even light from everywhere else.
 std::string light_over(const Ball& ball) {
-    const Vec3d towards = normalize(Vec3d{-0.6, 1, 0.6});
+    const Vec3d light_direction = normalize(Vec3d{-0.6, 1, 0.6});
     return fmt::format(
         "[disks.light]\ncenter = {}\nnormal = {}\nradius = {:.6g}\nradiance = [15, 15, 15]\n\n[fill]\nradiance = "
         "[0.3, 0.3, 0.3]\n",
-        point_in_table(ball.middle + 2.5 * ball.radius * towards, ball.radius), point_in_table(-1.0 * towards, 1),
-        0.6 * ball.radius);
+        point_in_table(ball.middle + 2.5 * ball.radius * light_direction, ball.radius),
+        point_in_table(-1.0 * light_direction, 1), 0.6 * ball.radius);
 }
 
 std::string sky_table(const std::string& file, const std::string& layer = "") {

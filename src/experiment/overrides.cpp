@@ -61,15 +61,15 @@ std::string name_of(const Member& member) {
 Member* step(Node& node, const std::string& segment) {
     if (node.is_table()) return node.find(segment);
     if (const auto index = index_of(segment)) return *index < node.members.size() ? &node.members[*index] : nullptr;
-    const auto named =
+    const auto match =
         std::find_if(node.members.begin(), node.members.end(), [&](const Member& m) { return name_of(m) == segment; });
-    return named == node.members.end() ? nullptr : &*named;
+    return match == node.members.end() ? nullptr : &*match;
 }
 
 void move_to(Node& node, const SourceLocation& place) {
-    node.at = place;
+    node.location = place;
     for (Member& member : node.members) {
-        member.at = place;
+        member.location = place;
         move_to(member.value, place);
     }
 }
@@ -82,18 +82,18 @@ public:
     void apply(const std::string& text) {
         const std::size_t equals = end_of_path(text);
         if (equals == std::string::npos) return fail("expected path=value, e.g. sphere.s=64");
-        written_ = std::string(trim(std::string_view(text).substr(0, equals)));
+        path_text_ = std::string(trim(std::string_view(text).substr(0, equals)));
         Node value;
         if (!parse_value(std::string(trim(std::string_view(text).substr(equals + 1))), value)) return;
-        Segments path = split(written_);
+        Segments path = split(path_text_);
         if (std::any_of(path.begin(), path.end(), [](const std::string& s) { return s.empty(); }) || path.size() > 8)
-            return fail(fmt::format("expected a path such as sphere.s or shapes.sphere.s, found '{}'", written_));
+            return fail(fmt::format("expected a path such as sphere.s or shapes.sphere.s, found '{}'", path_text_));
         if (resolve(path)) set(path, std::move(value));
     }
 
 private:
     void fail(const std::string& message, Diagnostic::Kind kind = Diagnostic::Kind::other) {
-        draft_.report(written_, place_, message, kind);
+        draft_.report(path_text_, place_, message, kind);
     }
 
     /// Parses a value as TOML if it is TOML, else as bare text.
@@ -121,7 +121,7 @@ private:
         if (in_table(schema(), path, 0)) return true;
         std::vector<Segments> valid, paths;
         std::vector<std::string> words = words_of(schema());
-        const bool top = std::count(words.begin(), words.end(), path[0]);
+        const bool is_top = std::count(words.begin(), words.end(), path[0]);
         for (const Section& section : schema().sections) {
             const Member* family = root_.find(section.name);
             if (section.many == Multiplicity::one || !family) continue;
@@ -134,19 +134,19 @@ private:
             }
         }
         if (valid.size() > 1)
-            return fail(fmt::format("'{}' is ambiguous: expected {}.{} or {}.{}", written_, valid[0][0], written_,
-                       valid[1][0], written_)),
+            return fail(fmt::format("'{}' is ambiguous: expected {}.{} or {}.{}", path_text_, valid[0][0], path_text_,
+                       valid[1][0], path_text_)),
                    false;
-        if (valid.empty() && !top && paths.empty()) {
-            const std::string near = hint(path[0], words);
+        if (valid.empty() && !is_top && paths.empty()) {
+            const std::string suggestion = hint(path[0], words);
             fail(fmt::format(
                      "no key or name '{}': expected a key of the schema or the name of a shape, disk, arm, ...{}",
-                     path[0], near),
-                near.empty() ? Diagnostic::Kind::unknown_name : Diagnostic::Kind::misspelt_name);
+                     path[0], suggestion),
+                suggestion.empty() ? Diagnostic::Kind::unknown_name : Diagnostic::Kind::misspelt_name);
             return false;
         }
         if (!valid.empty()) path = valid[0];
-        else if (!top) path = paths[0];  // the parser reports what is wrong with its key
+        else if (!is_top) path = paths[0];  // the parser reports what is wrong with its key
         return true;
     }
 
@@ -156,8 +156,8 @@ private:
             // `content` is the hash of the files of its table: it does not hold for another file.
             if (i + 1 == path.size() && (path[i] == "file" || path[i].ends_with("_texture")))
                 std::erase_if(node->members, [](const Member& member) { return member.key == "content"; });
-            Member* next = node->is_table() || node->is_array() ? step(*node, path[i]) : nullptr;
-            if (!next) {
+            Member* child = node->is_table() || node->is_array() ? step(*node, path[i]) : nullptr;
+            if (!child) {
                 if (!node->is_table())
                     return fail(fmt::format("no '{}' in '{}': expected {}", path[i],
                         listed(Segments(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i)), "."),
@@ -165,11 +165,11 @@ private:
                             ? fmt::format("an index from 0 to {}", node->members.size() - 1)
                             : "no more keys after it"));
                 node->members.push_back({path[i], place_, Node{}});
-                next = &node->members.back();
-                next->value.at = place_;
+                child = &node->members.back();
+                child->value.location = place_;
             }
-            if (i + 1 == path.size()) next->at = place_;
-            node = &next->value;
+            if (i + 1 == path.size()) child->location = place_;
+            node = &child->value;
         }
         *node = std::move(value);
     }
@@ -177,7 +177,7 @@ private:
     ParseContext& draft_;
     Node& root_;
     SourceLocation place_;
-    std::string written_;
+    std::string path_text_;
 };
 
 // ---- The tree as TOML: tables of tables are inline.
@@ -210,11 +210,11 @@ std::string toml_text(const Node& node) {
         case Node::Kind::table:
         case Node::Kind::array: break;
     }
-    std::string inside;
+    std::string entries;
     for (const Member& member : node.members)
-        inside += (inside.empty() ? "" : ", ") + (node.is_table() ? toml_string(member.key) + " = " : "") +
+        entries += (entries.empty() ? "" : ", ") + (node.is_table() ? toml_string(member.key) + " = " : "") +
             toml_text(member.value);
-    return node.is_table() ? "{" + inside + "}" : "[" + inside + "]";
+    return node.is_table() ? "{" + entries + "}" : "[" + entries + "]";
 }
 
 }  // namespace

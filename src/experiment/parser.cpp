@@ -16,7 +16,7 @@ namespace crescent {
 
 void ParseContext::report(
     const std::string& path, const SourceLocation& place, const std::string& message, Diagnostic::Kind kind) {
-    diagnostics.push_back({.at = place, .message = message, .kind = kind, .path = path});
+    diagnostics.push_back({.location = place, .message = message, .kind = kind, .path = path});
     invalid_paths.insert(path);
 }
 
@@ -31,9 +31,9 @@ namespace {
 constexpr std::size_t most_elements = 4096;  // of a family of tables; a film counts shapes in 16 bits
 
 bool file_safe(std::string_view name) {
-    const auto plain = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_'); };
-    return !name.empty() && name.size() <= 64 && plain(static_cast<unsigned char>(name[0])) &&
-        std::all_of(name.begin(), name.end(), [&](unsigned char c) { return plain(c) || c == '.' || c == '-'; });
+    const auto is_plain = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_'); };
+    return !name.empty() && name.size() <= 64 && is_plain(static_cast<unsigned char>(name[0])) &&
+        std::all_of(name.begin(), name.end(), [&](unsigned char c) { return is_plain(c) || c == '.' || c == '-'; });
 }
 
 bool one_line(std::string_view name) {
@@ -83,7 +83,7 @@ private:
             const std::vector<std::string> valid = words_of(section, kind);
             const std::string whose = key ? fmt::format("a {} has no key '{}'", kind, member.key)
                                           : fmt::format("unknown key '{}'", member.key.substr(0, 64));
-            draft_.report(join(path, member.key), member.at,
+            draft_.report(join(path, member.key), member.location,
                 fmt::format(
                     "{} in {}: expected {}{}", whose, where(path), listed(valid, ", "), hint(member.key, valid)));
         }
@@ -104,10 +104,10 @@ private:
     }
 
     void place(const Node& node, const std::string& path) {
-        draft_.e.places[path] = node.at;
+        draft_.e.places[path] = node.location;
         if (node.is_array())
             for (std::size_t i = 0; i < node.members.size() && i < most_elements; ++i)
-                draft_.e.places[fmt::format("{}.{}", path, i)] = node.members[i].value.at;
+                draft_.e.places[fmt::format("{}.{}", path, i)] = node.members[i].value.location;
     }
 
     void store(const Key& key, const Node& node, const std::string& path, void* object) {
@@ -137,20 +137,20 @@ private:
         const Member* member = parent.find(section.name);
         if (!member) return absent(section, path, parent_at, object);
         const Node& node = member->value;
-        draft_.e.places[path] = member->at;
-        const bool listed = section.many == Multiplicity::list || section.many == Multiplicity::titled;
-        if (!node.is_table() && !(listed && node.is_array()))
-            return draft_.report(
-                path, node.at, fmt::format("{}: expected {}, found {}", path, form(section, path), describe(node)));
+        draft_.e.places[path] = member->location;
+        const bool is_list = section.many == Multiplicity::list || section.many == Multiplicity::titled;
+        if (!node.is_table() && !(is_list && node.is_array()))
+            return draft_.report(path, node.location,
+                fmt::format("{}: expected {}, found {}", path, form(section, path), describe(node)));
         if (section.many == Multiplicity::list && node.is_table())
             return draft_.report(
-                path, node.at, fmt::format("{}: expected {}, found a table", path, form(section, path)));
+                path, node.location, fmt::format("{}: expected {}, found a table", path, form(section, path)));
         if (section.many == Multiplicity::one)
-            return table(section, node, path, member->at,
-                section.family.add ? section.family.add(object, "", member->at) : object);
+            return table(section, node, path, member->location,
+                section.family.add ? section.family.add(object, "", member->location) : object);
         if (section.need == Requirement::required && node.members.empty())
-            return draft_.report(
-                path, member->at, fmt::format("{}: expected one or more {}, found none", path, form(section, path)));
+            return draft_.report(path, member->location,
+                fmt::format("{}: expected one or more {}, found none", path, form(section, path)));
         elements(section, node, path, object);
     }
 
@@ -172,7 +172,7 @@ private:
 
     void elements(const Section& section, const Node& node, const std::string& path, void* object) {
         if (node.members.size() > most_elements)
-            return draft_.report(path, node.at,
+            return draft_.report(path, node.location,
                 fmt::format("{}: expected at most {}, found {}", path, most_elements, node.members.size()));
         std::vector<std::string> names;
         for (const Member& member : node.members) names.push_back(member.key);
@@ -190,11 +190,11 @@ private:
         std::size_t index, void* object) {
         const std::string label = node.is_array() ? fmt::format("{}.{}", path, index) : join(path, member.key);
         if (!member.value.is_table())
-            return draft_.report(label, node.is_array() ? member.value.at : member.at,
+            return draft_.report(label, node.is_array() ? member.value.location : member.location,
                 fmt::format("{}: expected {}, found {}", label,
                     node.is_array() ? "a table" : fmt::format("a table [{}]", label), describe(member.value)));
         std::string name = member.key;
-        SourceLocation place = member.at;
+        SourceLocation place = member.location;
         if (section.many == Multiplicity::titled && node.is_array() && !title(member, path, index, name, place)) return;
         const std::string own_path =
             section.many == Multiplicity::list ? fmt::format("{}.{}", path, index) : join(path, name);
@@ -215,16 +215,16 @@ private:
     bool title(
         const Member& member, const std::string& path, std::size_t index, std::string& name, SourceLocation& place) {
         const Member* name_member = member.value.find("name");
-        place = member.value.at;
+        place = member.value.location;
         if (!name_member || name_member->value.kind != Node::Kind::text) {
-            draft_.report(fmt::format("{}.{}", path, index), name_member ? name_member->value.at : place,
+            draft_.report(fmt::format("{}.{}", path, index), name_member ? name_member->value.location : place,
                 fmt::format("{} in [[{}]]: expected a line of text{}",
                     name_member ? "the key 'name'" : "missing key 'name'", path,
                     name_member ? ", found " + describe(name_member->value) : ""));
             return false;
         }
         name = name_member->value.text;
-        place = name_member->value.at;
+        place = name_member->value.location;
         const auto [first, fresh] = titles_.emplace(name, place);
         if (!fresh)
             draft_.report(fmt::format("{}.{}", path, index), place,
@@ -241,7 +241,8 @@ private:
 }  // namespace
 
 void read_tree(ParseContext& context, const Section& table, const Node& root, void* object) {
-    const SourceLocation top{context.e.file, root.at.line ? root.at.line : 1, root.at.column ? root.at.column : 1};
+    const SourceLocation top{
+        context.e.file, root.location.line ? root.location.line : 1, root.location.column ? root.location.column : 1};
     TreeReader(context).table(table, root, "", top, object);
 }
 
@@ -307,8 +308,8 @@ std::uint64_t sample_count(
 }
 
 void check_s(ParseContext& context, const std::string& path, const PlateRun& run) {
-    std::string why = why_not_run(context.e, run.arm, run.n, run.s);
-    if (!why.empty()) context.report(path, fmt::format("{}: {}", path, why));
+    std::string reason = why_not_run(context.e, run.arm, run.n, run.s);
+    if (!reason.empty()) context.report(path, fmt::format("{}: {}", path, reason));
 }
 
 void resolve_plate(ParseContext& context, PlatePlan& plate) {
@@ -316,19 +317,19 @@ void resolve_plate(ParseContext& context, PlatePlan& plate) {
     if (!context.is_valid(path + ".kind") || !context.is_valid(path + ".runs")) return;
     const PlateInfo& kind = plate_info(plate.kind);
     if (plate.runs.size() < kind.least || plate.runs.size() > kind.most) {
-        const std::string many =
+        const std::string range =
             kind.least == kind.most ? fmt::format("{}", kind.least) : fmt::format("{} to {}", kind.least, kind.most);
         context.report(path + ".runs",
             fmt::format(
-                "{}.runs: expected {} for a plate of kind {}, found {}", path, many, kind.name, plate.runs.size()));
+                "{}.runs: expected {} for a plate of kind {}, found {}", path, range, kind.name, plate.runs.size()));
     }
     std::vector<PlateRun> runs;
     for (std::size_t i = 0; i < plate.runs.size(); ++i) {
         PlateRun run = plate.runs[i];
         const std::string run_path = fmt::format("{}.runs.{}", path, i);
         const ArmPlan* arm = context.e.find_arm(run.arm);
-        const bool open = run.n == 0 && context.is_valid(run_path + ".n") && arm && !arm->n.empty();
-        if (open && plate.kind == PlateKind::ladder) {
+        const bool is_open = run.n == 0 && context.is_valid(run_path + ".n") && arm && !arm->n.empty();
+        if (is_open && plate.kind == PlateKind::ladder) {
             for (const std::uint64_t n : arm->n) runs.push_back({run.arm, n, run.s});
             continue;
         }
@@ -338,8 +339,8 @@ void resolve_plate(ParseContext& context, PlatePlan& plate) {
             for (const double s : control->s) runs.push_back({run.arm, control->n, s});
             continue;
         }
-        run.n = open && plate.kind == PlateKind::hero ? arm->n.back()
-                                                      : sample_count(context, run_path + ".n", run.arm, run.n);
+        run.n = is_open && plate.kind == PlateKind::hero ? arm->n.back()
+                                                         : sample_count(context, run_path + ".n", run.arm, run.n);
         if (context.is_valid(run_path + ".n") && context.is_valid(run_path + ".s"))
             check_s(context, run_path + ".s", run);
         runs.push_back(run);
@@ -367,20 +368,20 @@ void resolve_reference(ParseContext& context) {
     Experiment& e = context.e;
     ReferencePlan& plan = e.reference;
     if (!context.is_valid("reference") || !context.is_valid("reference.kind")) return;
-    const bool given = e.places.contains("reference.kind");
-    const bool only_paired = e.sky || !e.meshes.empty();
-    if (only_paired && !given) plan.kind = ReferenceKind::paired;
-    const bool paired = plan.kind == ReferenceKind::paired;
-    if (only_paired && !paired)
+    const bool is_given = e.places.contains("reference.kind");
+    const bool needs_paired = e.sky || !e.meshes.empty();
+    if (needs_paired && !is_given) plan.kind = ReferenceKind::paired;
+    const bool is_paired = plan.kind == ReferenceKind::paired;
+    if (needs_paired && !is_paired)
         context.report("reference.kind",
             "reference.kind: a scene with a sky or meshes has no such reference: expected \"paired\", or no 'kind'");
-    if (paired && plan.monte_carlo)
+    if (is_paired && plan.monte_carlo)
         context.report("reference.monte_carlo",
             "reference.monte_carlo: expected false with reference.kind = \"paired\", which takes its place");
-    if (!paired && plan.n > 0)
+    if (!is_paired && plan.n > 0)
         context.report(
             "reference.n", "reference.n: expected reference.kind = \"paired\", the only reference that has an n");
-    if (paired && plan.n == 0 && context.is_valid("reference.n")) plan.n = paired_samples;
+    if (is_paired && plan.n == 0 && context.is_valid("reference.n")) plan.n = paired_samples;
 }
 
 void resolve_regions(ParseContext& context) {
@@ -451,10 +452,11 @@ ParseContext draft_of(std::string_view text, const std::string& name, const std:
 /// In file order; overrides follow the file, as given.
 void throw_if_any(std::vector<Diagnostic> diagnostics) {
     if (diagnostics.empty()) return;
-    std::multimap<std::tuple<bool, unsigned, unsigned>, Diagnostic> sorted;  // equals keep their order
-    for (Diagnostic& c : diagnostics) sorted.emplace(std::tuple(c.at.line == 0, c.at.line, c.at.column), std::move(c));
+    std::multimap<std::tuple<bool, unsigned, unsigned>, Diagnostic> sorted_diagnostics;  // equals keep their order
+    for (Diagnostic& c : diagnostics)
+        sorted_diagnostics.emplace(std::tuple(c.location.line == 0, c.location.line, c.location.column), std::move(c));
     diagnostics.clear();
-    for (auto& [key, diagnostic] : sorted) diagnostics.push_back(std::move(diagnostic));
+    for (auto& [key, diagnostic] : sorted_diagnostics) diagnostics.push_back(std::move(diagnostic));
     throw InputError(std::move(diagnostics));
 }
 

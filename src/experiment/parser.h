@@ -22,7 +22,7 @@ struct Member;
 struct Node {
     enum class Kind { table, array, text, integer, number, flag, date };
     Kind kind = Kind::table;
-    SourceLocation at;
+    SourceLocation location;
     std::vector<Member> members;  // table, array
     std::string text;
     std::int64_t integer = 0;
@@ -37,7 +37,7 @@ struct Node {
 
 struct Member {
     std::string key;
-    SourceLocation at;  // of the key
+    SourceLocation location;  // of the key
     Node value;
 };
 

@@ -17,10 +17,10 @@ namespace {
 using nlohmann::json;
 
 SourceLocation place_of_byte(std::string_view text, std::size_t byte, const std::string& file) {
-    const std::string_view before = text.substr(0, std::min(byte > 0 ? byte - 1 : 0, text.size()));
-    const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-    return {file, static_cast<unsigned>(std::count(before.begin(), before.end(), '\n') + 1),
-        static_cast<unsigned>(before.size() - line_start + 1)};
+    const std::string_view prefix = text.substr(0, std::min(byte > 0 ? byte - 1 : 0, text.size()));
+    const std::size_t line_start = prefix.rfind('\n') == std::string_view::npos ? 0 : prefix.rfind('\n') + 1;
+    return {file, static_cast<unsigned>(std::count(prefix.begin(), prefix.end(), '\n') + 1),
+        static_cast<unsigned>(prefix.size() - line_start + 1)};
 }
 
 class Reader {
@@ -50,8 +50,8 @@ private:
             key == "y_mean" || key == "rmse_frame";
     }
 
-    [[noreturn]] void fail(const std::string& pointer, const std::string& expected, const json& found) const {
-        std::string text = found.dump(-1, ' ', false, json::error_handler_t::replace);
+    [[noreturn]] void fail(const std::string& pointer, const std::string& expected, const json& value) const {
+        std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
         if (text.size() > 40) text = text.substr(0, 37) + "...";
         throw InputError(
             {file_, 0, 0}, fmt::format("{}: expected {}, found {}", pointer.empty() ? "/" : pointer, expected, text));
@@ -73,12 +73,12 @@ private:
                 fail(
                     pointer + "/" + key, "rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean or rmse_frame", key);
             if (!value.is_number()) fail(pointer + "/" + key, "a number", value);
-            const bool fresh =
+            const bool is_new =
                 published.runs
                     .emplace(std::tuple(arm->get<std::string>(), n->get<std::uint64_t>(), s->get<double>(), key),
                         value.get<double>())
                     .second;
-            if (!fresh) fail(pointer + "/" + key, "a figure that was not given before", value);
+            if (!is_new) fail(pointer + "/" + key, "a figure that was not given before", value);
         }
     }
 

@@ -131,9 +131,9 @@ std::string expectation(const Key& key);
 std::string alternatives(std::string_view kinds);
 
 /// Returns "a, b, c".
-template <class T> std::string listed(const std::vector<T>& items, std::string_view between = ", ") {
+template <class T> std::string listed(const std::vector<T>& items, std::string_view separator = ", ") {
     std::string text;
-    for (const T& one : items) (text += text.empty() ? std::string_view() : between) += fmt::to_string(one);
+    for (const T& item : items) (text += text.empty() ? std::string_view() : separator) += fmt::to_string(item);
     return text;
 }
 
@@ -252,7 +252,7 @@ template <auto M, class Owner = typename OwnerOf<decltype(M)>::type>
 constexpr Family in = {.add = [](void* parent, const std::string& name, const SourceLocation& place) -> void* {
                            auto* object = emplaced(static_cast<Owner*>(parent)->*M);
                            if constexpr (requires { object->name; }) object->name = name;
-                           if constexpr (requires { object->at; }) object->at = place;
+                           if constexpr (requires { object->location; }) object->location = place;
                            return object;
                        },
     .size = [](const void* parent) { return all_of(static_cast<const Owner*>(parent)->*M).size(); },
@@ -291,14 +291,14 @@ using AnyParameter = std::variant<std::monostate, double*, bool*, Vec3d*, std::o
 
 /// Returns the parameter of that name of the kind that `any` holds.
 template <class Any> AnyParameter parameter_named(Any& any, std::string_view name) {
-    AnyParameter found;
+    AnyParameter match;
     std::visit(
         [&](auto& kind) {
             for (const auto& parameter : std::remove_cvref_t<decltype(kind)>::parameters())
-                if (parameter.name == name) std::visit([&](auto member) { found = &(kind.*member); }, parameter.member);
+                if (parameter.name == name) std::visit([&](auto member) { match = &(kind.*member); }, parameter.member);
         },
         any);
-    return found;
+    return match;
 }
 inline void assign(const AnyParameter& to, const Value& value) {
     std::visit(
@@ -356,8 +356,8 @@ template <class List, auto Form> std::vector<Key> parameter_keys() {
     std::size_t next_slot = 0;
     List::each_parameter([&](std::string_view kind, const auto& p) {
         const Slot& slot = slots[next_slot++];
-        const auto same = [&](const Key& key) { return key.name == p.name; };
-        if (const auto listed_key = std::find_if(keys.begin(), keys.end(), same); listed_key != keys.end()) {
+        const auto is_same = [&](const Key& key) { return key.name == p.name; };
+        if (const auto listed_key = std::find_if(keys.begin(), keys.end(), is_same); listed_key != keys.end()) {
             listed_key->kinds += " " + std::string(kind);
             return;
         }

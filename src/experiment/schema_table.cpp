@@ -72,9 +72,9 @@ constexpr Slot scale_slot = {[](void* object, const Value& value) {
 /// One number if the lobe has no colour.
 template <class Owner> constexpr Slot specular = {[](void* object, const Value& value) {
                                                       const std::vector<double>& n = value.numbers;
-                                                      const bool grey = n.size() == 1;
+                                                      const bool is_grey = n.size() == 1;
                                                       static_cast<Owner*>(object)->material.set_specular(
-                                                          grey ? Rgb{n[0], n[0], n[0]} : Rgb{n[0], n[1], n[2]});
+                                                          is_grey ? Rgb{n[0], n[0], n[0]} : Rgb{n[0], n[1], n[2]});
                                                   },
     [](const void* object, Value& value) {
         const Material& m = static_cast<const Owner*>(object)->material;

@@ -28,14 +28,15 @@ void convert_members(const toml::table& table, Node& to, const std::string& file
     for (const auto& [key, value] : table)
         to.members.push_back({std::string(key.str()), place_of(key.source(), file), convert(value, file, depth + 1)});
     std::sort(to.members.begin(), to.members.end(), [](const Member& a, const Member& b) {
-        return std::tie(a.at.line, a.at.column, a.key) < std::tie(b.at.line, b.at.column, b.key);
+        return std::tie(a.location.line, a.location.column, a.key) <
+            std::tie(b.location.line, b.location.column, b.key);
     });
-    if (to.at.line == 0 && !to.members.empty()) to.at = to.members.front().at;
+    if (to.location.line == 0 && !to.members.empty()) to.location = to.members.front().location;
 }
 
 Node convert(const toml::node& from, const std::string& file, int depth) {
     Node to;
-    to.at = place_of(from.source(), file);
+    to.location = place_of(from.source(), file);
     if (const auto* table = from.as_table()) {
         if (depth < deepest) convert_members(*table, to, file, depth);
     } else if (const auto* array = from.as_array()) {
@@ -113,10 +114,10 @@ Node read_toml(std::string_view text, const std::string& file) {
     try {
         return convert(toml::parse(text, std::string_view(file)), file, 0);
     } catch (const toml::parse_error& error) {
-        const bool twice = error.description().find("cannot redefine") != std::string_view::npos;
+        const bool is_redefined = error.description().find("cannot redefine") != std::string_view::npos;
         throw InputError(place_of(error.source(), file),
             fmt::format("{}{}",
-                twice ? "duplicate name; expected each to be given once: " : "not TOML: ", error.description()));
+                is_redefined ? "duplicate name; expected each to be given once: " : "not TOML: ", error.description()));
     }
 }
 

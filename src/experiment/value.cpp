@@ -60,9 +60,9 @@ public:
     }
 
 private:
-    bool fail(const Node& node, const std::string& more = "") {
-        draft_.report(
-            path_, node.at, fmt::format("{}: expected {}, found {}{}", path_, expectation(key_), describe(node), more));
+    bool fail(const Node& node, const std::string& detail = "") {
+        draft_.report(path_, node.location,
+            fmt::format("{}: expected {}, found {}{}", path_, expectation(key_), describe(node), detail));
         return false;
     }
     bool fail(const std::string& message) {
@@ -74,9 +74,9 @@ private:
         if (node.kind != Node::Kind::text) return fail(node);
         if (node.text.size() > longest_text)
             return fail(fmt::format("expected at most {} bytes, found {}", longest_text, node.text.size()));
-        const bool control =
+        const bool has_control =
             std::any_of(node.text.begin(), node.text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-        if (control) return fail("expected one line of text without control characters");
+        if (has_control) return fail("expected one line of text without control characters");
         value_.text = node.text;
         return true;
     }
@@ -120,12 +120,13 @@ private:
     }
 
     bool scalar(const Node& node, double& to) {
-        const bool whole = key_.type == Type::integer || key_.type == Type::integers || key_.type == Type::counts ||
+        const bool is_whole = key_.type == Type::integer || key_.type == Type::integers || key_.type == Type::counts ||
             key_.type == Type::box;
-        if (whole ? node.kind != Node::Kind::integer : !is_number(node)) return fail(node);
+        if (is_whole ? node.kind != Node::Kind::integer : !is_number(node)) return fail(node);
         if (!std::isfinite(node.number)) return fail(node, "; numbers are finite");
-        const bool ranged = key_.type != Type::box && key_.type != Type::direction;  // these two are checked as a whole
-        if (ranged && !key_.range.holds(node.number)) return fail(node);
+        const bool has_range =
+            key_.type != Type::box && key_.type != Type::direction;  // these two are checked as a whole
+        if (has_range && !key_.range.holds(node.number)) return fail(node);
         to = node.number;
         return true;
     }
@@ -139,19 +140,19 @@ private:
         if (!node.is_array() || (count != 0 && node.members.size() != count) || node.members.empty()) return fail(node);
         if (node.members.size() > longest_list) return fail(node, fmt::format("; at most {} are taken", longest_list));
         value_.numbers.resize(node.members.size());
-        bool good = true;
+        bool is_good = true;
         for (std::size_t i = 0; i < value_.numbers.size(); ++i)
-            good = scalar(node.members[i].value, value_.numbers[i]) && good;
-        return good;
+            is_good = scalar(node.members[i].value, value_.numbers[i]) && is_good;
+        return is_good;
     }
 
     bool ascending(const Node& node) {
         for (std::size_t i = 1; i < value_.numbers.size(); ++i) {
-            const double before = value_.numbers[i - 1], now = value_.numbers[i];
-            if (now > before) continue;
-            draft_.report(path_, node.members[i].value.at,
+            const double previous = value_.numbers[i - 1], current = value_.numbers[i];
+            if (current > previous) continue;
+            draft_.report(path_, node.members[i].value.location,
                 fmt::format("{}: expected {}, found {} after {}", path_, expectation(key_),
-                    now == before ? fmt::format("{} again", now) : fmt::format("{}", now), before));
+                    current == previous ? fmt::format("{} again", current) : fmt::format("{}", current), previous));
             return false;
         }
         return true;
@@ -201,7 +202,7 @@ bool is_beyond(std::string_view word) {
 }  // namespace
 
 std::string hint(std::string_view word, const std::vector<std::string>& valid) {
-    if (const std::string near = did_you_mean(word, valid); !near.empty()) return near;
+    if (const std::string suggestion = did_you_mean(word, valid); !suggestion.empty()) return suggestion;
     return is_beyond(word) ? "; README.md says what a scene can be" : "";
 }
 

@@ -30,7 +30,7 @@ std::string lobe_word(int lobe) { return glsl_word(std::string(lobe_info(static_
 ShaderSource estimator_source(
     const std::string& sampler, int lobe, const LightCounts& lights, const std::array<std::size_t, 5>& bodies) {
     ShaderSource source;
-    const std::size_t recorded = recorded_lights(lights.all());
+    const std::size_t recorded = recorded_lights(lights.total());
     std::size_t body_count = 0;
     constexpr std::array<const char*, 5> kinds = {"SPHERES", "BOXES", "QUADS", "PLATES", "PLANES"};
     for (std::size_t k = 0; k < kinds.size(); ++k) {
@@ -78,10 +78,11 @@ Estimator::Kernel& Estimator::kernel(
 }
 
 const PointTexture& Estimator::shading_points(const Scene& scene, const TileBox& box, ProgressMonitor& monitor) {
-    const auto same = [](const TileBox& a, const TileBox& b) {
+    const auto is_same_box = [](const TileBox& a, const TileBox& b) {
         return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
     };
-    if (shading_points_ && points_of_->is_same_as(scene) && same(shading_points_->box(), box)) return *shading_points_;
+    if (shading_points_ && points_of_->is_same_as(scene) && is_same_box(shading_points_->box(), box))
+        return *shading_points_;
     shading_points_.reset();
     shading_points_.emplace(context_, scene, box, monitor);
     points_of_ = scene;
@@ -118,28 +119,28 @@ void set_scene(const Program& program, const ShadingPoints& lights, const Bodies
 void Estimator::estimate(const Scene& scene, const TileBox& box, const std::string& sampler, std::uint32_t seed,
     std::vector<Film>& films, ProgressMonitor& monitor) {
     const LightCounts counts = count_lights(scene);
-    const PointTexture& here = shading_points(scene, box, monitor);
-    if (here.groups().empty()) return;
+    const PointTexture& points = shading_points(scene, box, monitor);
+    if (points.groups().empty()) return;
     const ShadingPoints lights = empty_points(scene, -1);  // a group's own occluders are those that can affect it
     const Bodies bodies = bodies_of(lights.occluders);
     std::vector<LobePart> parts;
-    for (const int lobe : here.lobes()) {
+    for (const int lobe : points.lobes()) {
         if (lobe >= 0 && !shader_text("lobes/" + lobe_word(lobe) + ".glsl"))
             throw OutputError("the GL back end has no copy of the lobe '" +
                 std::string(lobe_info(static_cast<LobeKind>(lobe)).name) + "': use the cpu");
         Kernel& k = kernel(sampler, lobe, counts, bodies);
         set_scene(k.program, lights, bodies, box, scene.image().width, seed);
-        parts.push_back({&k.program, &k.pacer, here.pixels_of(lobe)});
+        parts.push_back({&k.program, &k.pacer, points.pixels_of(lobe)});
     }
-    const Framebuffer& target = framebuffer(here.width(), here.height(), attachments_for(counts.all()));
+    const Framebuffer& target = framebuffer(points.width(), points.height(), attachments_for(counts.total()));
     context_.gl().BindVertexArray(vertex_array_);  // core profiles draw nothing without one
-    here.bind();
+    points.bind();
     target.bind();
-    Pass pass(context_, here, target, std::move(parts), counts.all(), monitor);
+    Pass pass(context_, points, target, std::move(parts), counts.total(), monitor);
     for (Film& film : films) {
         pass.advance_to(film.n);
-        for (std::size_t g = 0; g < here.groups().size(); ++g) {
-            resolve_film(scene, here.groups()[g], pass.moments()[g], film);
+        for (std::size_t g = 0; g < points.groups().size(); ++g) {
+            resolve_film(scene, points.groups()[g], pass.moments()[g], film);
             for (const std::uint32_t bad : pass.moments()[g].bad) film.invalid += bad;
         }
     }
@@ -169,9 +170,9 @@ std::vector<Film> Estimator::films(const Scene& scene, const std::string& sample
 namespace {
 
 AssertionResult claim(
-    const std::string& name, double measured, const char* op, double bound, const std::string& quantity) {
-    const bool pass = std::string_view(op) == "==" ? measured == bound : measured >= bound;
-    return {name, pass, measured, bound, op, fmt::format("{} {} {}", quantity, op, bound)};
+    const std::string& name, double value, const char* op, double bound, const std::string& quantity) {
+    const bool pass = std::string_view(op) == "==" ? value == bound : value >= bound;
+    return {name, pass, value, bound, op, fmt::format("{} {} {}", quantity, op, bound)};
 }
 
 /// Returns the share of random integers that differ from the CPU's, over some blocks of both dimensions.
@@ -223,11 +224,11 @@ void GlBackend::claim_framebuffer(const std::string& what, int width, int height
 }
 
 void GlBackend::check(const Experiment& experiment) const {
-    const auto refuse = [](const SourceLocation& at, const char* what) {
-        throw InputError(at, fmt::format("the GL back end has no {}: expected --instrument cpu", what));
+    const auto refuse = [](const SourceLocation& place, const char* what) {
+        throw InputError(place, fmt::format("the GL back end has no {}: expected --instrument cpu", what));
     };
-    if (!experiment.meshes.empty()) refuse(experiment.meshes.front().at, "meshes");
-    if (experiment.sky) refuse(experiment.sky->at, "image skies");
+    if (!experiment.meshes.empty()) refuse(experiment.meshes.front().location, "meshes");
+    if (experiment.sky) refuse(experiment.sky->location, "image skies");
 }
 
 std::vector<Film> GlBackend::films(const TiledScene& view, const Job& job, ProgressMonitor& monitor) {
@@ -238,7 +239,8 @@ std::vector<Film> GlBackend::films(const TiledScene& view, const Job& job, Progr
         const Image& image = scene.image();
         const TileBox first =
             rectangles_of(image.width, image.height, count_lights(scene), estimator_.largest_texture()).front();
-        claim_framebuffer("film", first.x1 - first.x0, first.y1 - first.y0, attachments_for(count_lights(scene).all()));
+        claim_framebuffer(
+            "film", first.x1 - first.x0, first.y1 - first.y0, attachments_for(count_lights(scene).total()));
         claims_.push_back(claim("the random integers are the CPU's", unlike_integers_here(*context_, job.seed), "==", 0,
             "integers that differ"));
         claimed_film_ = true;
@@ -285,8 +287,8 @@ std::uint64_t unlike_integers(const IntegerBlock& b, const std::vector<std::uint
     ensure(integers.size() == std::size_t{4} * pixels, "four integers come back a pixel");
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
         const Vec4u<std::uint32_t> h = draws<std::uint32_t>(pixel, b.pair, b.block, b.seed);
-        const std::uint32_t* at = integers.data() + std::size_t{4} * pixel;
-        unlike += (at[0] != h.x) + (at[1] != h.y) + (at[2] != h.z) + (at[3] != h.w);
+        const std::uint32_t* components = integers.data() + std::size_t{4} * pixel;
+        unlike += (components[0] != h.x) + (components[1] != h.y) + (components[2] != h.z) + (components[3] != h.w);
     }
     return unlike;
 }

@@ -116,16 +116,16 @@ bool Context::software() const {
         name.find("swrast") != std::string::npos;
 }
 
-void Context::check(const char* after) const {
+void Context::check(const char* step) const {
     if (!is_current())
         throw OutputError(
-            fmt::format("the GL context was lost: after {} it is no longer current{}", after, log_.text()));
+            fmt::format("the GL context was lost: after {} it is no longer current{}", step, log_.text()));
     if (gl_.GetGraphicsResetStatus)
         if (const char* words = reset_words(gl_.GetGraphicsResetStatus()))
-            throw OutputError(fmt::format("the GL context was lost: after {}, {}{}", after, words, log_.text()));
+            throw OutputError(fmt::format("the GL context was lost: after {}, {}{}", step, words, log_.text()));
     if (const GLenum error = gl_.GetError(); error != GL_NO_ERROR)
         throw OutputError(
-            fmt::format("GL failed: {} after {} on {}{}", error_words(error), after, renderer(), log_.text()));
+            fmt::format("GL failed: {} after {} on {}{}", error_words(error), step, renderer(), log_.text()));
 }
 
 std::unique_ptr<Context> open_context(const BackendChoice& choice) {

@@ -100,7 +100,7 @@ public:
     double version_number() const;
     bool software() const;
     /// Throws OutputError if the context is lost or GL reports an error, with the driver's log.
-    void check(const char* after) const;
+    void check(const char* step) const;
     const DriverLog& log() const { return log_; }
 
 protected:

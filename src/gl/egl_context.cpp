@@ -51,10 +51,10 @@ struct Egl {
     std::vector<EGLDeviceEXT> all_devices() const {
         EGLint count = 0;
         if (!devices || !display || !devices(0, nullptr, &count) || count <= 0) return {};
-        std::vector<EGLDeviceEXT> all(static_cast<std::size_t>(count));
-        devices(count, all.data(), &count);
-        all.resize(static_cast<std::size_t>(count));
-        return all;
+        std::vector<EGLDeviceEXT> list(static_cast<std::size_t>(count));
+        devices(count, list.data(), &count);
+        list.resize(static_cast<std::size_t>(count));
+        return list;
     }
     bool is_software(EGLDeviceEXT device) const {
         const char* words = device_string ? device_string(device, EGL_EXTENSIONS) : nullptr;

@@ -16,10 +16,10 @@ namespace crescent::gl {
 
 Framebuffer::Framebuffer(const Context& context, int width, int height, std::size_t attachments, Texel texel)
     : context_(context), width_(width), height_(height), texel_(texel), textures_(attachments) {
-    GLint most = 0;
-    gl().GetIntegerv(GL_MAX_DRAW_BUFFERS, &most);
-    if (attachments > static_cast<std::size_t>(most))
-        throw OutputError(fmt::format("the GL driver draws to {} buffers at most; {} are needed", most, attachments));
+    GLint limit = 0;
+    gl().GetIntegerv(GL_MAX_DRAW_BUFFERS, &limit);
+    if (attachments > static_cast<std::size_t>(limit))
+        throw OutputError(fmt::format("the GL driver draws to {} buffers at most; {} are needed", limit, attachments));
     gl().GenFramebuffers(1, &framebuffer_);
     gl().GenTextures(static_cast<GLsizei>(attachments), textures_.data());
     gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
@@ -69,12 +69,12 @@ GLint Framebuffer::of_attachment(std::size_t k, GLenum what) const {
 }
 
 int Framebuffer::bits() const {
-    GLint least = 32;
+    GLint bit_count = 32;
     for (std::size_t k = 0; k < textures_.size(); ++k)
         for (const GLenum size : {GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, GL_FRAMEBUFFER_ATTACHMENT_GREEN_SIZE,
                  GL_FRAMEBUFFER_ATTACHMENT_BLUE_SIZE, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE})
-            least = std::min(least, of_attachment(k, size));
-    return least;
+            bit_count = std::min(bit_count, of_attachment(k, size));
+    return bit_count;
 }
 
 bool Framebuffer::srgb() const {
@@ -125,7 +125,7 @@ Pass::Pass(const Context& context, const PointTexture& shading_points, const Fra
       lights_(lights),
       monitor_(monitor),
       moments_(shading_points.groups().size()),
-      met_(framebuffer.attachments() - 2) {
+      light_sums_(framebuffer.attachments() - 2) {
     for (std::size_t g = 0; g < moments_.size(); ++g) {
         moments_[g].resize(shading_points.groups()[g]);
         means_.emplace_back(shading_points.groups()[g].count);
@@ -133,21 +133,21 @@ Pass::Pass(const Context& context, const PointTexture& shading_points, const Fra
 }
 
 void Pass::advance_to(std::uint64_t n) {
-    while (done_ < n) {
-        const int samples = samples_per_draw(n - done_);
+    while (sample_count_ < n) {
+        const int samples = samples_per_draw(n - sample_count_);
         take(samples);
-        done_ += static_cast<std::uint64_t>(samples);
+        sample_count_ += static_cast<std::uint64_t>(samples);
     }
 }
 
 /// As many as a draw over the fullest strip can take, in whole blocks of 16, which gives few large draws and readings.
-int Pass::samples_per_draw(std::uint64_t left) const {
+int Pass::samples_per_draw(std::uint64_t remainder) const {
     std::uint64_t fits = longest_sum;
     for (const LobePart& part : parts_) {
         const std::uint64_t fullest = *std::max_element(part.pixels.strips.begin(), part.pixels.strips.end());
         fits = std::min(fits, std::max<std::uint64_t>(part.pacer->budget() / fullest / 16 * 16, 16));
     }
-    return static_cast<int>(std::min(fits, left));
+    return static_cast<int>(std::min(fits, remainder));
 }
 
 void Pass::take(int samples) {
@@ -155,7 +155,7 @@ void Pass::take(int samples) {
         for (LobePart& part : parts_) {
             part.program->use();
             if (part.pacer->untried()) warm_up(part);
-            part.program->set("first_sample", static_cast<int>(done_));
+            part.program->set("first_sample", static_cast<int>(sample_count_));
             part.program->set("samples", samples);
             part.program->set("first_recorded", static_cast<int>(first));
             draw_part(part, samples);
@@ -199,31 +199,33 @@ void Pass::draw_strips(const LobePart& part, std::size_t from, std::size_t to) {
 
 /// Adds the results of the last draws of all parts.
 void Pass::gather(std::size_t first_light, int samples) {
-    const double before = static_cast<double>(done_), more = samples;
+    const double old_count = static_cast<double>(sample_count_), new_count = samples;
     if (first_light == 0) {
         framebuffer_.read(0, sums_);
         framebuffer_.read(1, counts_);
     }
-    for (std::size_t k = 0; k < met_.size(); ++k) framebuffer_.read(2 + k, met_[k]);
+    for (std::size_t k = 0; k < light_sums_.size(); ++k) framebuffer_.read(2 + k, light_sums_[k]);
     const std::size_t lights = std::min(lights_ - std::min(first_light, lights_), most_recorded);
     tbb::parallel_for(std::size_t{0}, moments_.size(), [&](std::size_t g) {
         const ShadingPoints& group = shading_points_.groups()[g];
         Moments& m = moments_[g];
         for (std::size_t i = 0; i < group.count; ++i) {
-            const std::size_t at = 4 * shading_points_.texel(group, i);
+            const std::size_t offset = 4 * shading_points_.texel(group, i);
             if (first_light == 0) {
-                m.g[i] += static_cast<double>(sums_[at]);
-                m.g_lobe[i] += static_cast<double>(sums_[at + 1]);
-                const double by = static_cast<double>(counts_[at + 3]) - means_[g][i];  // Chan, Golub & LeVeque 1983
-                m.spread[i] += static_cast<double>(sums_[at + 2]) + by * by * (before * more / (before + more));
-                means_[g][i] += by * (more / (before + more));
-                m.largest[i] = std::max(m.largest[i], sums_[at + 3]);
-                m.horizon[i] += static_cast<std::uint32_t>(counts_[at]);
-                m.hits[i] += static_cast<std::uint32_t>(counts_[at + 1]);
-                m.bad[i] += static_cast<std::uint32_t>(counts_[at + 2]);
+                m.g[i] += static_cast<double>(sums_[offset]);
+                m.g_lobe[i] += static_cast<double>(sums_[offset + 1]);
+                const double delta =
+                    static_cast<double>(counts_[offset + 3]) - means_[g][i];  // Chan, Golub & LeVeque 1983
+                m.spread[i] += static_cast<double>(sums_[offset + 2]) +
+                    delta * delta * (old_count * new_count / (old_count + new_count));
+                means_[g][i] += delta * (new_count / (old_count + new_count));
+                m.largest[i] = std::max(m.largest[i], sums_[offset + 3]);
+                m.horizon[i] += static_cast<std::uint32_t>(counts_[offset]);
+                m.hits[i] += static_cast<std::uint32_t>(counts_[offset + 1]);
+                m.bad[i] += static_cast<std::uint32_t>(counts_[offset + 2]);
             }
             for (std::size_t k = 0; k < lights; ++k) {
-                const float* pair = met_[k / 2].data() + at + 2 * (k % 2);
+                const float* pair = light_sums_[k / 2].data() + offset + 2 * (k % 2);
                 m.light_g[first_light + k][i] += static_cast<double>(pair[0]);
                 m.light_g_lobe[first_light + k][i] += static_cast<double>(pair[1]);
             }

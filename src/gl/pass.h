@@ -60,7 +60,7 @@ public:
     static constexpr double aim_s = 0.08;
 
     /// Returns the samples (pixels x samples per pixel) of the next draw.
-    std::uint64_t budget() const { return std::max<std::uint64_t>(budget_, least); }
+    std::uint64_t budget() const { return std::max<std::uint64_t>(budget_, smallest_budget); }
     /// Records the duration of a draw of `work` samples. The budget grows at most fourfold per draw and shrinks at
     /// once.
     void took(std::uint64_t work, double seconds) {
@@ -73,8 +73,8 @@ public:
     bool untried() const { return longest_ == 0; }
 
 private:
-    static constexpr std::uint64_t least = 16384;
-    std::uint64_t budget_ = least;
+    static constexpr std::uint64_t smallest_budget = 16384;
+    std::uint64_t budget_ = smallest_budget;
     double longest_ = 0;
 };
 
@@ -102,7 +102,7 @@ public:
 private:
     /// Returns how often each sample is drawn, so that every light has its sums.
     std::size_t passes() const { return lights_ == 0 ? 1 : (lights_ + most_recorded - 1) / most_recorded; }
-    int samples_per_draw(std::uint64_t left) const;
+    int samples_per_draw(std::uint64_t remainder) const;
     void take(int samples);
     void draw_part(LobePart& part, int samples);
     void draw_strips(const LobePart& part, std::size_t from, std::size_t to);
@@ -115,11 +115,11 @@ private:
     std::vector<LobePart> parts_;
     std::size_t lights_;
     ProgressMonitor& monitor_;
-    std::uint64_t done_ = 0;
+    std::uint64_t sample_count_ = 0;
     std::vector<Moments> moments_;            // one per group of shading points
     std::vector<std::vector<double>> means_;  // of X so far, like moments_
     std::vector<float> sums_, counts_;
-    std::vector<std::vector<float>> met_;
+    std::vector<std::vector<float>> light_sums_;
 };
 
 }  // namespace crescent::gl

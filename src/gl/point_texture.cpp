@@ -25,12 +25,12 @@ std::vector<TileBox> tiles_in(const TileBox& box) {
 PointTexture::PointTexture(const Context& context, const Scene& scene, const TileBox& box, ProgressMonitor& monitor)
     : context_(context), box_(box), image_width_(static_cast<std::size_t>(scene.image().width)) {
     const std::vector<TileBox> tiles = tiles_in(box);
-    std::vector<std::vector<ShadingPoints>> all(tiles.size());
+    std::vector<std::vector<ShadingPoints>> tile_groups(tiles.size());
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t k) {
-        if (!monitor.stop) all[k] = shading_points_of(scene, tiles[k], nullptr);
+        if (!monitor.stop) tile_groups[k] = shading_points_of(scene, tiles[k], nullptr);
     });
     monitor.check();
-    for (std::vector<ShadingPoints>& groups : all)
+    for (std::vector<ShadingPoints>& groups : tile_groups)
         for (ShadingPoints& group : groups) groups_.push_back(std::move(group));
 
     const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()),
@@ -46,10 +46,11 @@ PointTexture::PointTexture(const Context& context, const Scene& scene, const Til
 PointTexture::~PointTexture() { context_.gl().DeleteTextures(1, &texture_); }
 
 void PointTexture::fill_point(std::vector<float>& layers, const ShadingPoints& s, std::size_t i) const {
-    const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()), at = texel(s, i);
+    const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()),
+                      index = texel(s, i);
     std::size_t layer = 0;
     const auto put = [&](float x, float y, float z, float w) {
-        float* to = layers.data() + 4 * (layer++ * texels + at);
+        float* to = layers.data() + 4 * (layer++ * texels + index);
         to[0] = x;
         to[1] = y;
         to[2] = z;
@@ -107,14 +108,14 @@ std::vector<int> PointTexture::lobes() const {
 }
 
 LobePixels PointTexture::pixels_of(int lobe) const {
-    const std::size_t across = static_cast<std::size_t>(width());
+    const std::size_t columns = static_cast<std::size_t>(width());
     LobePixels out{
         std::vector<std::uint64_t>(static_cast<std::size_t>((height() + strip_rows - 1) / strip_rows)), width(), 0};
     for (const ShadingPoints& group : groups_) {
         for (std::size_t i = 0; group.lobe == lobe && i < group.count; ++i) {
-            const std::size_t at = texel(group, i);
-            const int x = static_cast<int>(at % across);
-            ++out.strips[at / across / strip_rows];
+            const std::size_t index = texel(group, i);
+            const int x = static_cast<int>(index % columns);
+            ++out.strips[index / columns / strip_rows];
             out.x0 = std::min(out.x0, x);
             out.x1 = std::max(out.x1, x + 1);
         }
@@ -128,12 +129,12 @@ LightCounts count_lights(const Scene& scene) {
 
 std::vector<TileBox> rectangles_of(int width, int height, const LightCounts& lights, int largest_texture) {
     const int texels = static_cast<int>((std::size_t{256} << 20) / (16 * point_layers(lights)));
-    const int across = std::min(width, largest_texture);
-    const int up = std::clamp(texels / across, 1, std::min(height, largest_texture));
+    const int columns = std::min(width, largest_texture);
+    const int rows = std::clamp(texels / columns, 1, std::min(height, largest_texture));
     std::vector<TileBox> out;
-    for (int y = 0; y < height; y += up)
-        for (int x = 0; x < width; x += across)
-            out.push_back({x, y, std::min(x + across, width), std::min(y + up, height)});
+    for (int y = 0; y < height; y += rows)
+        for (int x = 0; x < width; x += columns)
+            out.push_back({x, y, std::min(x + columns, width), std::min(y + rows, height)});
     return out;
 }
 

@@ -55,7 +55,7 @@ private:
 /// The numbers of lights of a scene: disks, and others, which follow them.
 struct LightCounts {
     std::size_t disks = 0, others = 0;
-    std::size_t all() const { return disks + others; }
+    std::size_t total() const { return disks + others; }
 };
 LightCounts count_lights(const Scene& scene);
 

@@ -29,16 +29,16 @@ void ShaderSource::add(const std::string& path, const std::string& text) {
     const std::size_t base = lines_per_file * paths_.size();
     paths_.push_back(path);
     std::istringstream lines(text);
-    std::string own;
+    std::string content;
     for (std::string line; std::getline(lines, line);) {
         constexpr std::string_view word = "#include \"";
         if (line.starts_with(word)) {
             include(line.substr(word.size(), line.rfind('"') - word.size()));
             line.clear();
         }
-        own += line + "\n";
+        content += line + "\n";
     }
-    body_ += "#line " + std::to_string(base + 1) + "\n" + own;
+    body_ += "#line " + std::to_string(base + 1) + "\n" + content;
 }
 
 std::string ShaderSource::key() const {
@@ -57,9 +57,9 @@ namespace {
 
 template <class Get> std::string log_of(GLint length, Get&& get) {
     std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-    GLsizei written = 0;
-    get(static_cast<GLsizei>(log.size()), &written, log.data());
-    log.resize(static_cast<std::size_t>(written));
+    GLsizei size = 0;
+    get(static_cast<GLsizei>(log.size()), &size, log.data());
+    log.resize(static_cast<std::size_t>(size));
     return log.empty() ? "the driver gives no reason" : log;
 }
 
@@ -75,7 +75,7 @@ GLuint Program::compile(GLenum stage, const std::string& text, const std::string
     if (compiled == GL_TRUE) return shader;
     gl().GetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
     const std::string log =
-        log_of(length, [&](GLsizei n, GLsizei* written, char* to) { gl().GetShaderInfoLog(shader, n, written, to); });
+        log_of(length, [&](GLsizei n, GLsizei* size, char* to) { gl().GetShaderInfoLog(shader, n, size, to); });
     gl().DeleteShader(shader);
     context_.check("compiling a shader");
     throw OutputError(fmt::format(
@@ -96,8 +96,8 @@ Program::Program(const Context& context, const ShaderSource& fragment) : context
     gl().GetProgramiv(program_, GL_LINK_STATUS, &linked);
     if (linked == GL_TRUE) return;
     gl().GetProgramiv(program_, GL_INFO_LOG_LENGTH, &length);
-    const std::string log = log_of(
-        length, [&](GLsizei n, GLsizei* written, char* to) { gl().GetProgramInfoLog(program_, n, written, to); });
+    const std::string log =
+        log_of(length, [&](GLsizei n, GLsizei* size, char* to) { gl().GetProgramInfoLog(program_, n, size, to); });
     gl().DeleteProgram(program_);
     throw OutputError(fmt::format(
         "a shader does not link on {} ({}):\n{}\n{}", context_.renderer(), context_.version(), log, fragment.key()));
@@ -107,11 +107,11 @@ Program::~Program() { gl().DeleteProgram(program_); }
 
 void Program::use() const { gl().UseProgram(program_); }
 
-void Program::set(const char* name, std::span<const std::array<float, 3>> all) const {
-    gl().Uniform3fv(at(name), static_cast<GLsizei>(all.size()), all.data()->data());
+void Program::set(const char* name, std::span<const std::array<float, 3>> values) const {
+    gl().Uniform3fv(location_of(name), static_cast<GLsizei>(values.size()), values.data()->data());
 }
-void Program::set(const char* name, std::span<const std::array<float, 4>> all) const {
-    gl().Uniform4fv(at(name), static_cast<GLsizei>(all.size()), all.data()->data());
+void Program::set(const char* name, std::span<const std::array<float, 4>> values) const {
+    gl().Uniform4fv(location_of(name), static_cast<GLsizei>(values.size()), values.data()->data());
 }
 
 }  // namespace crescent::gl

@@ -57,15 +57,15 @@ public:
 
     void use() const;
     // Uniforms of the program in use; names that the compiler found unused are ignored.
-    void set(const char* name, int value) const { gl().Uniform1i(at(name), value); }
-    void set(const char* name, std::uint32_t value) const { gl().Uniform1ui(at(name), value); }
-    void set(const char* name, int x, int y) const { gl().Uniform2i(at(name), x, y); }
-    void set(const char* name, std::span<const std::array<float, 3>> all) const;
-    void set(const char* name, std::span<const std::array<float, 4>> all) const;
+    void set(const char* name, int value) const { gl().Uniform1i(location_of(name), value); }
+    void set(const char* name, std::uint32_t value) const { gl().Uniform1ui(location_of(name), value); }
+    void set(const char* name, int x, int y) const { gl().Uniform2i(location_of(name), x, y); }
+    void set(const char* name, std::span<const std::array<float, 3>> values) const;
+    void set(const char* name, std::span<const std::array<float, 4>> values) const;
 
 private:
     const Functions& gl() const { return context_.gl(); }
-    GLint at(const char* name) const { return gl().GetUniformLocation(program_, name); }
+    GLint location_of(const char* name) const { return gl().GetUniformLocation(program_, name); }
     GLuint compile(GLenum stage, const std::string& text, const std::string& key) const;
 
     const Context& context_;

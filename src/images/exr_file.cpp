@@ -105,10 +105,10 @@ ExrPart part_of(const OpenFile& file, exr_const_context_t context, int index) {
 
 }  // namespace
 
-const ExrChannel* ExrPart::channel(const std::string& wanted) const {
-    const auto found =
-        std::find_if(channels.begin(), channels.end(), [&](const ExrChannel& c) { return c.name == wanted; });
-    return found == channels.end() ? nullptr : &*found;
+const ExrChannel* ExrPart::channel(const std::string& channel_name) const {
+    const auto match =
+        std::find_if(channels.begin(), channels.end(), [&](const ExrChannel& c) { return c.name == channel_name; });
+    return match == channels.end() ? nullptr : &*match;
 }
 
 ExrFile::ExrFile(const OpenFile& file) : file_(file) {
@@ -199,36 +199,36 @@ ExrChunks::ExrChunks(const OpenFile& file, exr_const_context_t context, const Ex
         h = static_cast<std::uint32_t>(std::max(0, rows));
     }
     const PixelWindow chunk{0, 0, std::int64_t{w} - 1, std::int64_t{h} - 1};
-    const bool side = !chunk.empty() && w <= most_pixels_a_side && h <= most_pixels_a_side;
-    if (!side || (part.tiled && chunk.pixels() > std::max(large_tile, 4 * part.data.pixels())))
+    const bool has_valid_size = !chunk.empty() && w <= most_pixels_a_side && h <= most_pixels_a_side;
+    if (!has_valid_size || (part.tiled && chunk.pixels() > std::max(large_tile, 4 * part.data.pixels())))
         file.fail(fmt::format("attribute 'tiles': expected tiles that fit {} x {} pixels, found {} x {}",
             part.data.width(), part.data.height(), w, h));
     width_ = w;
     height_ = h;
-    across_ = in_steps(part.data.width(), w);
-    count_ = across_ * in_steps(part.data.height(), h);
+    columns_ = in_steps(part.data.width(), w);
+    count_ = columns_ * in_steps(part.data.height(), h);
 }
 
 exr_chunk_info_t ExrChunks::info(std::int64_t chunk) const {
     exr_chunk_info_t out{};
     expect_success(file_,
-        part_.tiled ? exr_read_tile_chunk_info(context_, part_.index, static_cast<int>(chunk % across_),
-                          static_cast<int>(chunk / across_), 0, 0, &out)
+        part_.tiled ? exr_read_tile_chunk_info(context_, part_.index, static_cast<int>(chunk % columns_),
+                          static_cast<int>(chunk / columns_), 0, 0, &out)
                     : exr_read_scanline_chunk_info(
                           context_, part_.index, static_cast<int>(part_.data.y0 + chunk * height_), &out));
     return out;
 }
 
 PixelWindow ExrChunks::window(std::int64_t chunk) const {
-    const std::int64_t x = part_.data.x0 + chunk % across_ * width_, y = part_.data.y0 + chunk / across_ * height_;
+    const std::int64_t x = part_.data.x0 + chunk % columns_ * width_, y = part_.data.y0 + chunk / columns_ * height_;
     return intersection(part_.data, {x, y, x + width_ - 1, y + height_ - 1});
 }
 
 std::size_t ExrChunks::samples(int sampling, std::int64_t first, std::int64_t pixels) {
-    const auto below = [&](std::int64_t x) {
+    const auto samples_below = [&](std::int64_t x) {
         return static_cast<std::int64_t>(std::ceil(static_cast<double>(x) / sampling));
     };
-    return static_cast<std::size_t>(below(first + pixels) - below(first));
+    return static_cast<std::size_t>(samples_below(first + pixels) - samples_below(first));
 }
 
 std::uint64_t ExrChunks::unpacked_size(const PixelWindow& w) const {
@@ -246,14 +246,15 @@ void ExrChunks::check() const {
         const PixelWindow w = window(k);
         const std::uint64_t unpacked = unpacked_size(w);
         packed += chunk.packed_size;
-        const bool flat = part_.compression == EXR_COMPRESSION_NONE;
-        if (flat ? chunk.packed_size != unpacked
-                 : static_cast<double>(chunk.packed_size) * largest_ratio < static_cast<double>(unpacked))
+        const bool is_uncompressed = part_.compression == EXR_COMPRESSION_NONE;
+        if (is_uncompressed ? chunk.packed_size != unpacked
+                            : static_cast<double>(chunk.packed_size) * largest_ratio < static_cast<double>(unpacked))
             file_.fail(fmt::format(
                 "block {} of {} at byte {}: expected {}{} bytes for {} x {} pixels of {} channels, "
                 "found {}",
-                k + 1, count_, chunk.data_offset, flat ? "" : "at least ",
-                flat ? unpacked : static_cast<std::uint64_t>(std::ceil(static_cast<double>(unpacked) / largest_ratio)),
+                k + 1, count_, chunk.data_offset, is_uncompressed ? "" : "at least ",
+                is_uncompressed ? unpacked
+                                : static_cast<std::uint64_t>(std::ceil(static_cast<double>(unpacked) / largest_ratio)),
                 w.width(), w.height(), part_.channels.size(), chunk.packed_size));
     }
     if (packed > file_.size())

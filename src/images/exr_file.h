@@ -41,7 +41,7 @@ struct ExrPart {
     std::vector<ExrAttribute> attributes;
     std::optional<Chromaticities> primaries;
 
-    const ExrChannel* channel(const std::string& wanted) const;
+    const ExrChannel* channel(const std::string& channel_name) const;
 };
 
 class ExrFile {
@@ -105,7 +105,7 @@ private:
     exr_const_context_t context_;
     const ExrPart& part_;
     std::int64_t width_ = 0, height_ = 0;  // of a chunk that the data window does not cut off
-    std::int64_t across_ = 1, count_ = 0;
+    std::int64_t columns_ = 1, count_ = 0;
 };
 
 }  // namespace crescent

@@ -21,30 +21,31 @@ std::string colour_of(const std::string& word) {
     std::erase_if(name, [](char c) { return c == '[' || c == ']' || c == '(' || c == ')' || c == ' '; });
     static const std::map<std::string, std::string> words = {{"r", "r"}, {"red", "r"}, {"g", "g"}, {"green", "g"},
         {"b", "b"}, {"blue", "b"}, {"y", "y"}, {"ry", "ry"}, {"by", "by"}, {"x", "x"}, {"z", "z"}};
-    const auto found = words.find(name);
-    return found == words.end() ? "" : found->second;
+    const auto entry = words.find(name);
+    return entry == words.end() ? "" : entry->second;
 }
 
 /// "Combined.R" -> Combined, r; a name that is not a colour is kept in lower case.
 std::pair<std::string, std::string> layer_and_colour(const std::string& channel) {
-    std::size_t cut = channel.find_last_of("./:");
+    std::size_t separator = channel.find_last_of("./:");
     if (const std::size_t line = channel.rfind('_');
-        cut == std::string::npos && line != std::string::npos && !colour_of(channel.substr(line + 1)).empty())
-        cut = line;
-    const std::string word = cut == std::string::npos ? channel : channel.substr(cut + 1), colour = colour_of(word);
-    return {cut == std::string::npos ? "" : channel.substr(0, cut), colour.empty() ? lower(word) : colour};
+        separator == std::string::npos && line != std::string::npos && !colour_of(channel.substr(line + 1)).empty())
+        separator = line;
+    const std::string word = separator == std::string::npos ? channel : channel.substr(separator + 1),
+                      colour = colour_of(word);
+    return {separator == std::string::npos ? "" : channel.substr(0, separator), colour.empty() ? lower(word) : colour};
 }
 
 /// Returns two channels of the layer's part for the same colour, if the layer uses one without OpenEXR's own name.
 std::pair<std::string, std::string> doubled(const ExrPart& part, const ExrLayer& layer) {
-    for (const std::string& taken : layer.channels) {
-        const auto [prefix, colour] = layer_and_colour(taken);
+    for (const std::string& name : layer.channels) {
+        const auto [prefix, colour] = layer_and_colour(name);
         std::string upper = colour;
         for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-        if (taken.ends_with(upper)) continue;
+        if (name.ends_with(upper)) continue;
         for (const ExrChannel& other : part.channels)
-            if (other.name != taken && layer_and_colour(other.name) == std::pair{prefix, colour})
-                return {taken, other.name};
+            if (other.name != name && layer_and_colour(other.name) == std::pair{prefix, colour})
+                return {name, other.name};
     }
     return {};
 }
@@ -75,24 +76,24 @@ bool is_xyz_colour(const std::string& layer) {
     return is_usual(layer) || name == "xyz" || name == "ciexyz" || name == "cie_xyz";
 }
 
-void add_layers(std::vector<ExrLayer>& out, const ExrPart& part, bool alone) {
-    const std::string part_name = alone ? "" : part.name;
+void add_layers(std::vector<ExrLayer>& out, const ExrPart& part, bool is_only_part) {
+    const std::string part_name = is_only_part ? "" : part.name;
     for (const auto& [prefix, colours] : exr_channels(part)) {
         ExrLayer layer{Kind::rgb, part.index, joined(part_name, prefix), joined(part.name, prefix), prefix, {}, true};
-        const auto every = [&](std::initializer_list<const char*> names) {
+        const auto find_channels = [&](std::initializer_list<const char*> names) {
             std::vector<std::string> channels;
             for (const char* name : names)
-                if (const auto found = colours.find(name); found != colours.end()) channels.push_back(found->second);
+                if (const auto entry = colours.find(name); entry != colours.end()) channels.push_back(entry->second);
             return channels.size() == names.size() ? channels : std::vector<std::string>{};
         };
         layer.radiance = !is_data(prefix) && !(prefix.empty() && is_data(part_name));
-        if (layer.channels = every({"r", "g", "b"}); !layer.channels.empty()) {
-        } else if (layer.channels = every({"x", "y", "z"}); !layer.channels.empty()) {
+        if (layer.channels = find_channels({"r", "g", "b"}); !layer.channels.empty()) {
+        } else if (layer.channels = find_channels({"x", "y", "z"}); !layer.channels.empty()) {
             layer.kind = Kind::xyz;
             layer.radiance = layer.radiance && is_xyz_colour(layer.name);
-        } else if (layer.channels = every({"y", "ry", "by"}); !layer.channels.empty()) {
+        } else if (layer.channels = find_channels({"y", "ry", "by"}); !layer.channels.empty()) {
             layer.kind = Kind::luminance_chroma;
-        } else if (layer.channels = every({"y"}); !layer.channels.empty()) {
+        } else if (layer.channels = find_channels({"y"}); !layer.channels.empty()) {
             layer.kind = Kind::grey;
             const bool vector = colours.contains("x") || (colours.contains("z") && !is_usual(layer.name));
             layer.radiance = layer.radiance && !vector && !colours.contains("ry") && !colours.contains("by") &&
@@ -166,7 +167,7 @@ std::map<std::string, ColourChannels> exr_channels(const ExrPart& part) {
     return out;
 }
 
-ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::string& wanted) {
+ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::string& name) {
     const std::vector<ExrLayer> layers = layers_of(file);
     const bool is_deep = std::ranges::any_of(file.parts(), &ExrPart::deep);
     const auto fail = [&](const std::string& why) {
@@ -178,20 +179,20 @@ ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::s
         if (!one.empty()) fail(fmt::format("'{}' and '{}' are the same colour of one layer", one, other));
         return layer;
     };
-    if (wanted.empty()) {
-        if (const ExrLayer* found = beauty(layers)) return take(*found);
+    if (name.empty()) {
+        if (const ExrLayer* layer = beauty(layers)) return take(*layer);
         if (names_of(layers).empty())
             fail("expected channels R, G and B, or Y, or X, Y and Z, found none that hold radiance");
         fail("several layers contain radiance: choose one with --layer: " + names_of(layers));
     }
-    std::vector<const ExrLayer*> found;
+    std::vector<const ExrLayer*> matches;
     for (const ExrLayer& layer : layers)
-        if (layer.name == wanted || layer.alone == wanted) found.push_back(&layer);
-    if (found.size() == 1) return take(*found[0]);
-    if (found.size() > 1) fail(fmt::format("{} layers are called '{}'", found.size(), wanted));
+        if (layer.name == name || layer.full_name == name) matches.push_back(&layer);
+    if (matches.size() == 1) return take(*matches[0]);
+    if (matches.size() > 1) fail(fmt::format("{} layers are called '{}'", matches.size(), name));
     std::vector<std::string> names;
     for (const ExrLayer& layer : layers) names.push_back(layer.name);
-    fail(fmt::format("no layer '{}': expected one of {}{}", wanted, names_of(layers), did_you_mean(wanted, names)));
+    fail(fmt::format("no layer '{}': expected one of {}{}", name, names_of(layers), did_you_mean(name, names)));
     return {};
 }
 
@@ -199,7 +200,7 @@ ExrLayer layer_of_channel(const ExrFile& file, const std::string& path, const st
     std::vector<std::string> names;
     for (const ExrPart& part : file.parts()) {
         if (part.deep) continue;
-        for (const ExrChannel& each : part.channels) names.push_back(each.name);
+        for (const ExrChannel& entry : part.channels) names.push_back(entry.name);
         if (part.channel(channel)) return {ExrLayer::Kind::grey, part.index, channel, channel, "", {channel}, true};
     }
     throw InputError({path, 0, 0},
@@ -211,10 +212,10 @@ std::string layers_found(const ExrFile& file) { return names_of(layers_of(file))
 
 std::string alpha_of(const ExrPart& part, const ExrLayer& layer) {
     const auto channels = exr_channels(part);
-    const auto found = channels.find(layer.prefix);
-    if (found == channels.end()) return "";
+    const auto entry = channels.find(layer.prefix);
+    if (entry == channels.end()) return "";
     for (const char* name : {"a", "A", "alpha", "Alpha"})
-        if (const auto alpha = found->second.find(name); alpha != found->second.end()) return alpha->second;
+        if (const auto alpha = entry->second.find(name); alpha != entry->second.end()) return alpha->second;
     return "";
 }
 

@@ -24,7 +24,7 @@ struct ExrLayer {
     enum class Kind { rgb, grey, xyz, luminance_chroma } kind = Kind::rgb;
     int part = 0;
     std::string name;                   // "part/layer", as a user names it
-    std::string alone;                  // the same for a file with one part, which may be omitted
+    std::string full_name;              // the same for a file with one part, which may be omitted
     std::string prefix;                 // the layer in its part
     std::vector<std::string> channels;  // R, G, B; Y; X, Y, Z; Y, RY, BY
     bool radiance = true;               // false: read only if it is named
@@ -32,7 +32,7 @@ struct ExrLayer {
 
 /// Returns the requested layer ("": the beauty). Throws LayerError, with the channels found, if there is none or it is
 /// ambiguous.
-ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::string& wanted);
+ExrLayer chosen_layer(const ExrFile& file, const std::string& path, const std::string& name);
 /// Returns one channel, by its whole name in the file, as a grey layer. Throws InputError with the channels found.
 ExrLayer layer_of_channel(const ExrFile& file, const std::string& path, const std::string& channel);
 /// Returns the names of the layers of radiance, quoted: "'sky', 'sun'".

@@ -26,16 +26,16 @@ class FileStream : public Imf::IStream {
 public:
     explicit FileStream(const OpenFile& file) : Imf::IStream(file.path().c_str()), file_(file) {}
     bool read(char to[], int n) override {
-        file_.read(at_, {to, static_cast<std::size_t>(std::max(0, n))});
-        at_ += static_cast<std::uint64_t>(n);
-        return at_ < file_.size();
+        file_.read(position_, {to, static_cast<std::size_t>(std::max(0, n))});
+        position_ += static_cast<std::uint64_t>(n);
+        return position_ < file_.size();
     }
-    std::uint64_t tellg() override { return at_; }
-    void seekg(std::uint64_t to) override { at_ = to; }
+    std::uint64_t tellg() override { return position_; }
+    void seekg(std::uint64_t to) override { position_ = to; }
 
 private:
     const OpenFile& file_;
-    std::uint64_t at_ = 0;
+    std::uint64_t position_ = 0;
 };
 
 /// Reads a little-endian number.

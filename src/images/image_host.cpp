@@ -72,17 +72,17 @@ struct ImageStream {
     static int read(void* user, char* to, int size) {
         ImageStream& in = *static_cast<ImageStream*>(user);
         if (!in.buffer) in.buffer = to;
-        int done = 0;
-        while (done < size) {
+        int count = 0;
+        while (count < size) {
             const ssize_t n =
-                ::pread(image_descriptor, to + done, static_cast<std::size_t>(size - done), in.next + done);
+                ::pread(image_descriptor, to + count, static_cast<std::size_t>(size - count), in.next + count);
             if (n < 0 && errno == EINTR) continue;
             if (n <= 0) break;
-            done += static_cast<int>(n);
+            count += static_cast<int>(n);
         }
-        in.next += done;
-        if (in.is_whole && (done == 0 || (done < size && to != in.buffer))) refuse("the file is cut off");
-        return done;
+        in.next += count;
+        if (in.is_whole && (count == 0 || (count < size && to != in.buffer))) refuse("the file is cut off");
+        return count;
     }
     static void skip(void* user, int count) { static_cast<ImageStream*>(user)->next += count; }
     static int at_end(void* user) {

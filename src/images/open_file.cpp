@@ -27,10 +27,10 @@ TextHeader::TextHeader(const OpenFile& file) : file_(file), text_(longest_header
 
 std::string_view TextHeader::line() {
     ++line_;
-    const std::size_t end = text_.find('\n', at_);
-    if (end == std::string::npos || end - at_ > longest_line) fail("expected a line of the header, found none");
-    const std::string_view out = std::string_view(text_).substr(at_, end - at_);
-    at_ = end + 1;
+    const std::size_t end = text_.find('\n', position_);
+    if (end == std::string::npos || end - position_ > longest_line) fail("expected a line of the header, found none");
+    const std::string_view out = std::string_view(text_).substr(position_, end - position_);
+    position_ = end + 1;
     return out;
 }
 
@@ -78,8 +78,8 @@ FileState state_of(const struct stat& s) {
 
 OpenFile::OpenFile(const std::string& path) : path_(path) {
     struct stat s{};
-    const auto check = [&](int failed) {
-        if (failed) fail(std::string("expected a render that can be read: ") + std::strerror(errno));
+    const auto check = [&](int result) {
+        if (result) fail(std::string("expected a render that can be read: ") + std::strerror(errno));
         if (!S_ISREG(s.st_mode)) fail(std::string("expected a render, found ") + kind_of(s.st_mode));
     };
     check(::stat(path.c_str(), &s));  // before open(), which would wait for a pipe and may start a device
@@ -99,15 +99,15 @@ OpenFile::~OpenFile() { ::close(file_); }
 void OpenFile::fail(const std::string& message) const { throw InputError({path_, 0, 0}, message); }
 
 std::size_t OpenFile::read_some(std::uint64_t from, std::span<char> to) const {
-    std::size_t done = 0;
-    while (done < to.size()) {
-        const ssize_t n = ::pread(file_, to.data() + done, to.size() - done, static_cast<off_t>(from + done));
+    std::size_t count = 0;
+    while (count < to.size()) {
+        const ssize_t n = ::pread(file_, to.data() + count, to.size() - count, static_cast<off_t>(from + count));
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) fail(std::string("expected a render that can be read: ") + std::strerror(errno));
         if (n == 0) break;
-        done += static_cast<std::size_t>(n);
+        count += static_cast<std::size_t>(n);
     }
-    return done;
+    return count;
 }
 
 void OpenFile::read(std::uint64_t from, std::span<char> to) const {

@@ -84,14 +84,14 @@ public:
     /// Throws InputError with the number of the line that line() returned last.
     [[noreturn]] void fail(const std::string& message) const;
     /// Returns the first byte after that line.
-    std::size_t end() const { return at_; }
+    std::size_t end() const { return position_; }
     /// Throws InputError if these are not valid sides of an image.
     void check_size(long long width, long long height) const;
 
 private:
     const OpenFile& file_;
     std::string text_;  // the longest possible header
-    std::size_t at_ = 0;
+    std::size_t position_ = 0;
     unsigned line_ = 0;
 };
 

@@ -29,11 +29,11 @@ public:
               .shared = file.descriptor()}) {}
 
     void read(void* to, std::size_t bytes) {
-        for (std::size_t done = 0; done < bytes;) {
+        for (std::size_t count = 0; count < bytes;) {
             constexpr int patience = 200;  // milliseconds between two looks at the process
             process_.wait_ready(false, true, patience);
-            const ssize_t n = process_.read(static_cast<char*>(to) + done, bytes - done);
-            if (n > 0) done += static_cast<std::size_t>(n);
+            const ssize_t n = process_.read(static_cast<char*>(to) + count, bytes - count);
+            if (n > 0) count += static_cast<std::size_t>(n);
             else if (n == 0) refuse();
         }
     }
@@ -64,11 +64,11 @@ StoredImage decoded(const OpenFile& file) {
         host.read(message.data(), message.size());
         file.fail("expected a picture that can be read: " + printable(message));
     }
-    const bool valid = head.width >= 1 && head.width <= most_pixels_a_side && head.height >= 1 &&
+    const bool has_valid_head = head.width >= 1 && head.width <= most_pixels_a_side && head.height >= 1 &&
         head.height <= most_pixels_a_side && head.channels >= 1 && head.channels <= 4 &&
         (head.bytes == 1 || head.bytes == 2 || head.bytes == 4);
     const std::uint64_t bytes = std::uint64_t{head.width} * head.height * head.channels * head.bytes;
-    if (!valid || bytes > image_host_memory)
+    if (!has_valid_head || bytes > image_host_memory)
         file.fail(fmt::format("expected a picture of 1 to {} pixels a side", most_pixels_a_side));
     out.samples.resize(bytes);
     host.read(out.samples.data(), out.samples.size());
@@ -84,9 +84,9 @@ template <std::size_t n>
 std::array<double, n> numbers_of(const TextHeader& in, std::string_view text, const char* what) {
     std::array<double, n> out{};
     const std::vector<std::string_view> words = split_words(text);
-    bool good = words.size() == n;
-    for (std::size_t i = 0; good && i < n; ++i) good = parse_number(words[i], out[i]) && std::isfinite(out[i]);
-    if (!good) in.fail(fmt::format("expected {}", what));
+    bool is_good = words.size() == n;
+    for (std::size_t i = 0; is_good && i < n; ++i) is_good = parse_number(words[i], out[i]) && std::isfinite(out[i]);
+    if (!is_good) in.fail(fmt::format("expected {}", what));
     return out;
 }
 
@@ -124,9 +124,9 @@ HdrHeader hdr_header(const OpenFile& file, const ArePrimaries& are_primaries) {
     for (std::string_view line = in.line(); !split_words(line).empty(); line = in.line())
         read_variable(in, line, are_primaries, out);
     const std::vector<std::string_view> size = split_words(in.line());
-    const bool understood = size.size() == 4 && size[0] == "-Y" && size[2] == "+X" &&
+    const bool is_understood = size.size() == 4 && size[0] == "-Y" && size[2] == "+X" &&
         parse_number(size[1], out.height) && parse_number(size[3], out.width);
-    if (!understood) in.fail("expected a resolution with rows from the top, such as '-Y 540 +X 960'");
+    if (!is_understood) in.fail("expected a resolution with rows from the top, such as '-Y 540 +X 960'");
     in.check_size(out.width, out.height);
     for (const double unit : out.unit)
         if (!(unit > 0 && std::isfinite(unit))) in.fail("expected an EXPOSURE and a COLORCORR that a float can hold");

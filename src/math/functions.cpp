@@ -93,13 +93,13 @@ struct Reduced {
 
 Reduced reduce(double x) {
     if (std::fabs(x) <= 0.785) return {0, {x, 0}};
-    const double shifted = x * (1 / half_pi.hi) + round_magic, n = shifted - round_magic;
-    const auto quarter = static_cast<unsigned>(std::bit_cast<std::uint64_t>(shifted) & 3u);
+    const double magic_sum = x * (1 / half_pi.hi) + round_magic, n = magic_sum - round_magic;
+    const auto quarter = static_cast<unsigned>(std::bit_cast<std::uint64_t>(magic_sum) & 3u);
     if (std::fabs(x) < 0x1p20) {
         const double a = x - n * upper, b = n * middle, r = a - b;  // the products are exact, and a is
         if (std::fabs(r) > 0x1p-10) {
-            const double rest = ((a - r) - b) - n * lower;
-            return {quarter, ordered_sum(r, rest)};
+            const double remainder = ((a - r) - b) - n * lower;
+            return {quarter, ordered_sum(r, remainder)};
         }
     }
     const Two p = product(n, half_pi.hi), q = product(n, half_pi.lo);  // much cancels, or x is large
@@ -110,25 +110,25 @@ Reduced reduce(double x) {
 double sin_series(Two r) {
     if (r.hi == 0) return r.hi;  // keeps -0
     const double z = r.hi * r.hi, w = z * z;
-    const double even = -1.0 / 6 + w * (-1.0 / 5040 + w * (-1.0 / 39916800 + w * (-1.0 / 1307674368000)));
-    const double odd = 1.0 / 120 + w * (1.0 / 362880 + w * (1.0 / 6227020800 + w * (1.0 / 355687428096000)));
-    return r.hi + (r.lo * (1 - 0.5 * z) + r.hi * z * (even + z * odd));
+    const double even_terms = -1.0 / 6 + w * (-1.0 / 5040 + w * (-1.0 / 39916800 + w * (-1.0 / 1307674368000)));
+    const double odd_terms = 1.0 / 120 + w * (1.0 / 362880 + w * (1.0 / 6227020800 + w * (1.0 / 355687428096000)));
+    return r.hi + (r.lo * (1 - 0.5 * z) + r.hi * z * (even_terms + z * odd_terms));
 }
 
 /// cos r for |r| <= pi/4.
 double cos_series(Two r) {
     const double z = r.hi * r.hi, w = z * z, half = 0.5 * z, top = 1 - half;
-    const double even = 1.0 / 24 + w * (1.0 / 40320 + w * (1.0 / 479001600 + w * (1.0 / 20922789888000)));
-    const double odd = -1.0 / 720 + w * (-1.0 / 3628800 + w * (-1.0 / 87178291200));
-    return top + (((1 - top) - half) + (w * (even + z * odd) - r.hi * r.lo));
+    const double even_terms = 1.0 / 24 + w * (1.0 / 40320 + w * (1.0 / 479001600 + w * (1.0 / 20922789888000)));
+    const double odd_terms = -1.0 / 720 + w * (-1.0 / 3628800 + w * (-1.0 / 87178291200));
+    return top + (((1 - top) - half) + (w * (even_terms + z * odd_terms) - r.hi * r.lo));
 }
 
 /// atan(j/16), Euler's series: sum of 2^2n n!^2/(2n+1)! c^(2n+1)/(1+c^2)^(n+1).
 constexpr auto angles = [] {
     std::array<Two, 17> table{};
     for (int j = 1; j <= 16; ++j) {
-        const Two c = {j / 16.0, 0}, c2 = c * c, over = c2 + 1.0, ratio = c2 / over;
-        Two term = c / over, sum = term;
+        const Two c = {j / 16.0, 0}, c2 = c * c, denominator = c2 + 1.0, ratio = c2 / denominator;
+        Two term = c / denominator, sum = term;
         for (int n = 1; n < 110; ++n) {
             term = term * ratio * (2.0 * n) / Two{2.0 * n + 1, 0};
             sum = sum + term;
@@ -149,17 +149,17 @@ double first_octant(double y, double x) {
     const double high = upper_part(x);
     const double t = c == 0 ? ratio : ((y - c * high) - c * (x - high)) / (x + c * y);
     const double z = t * t, w = z * z;
-    const double even = -1.0 / 3 + w * (-1.0 / 7 + w * (-1.0 / 11 + w * (-1.0 / 15)));
-    const double odd = 1.0 / 5 + w * (1.0 / 9 + w * (1.0 / 13));
+    const double even_terms = -1.0 / 3 + w * (-1.0 / 7 + w * (-1.0 / 11 + w * (-1.0 / 15)));
+    const double odd_terms = 1.0 / 5 + w * (1.0 / 9 + w * (1.0 / 13));
     const Two at_c = angles[static_cast<std::size_t>(static_cast<int>(16 * c))];
-    return at_c.hi + (t + (at_c.lo + t * z * (even + z * odd)));
+    return at_c.hi + (t + (at_c.lo + t * z * (even_terms + z * odd_terms)));
 }
 
 /// The angle of (x, y) from the x axis, y >= 0: [0, pi].
 double angle(double y, double x) {
-    const double ahead = std::fabs(x);
-    const bool steep = y > ahead;
-    const double in_octant = first_octant(steep ? ahead : y, steep ? y : ahead);
+    const double ax = std::fabs(x);
+    const bool steep = y > ax;
+    const double in_octant = first_octant(steep ? ax : y, steep ? y : ax);
     const double a = steep ? half_pi.hi - (in_octant - half_pi.lo) : in_octant;
     return x < 0 ? pi.hi - (a - pi.lo) : a;
 }
@@ -187,33 +187,33 @@ double scale_of(double v) {
 
 SinCos sincos(double x) {
     if (!(std::fabs(x) < 0x1p50)) return {none, none};
-    const Reduced reduced = reduce(x);
-    const double s = sin_series(reduced.r), c = cos_series(reduced.r);
+    const Reduced reduction = reduce(x);
+    const double s = sin_series(reduction.r), c = cos_series(reduction.r);
     // (s, c), (c, -s), (-s, -c), (-c, s) for n = 0 to 3, without a branch: n is random in most uses.
-    const auto n = static_cast<std::uint64_t>(reduced.n), exchanged = -(n & 1);
+    const auto n = static_cast<std::uint64_t>(reduction.n), exchanged = -(n & 1);
     const auto bits_s = std::bit_cast<std::uint64_t>(s), bits_c = std::bit_cast<std::uint64_t>(c);
-    const std::uint64_t both = (bits_s ^ bits_c) & exchanged;
-    return {std::bit_cast<double>(bits_s ^ both ^ (n >> 1) << 63),
-        std::bit_cast<double>(bits_c ^ both ^ ((n ^ n >> 1) & 1) << 63)};
+    const std::uint64_t swap_bits = (bits_s ^ bits_c) & exchanged;
+    return {std::bit_cast<double>(bits_s ^ swap_bits ^ (n >> 1) << 63),
+        std::bit_cast<double>(bits_c ^ swap_bits ^ ((n ^ n >> 1) & 1) << 63)};
 }
 
 double sin(double x) {
     if (!(std::fabs(x) < 0x1p50)) return none;
-    const Reduced reduced = reduce(x);
-    const double v = reduced.n & 1 ? cos_series(reduced.r) : sin_series(reduced.r);
-    return reduced.n & 2 ? -v : v;
+    const Reduced reduction = reduce(x);
+    const double v = reduction.n & 1 ? cos_series(reduction.r) : sin_series(reduction.r);
+    return reduction.n & 2 ? -v : v;
 }
 
 double cos(double x) {
     if (!(std::fabs(x) < 0x1p50)) return none;
-    const Reduced reduced = reduce(x);
-    const double v = reduced.n & 1 ? sin_series(reduced.r) : cos_series(reduced.r);
-    return (reduced.n + 1) & 2 ? -v : v;
+    const Reduced reduction = reduce(x);
+    const double v = reduction.n & 1 ? sin_series(reduction.r) : cos_series(reduction.r);
+    return (reduction.n + 1) & 2 ? -v : v;
 }
 
 double tan(double x) {
-    const SinCos both = sincos(x);
-    return both.sin / both.cos;
+    const SinCos values = sincos(x);
+    return values.sin / values.cos;
 }
 
 double asin(double x) {
@@ -230,9 +230,9 @@ double atan2(double y, double x) {
     double ax = std::fabs(x);
     if (ay == 0 || ax == infinity || ay == infinity || ax == 0) {  // on an axis, up to rounding
         const bool corner = ax == infinity && ay == infinity, along_x = ay == 0 || (ax == infinity && !corner);
-        const double lies = corner ? 0.25 * pi.hi : along_x ? 0 : half_pi.hi;
-        const double behind = corner ? 0.75 * pi.hi : pi.hi - lies;
-        return std::copysign(std::signbit(x) ? behind : lies, y);
+        const double front_angle = corner ? 0.25 * pi.hi : along_x ? 0 : half_pi.hi;
+        const double back_angle = corner ? 0.75 * pi.hi : pi.hi - front_angle;
+        return std::copysign(std::signbit(x) ? back_angle : front_angle, y);
     }
     const double larger = ax > ay ? ax : ay, scale = scale_of(larger);
     const double sy = ay * scale;
@@ -312,24 +312,24 @@ struct Exponential {
     Two root;
     double p;
     /// Scales in two steps if 2^exponent alone is outside the range of double.
-    double scaled(double value) const {
+    double scale(double value) const {
         if (exponent > -1022 && exponent < 1024) return value * power_of_2(exponent);
         const std::int64_t half = exponent / 2;
         return value * power_of_2(half) * power_of_2(exponent - half);
     }
-    double value() const { return scaled(root.hi + (root.lo + root.hi * p)); }
+    double value() const { return scale(root.hi + (root.lo + root.hi * p)); }
 };
 
 /// k in 1/32 of a power of 2, r the remainder.
 Exponential exponential(double k, double r) {
-    const auto whole = static_cast<std::int64_t>(k);
-    return {whole >> 5, roots[static_cast<std::size_t>(whole & (steps - 1))], growth(r)};
+    const auto integer = static_cast<std::int64_t>(k);
+    return {integer >> 5, roots[static_cast<std::size_t>(integer & (steps - 1))], growth(r)};
 }
 
-/// e^(x + rest) for |x| < 750.
-Exponential exponential_of(double x, double rest) {
+/// e^(x + remainder) for |x| < 750.
+Exponential exponential_of(double x, double remainder) {
     const double k = (x * (steps / ln2.hi) + whole_magic) - whole_magic;
-    return exponential(k, ((x - k * (ln2_upper / steps)) - k * (ln2_lower / steps)) + rest);
+    return exponential(k, ((x - k * (ln2_upper / steps)) - k * (ln2_lower / steps)) + remainder);
 }
 
 double exp(Two x) {
@@ -343,19 +343,19 @@ template <int bits = 27> double upper_part(double a) {
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) & (~std::uint64_t{0} << bits));
 }
 
-/// s = (m - c + rest)/(m + c + rest), to twice the bits of a double: a rounded quotient and its remainder, in products
-/// short enough to be exact.
-template <bool with_rest> Two quotient(double m, double c, double rest) {
+/// s = (m - c + remainder)/(m + c + remainder), to twice the bits of a double: a rounded quotient and what remains, in
+/// products short enough to be exact.
+template <bool with_remainder> Two quotient(double m, double c, double remainder) {
     const double d = m - c, high = upper_part(m) + c;
     double low = m - upper_part(m), small = 0;
-    Two over = {d, 0};
-    if constexpr (with_rest) {
-        over = sum(d, rest);
-        low += rest;
-        small = over.lo;
+    Two numerator = {d, 0};
+    if constexpr (with_remainder) {
+        numerator = sum(d, remainder);
+        low += remainder;
+        small = numerator.lo;
     }
-    const double inverse = 1 / (high + low), s = upper_part<29>(over.hi * inverse);
-    return {s, (((over.hi - s * high) - s * low) + small) * inverse};
+    const double inverse = 1 / (high + low), s = upper_part<29>(numerator.hi * inverse);
+    return {s, (((numerator.hi - s * high) - s * low) + small) * inverse};
 }
 
 /// x = 2^e m, c the multiple of 1/32 next to m, logs[row] its logarithm.
@@ -385,17 +385,17 @@ double tail_of(double s) {
     return s * z * ((2.0 / 3 + z * (2.0 / 5)) + z * z * ((2.0 / 7 + z * (2.0 / 9)) + z * z * (2.0 / 11)));
 }
 
-/// ln(x + rest) for x > 0 and |rest| <= ulp(x)/2, to some 2^-66 of itself.
-template <bool with_rest> Two logarithm(double x, double rest = 0) {
+/// ln(x + remainder) for x > 0 and |remainder| <= ulp(x)/2, to some 2^-66 of itself.
+template <bool with_remainder> Two logarithm(double x, double remainder = 0) {
     const Parts parts = parts_of(x);
-    if constexpr (with_rest) {
+    if constexpr (with_remainder) {
         const std::int64_t half = -parts.exponent / 2;
-        rest = rest * power_of_2(half) * power_of_2(-parts.exponent - half);
+        remainder = remainder * power_of_2(half) * power_of_2(-parts.exponent - half);
     }
-    const Two log_c = logs[parts.row], s = quotient<with_rest>(parts.m, parts.c, rest);
-    const Two whole = ordered_sum(parts.e * ln2_upper, log_c.hi), total = ordered_sum(whole.hi, 2 * s.hi);
+    const Two log_c = logs[parts.row], s = quotient<with_remainder>(parts.m, parts.c, remainder);
+    const Two base = ordered_sum(parts.e * ln2_upper, log_c.hi), total = ordered_sum(base.hi, 2 * s.hi);
     const double small = (parts.e * ln2_lower + log_c.lo) + (2 * s.lo + tail_of(s.hi + s.lo));
-    return ordered_sum(total.hi, total.lo + (whole.lo + small));
+    return ordered_sum(total.hi, total.lo + (base.lo + small));
 }
 
 /// Returns the special values of a logarithm: at 0, infinity and NaN.
@@ -421,30 +421,30 @@ double expm1(double x) {
     if (std::fabs(x) < 0.1) {
         if (x == 0) return x;  // keeps -0
         const double z = x * x;
-        const double odd = 1.0 / 6 + z * (1.0 / 120 + z * (1.0 / 5040 + z * (1.0 / 362880)));
-        const double even = 1.0 / 24 + z * (1.0 / 720 + z * (1.0 / 40320 + z * (1.0 / 3628800)));
-        return x + (0.5 * z + z * (x * odd + z * even));
+        const double odd_terms = 1.0 / 6 + z * (1.0 / 120 + z * (1.0 / 5040 + z * (1.0 / 362880)));
+        const double even_terms = 1.0 / 24 + z * (1.0 / 720 + z * (1.0 / 40320 + z * (1.0 / 3628800)));
+        return x + (0.5 * z + z * (x * odd_terms + z * even_terms));
     }
     const Exponential e = exponential_of(x, 0);
     if (e.exponent > 60) return e.value();
     const double scale = power_of_2(e.exponent);
-    const Two rest = sum(scale * e.root.hi, -1);
-    return rest.hi + (rest.lo + scale * (e.root.lo + e.root.hi * e.p));
+    const Two difference = sum(scale * e.root.hi, -1);
+    return difference.hi + (difference.lo + scale * (e.root.lo + e.root.hi * e.p));
 }
 
 namespace {
 
-/// ln(x + rest), rest at most ulp(x)/2.
-double rounded_logarithm(double x, double rest) {
+/// ln(x + remainder), remainder at most ulp(x)/2.
+double rounded_logarithm(double x, double remainder) {
     const Parts parts = parts_of(x);
     if (std::fabs(parts.m - 1) < 0.05) {  // small against its own terms
-        return (rest != 0 ? logarithm<true>(x, rest) : logarithm<false>(x)).hi;
+        return (remainder != 0 ? logarithm<true>(x, remainder) : logarithm<false>(x)).hi;
     }
     const Two log_c = logs[parts.row];
     const double s = (parts.m - parts.c) / (parts.m + parts.c);
-    const Two whole = ordered_sum(parts.e * ln2_upper, log_c.hi);
-    const double more = parts.e * ln2_lower + log_c.lo + tail_of(s);
-    return whole.hi + (2 * s + (whole.lo + (rest != 0 ? more + rest / x : more)));
+    const Two base = ordered_sum(parts.e * ln2_upper, log_c.hi);
+    const double small = parts.e * ln2_lower + log_c.lo + tail_of(s);
+    return base.hi + (2 * s + (base.lo + (remainder != 0 ? small + remainder / x : small)));
 }
 
 }  // namespace
@@ -471,15 +471,15 @@ double pow(double x, double y) {
     if (x != x || y != y) return no_number;
     double sign = 1;
     if (std::signbit(x)) {
-        const bool whole = std::trunc(y) == y;
-        if (x < 0 && !whole) return x == -unbounded ? (y < 0 ? 0 : unbounded) : no_number;
-        if (whole && std::fabs(y) < 0x1p53 && std::fmod(y, 2) != 0) sign = -1;
+        const bool is_integer = std::trunc(y) == y;
+        if (x < 0 && !is_integer) return x == -unbounded ? (y < 0 ? 0 : unbounded) : no_number;
+        if (is_integer && std::fabs(y) < 0x1p53 && std::fmod(y, 2) != 0) sign = -1;
         x = -x;
     }
     if (x == 0 || x == unbounded) return sign * ((x == 0) == (y < 0) ? unbounded : 0.0);
     if (x == 1) return sign;
-    const double within = y > 0x1p80 ? 0x1p80 : y < -0x1p80 ? -0x1p80 : y;  // outside, every result is 0 or infinite
-    return sign * exp(logarithm<false>(x) * within);
+    const double clamped_y = y > 0x1p80 ? 0x1p80 : y < -0x1p80 ? -0x1p80 : y;  // outside, every result is 0 or infinite
+    return sign * exp(logarithm<false>(x) * clamped_y);
 }
 
 }  // namespace crescent::math

@@ -78,8 +78,8 @@ double hypot(double x, double y, double z);
 
 /// The vector of sin theta, cos theta and phi.
 inline Vec3d spherical(double sin, double cos, double phi) {
-    const SinCos around = sincos(phi);
-    return {sin * around.cos, sin * around.sin, cos};
+    const SinCos azimuth = sincos(phi);
+    return {sin * azimuth.cos, sin * azimuth.sin, cos};
 }
 /// The vector of cos theta, in [-1, 1] up to rounding, and phi.
 inline Vec3d spherical(double cos, double phi) {

@@ -40,14 +40,14 @@ private:
             const double angle = 3.14159265358979323846 * (static_cast<double>(k) + 0.75) / (n + 0.5);
             double x = n % 2 && k == half - 1 ? 0 : cos(angle), slope = 0;
             for (int step = 0; step < 8; ++step) {
-                double before = 1, here = x;
+                double previous = 1, current = x;
                 for (unsigned j = 2; j <= n; ++j) {
-                    const double next = ((2 * j - 1) * x * here - (j - 1) * before) / j;
-                    before = here;
-                    here = next;
+                    const double next = ((2 * j - 1) * x * current - (j - 1) * previous) / j;
+                    previous = current;
+                    current = next;
                 }
-                slope = n * (x * here - before) / (x * x - 1);
-                if (x != 0) x -= here / slope;
+                slope = n * (x * current - previous) / (x * x - 1);
+                if (x != 0) x -= current / slope;
             }
             rule.x[half - 1 - k] = x;
             rule.w[half - 1 - k] = 2 / ((1 - x * x) * slope * slope);
@@ -55,8 +55,8 @@ private:
         return rule;
     }
     static const Rule& rule() {
-        static const Rule one = make();
-        return one;
+        static const Rule instance = make();
+        return instance;
     }
 };
 
@@ -91,8 +91,8 @@ inline constexpr KronrodRule<8> kronrod_15 = {
         0.129484966168869693270611432679082}};
 
 template <class V> struct TwoRules {
-    V fine, off;  // Kronrod's integral; its difference from Gauss's
-    V spread;     // Gauss's minus the middle point's
+    V fine, difference;  // Kronrod's integral; that minus Gauss's
+    V spread;            // Gauss's minus the middle point's
 };
 
 /// f returns any V with V + V, V - V and double * V.
@@ -101,9 +101,9 @@ template <std::size_t n, class F> auto by_two_rules(const KronrodRule<n>& rule, 
     const auto first = f(middle);
     auto fine = rule.kronrod[0] * first, coarse = rule.gauss[0] * first;
     for (std::size_t k = 1; k < n; ++k) {
-        const auto both = f(middle - half * rule.x[k]) + f(middle + half * rule.x[k]);
-        fine = fine + rule.kronrod[k] * both;
-        if (k % 2 == 0) coarse = coarse + rule.gauss[k / 2] * both;
+        const auto pair_sum = f(middle - half * rule.x[k]) + f(middle + half * rule.x[k]);
+        fine = fine + rule.kronrod[k] * pair_sum;
+        if (k % 2 == 0) coarse = coarse + rule.gauss[k / 2] * pair_sum;
     }
     return TwoRules<decltype(first + first)>{half * fine, half * (fine - coarse), half * (coarse - 2.0 * first)};
 }

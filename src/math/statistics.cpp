@@ -33,10 +33,10 @@ double quantile(std::vector<double> values, double q) {
     if (std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) return std::nan("");
     std::sort(values.begin(), values.end());
     const double rank = q * static_cast<double>(values.size() - 1);
-    const std::size_t below = static_cast<std::size_t>(rank);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    const double t = rank - static_cast<double>(below);
-    return t == 0 ? values[below] : values[below] + t * (values[above] - values[below]);
+    const std::size_t lower = static_cast<std::size_t>(rank);
+    const std::size_t upper = std::min(lower + 1, values.size() - 1);
+    const double t = rank - static_cast<double>(lower);
+    return t == 0 ? values[lower] : values[lower] + t * (values[upper] - values[lower]);
 }
 
 // ---- Rates with exact binomial intervals.
@@ -65,11 +65,11 @@ constexpr int most_terms = 1'000'000;
 
 /// ln Gamma(n + 1) - (n + 1/2) ln n + n - ln(2 pi)/2, n > 0.
 double stirling_error(double n) {
-    double below = 0;
-    for (; n < 16; n += 1) below += (n + 0.5) * math::log1p(1 / n) - 1;
+    double sum = 0;
+    for (; n < 16; n += 1) sum += (n + 0.5) * math::log1p(1 / n) - 1;
     const double z = 1 / (n * n);
-    const double far = 1.0 / 1260 - z * (1.0 / 1680 - z * (1.0 / 1188 - z * (691.0 / 360360)));
-    return below + (1.0 / 12 - z * (1.0 / 360 - z * far)) / n;
+    const double tail = 1.0 / 1260 - z * (1.0 / 1680 - z * (1.0 / 1188 - z * (691.0 / 360360)));
+    return sum + (1.0 / 12 - z * (1.0 / 360 - z * tail)) / n;
 }
 
 /// x ln(x/m) + m - x, without cancellation near x = m.
@@ -102,10 +102,10 @@ double away_from_0(double x) { return std::fabs(x) < tiny ? tiny : x; }
 template <class Step> double fraction(double b, Step step) {
     double c = 1 / tiny, d = 1 / away_from_0(b), h = d;
     for (int k = 1; k < most_terms; ++k) {
-        double over, under;
-        step(k, over, under);
-        d = 1 / away_from_0(under + over * d);
-        c = away_from_0(under + over / c);
+        double numerator, denominator;
+        step(k, numerator, denominator);
+        d = 1 / away_from_0(denominator + numerator * d);
+        c = away_from_0(denominator + numerator / c);
         h *= d * c;
         if (std::fabs(d * c - 1) < close) break;
     }
@@ -122,19 +122,20 @@ double gamma_series(double a, double x) {
 }
 
 double gamma_fraction(double a, double x) {
-    const double f = fraction(x + 1 - a, [&](int k, double& over, double& under) {
-        over = -k * (k - a);
-        under = x + 2 * k + 1 - a;
+    const double f = fraction(x + 1 - a, [&](int k, double& numerator, double& denominator) {
+        numerator = -k * (k - a);
+        denominator = x + 2 * k + 1 - a;
     });
     return poisson_density(a, x) * a * f;
 }
 
 double beta_fraction(double a, double b, double x, double y) {
-    const double f = fraction(1, [&](int k, double& over, double& under) {
+    const double f = fraction(1, [&](int k, double& numerator, double& denominator) {
         const int m = k / 2;
         const double order = a + 2 * m;
-        over = k & 1 ? -(a + m) * (a + b + m) * x / (order * (order + 1)) : m * (b - m) * x / ((order - 1) * order);
-        under = 1;
+        numerator =
+            k & 1 ? -(a + m) * (a + b + m) * x / (order * (order + 1)) : m * (b - m) * x / ((order - 1) * order);
+        denominator = 1;
     });
     return binomial_density(a, b, x, y) * b / (a + b) * f;
 }
@@ -203,11 +204,11 @@ double fisher_exact(std::uint64_t ka, std::uint64_t na, std::uint64_t kb, std::u
             for (const double top = weight.back(); double& w : weight) w /= top;
     }
     constexpr double slack = 1 + 1e-9;  // outcomes with equal probability differ by rounding
-    const double seen = weight[ka - low] * slack;
+    const double threshold = weight[ka - low] * slack;
     double total = 0, extreme = 0;
     for (const double w : weight) {
         total += w;
-        extreme += w <= seen ? w : 0;
+        extreme += w <= threshold ? w : 0;
     }
     return std::min(1.0, extreme / total);
 }
@@ -215,9 +216,9 @@ double fisher_exact(std::uint64_t ka, std::uint64_t na, std::uint64_t kb, std::u
 double binomial_exact(std::uint64_t k, std::uint64_t n, double p) {
     if (n == 0) return 1;
     const double kd = static_cast<double>(k), nd = static_cast<double>(n);
-    const double above = k == 0 ? 1 : beta_i(kd, nd - kd + 1, p, 1 - p);  // P(N >= k)
-    const double below = k == n ? 1 : beta_i(nd - kd, kd + 1, 1 - p, p);  // P(N <= k)
-    return std::min(1.0, 2 * std::min(above, below));
+    const double upper_tail = k == 0 ? 1 : beta_i(kd, nd - kd + 1, p, 1 - p);  // P(N >= k)
+    const double lower_tail = k == n ? 1 : beta_i(nd - kd, kd + 1, 1 - p, p);  // P(N <= k)
+    return std::min(1.0, 2 * std::min(upper_tail, lower_tail));
 }
 
 // ---- The generalised Pareto index k of the largest samples: Zhang & Stephens 2009, with the prior of Vehtari et al.
@@ -424,9 +425,9 @@ std::size_t discovered(std::span<const double> p, double tests, double alpha, bo
 
 std::vector<bool> discoveries(std::span<const double> p, double alpha, bool dependent) {
     const std::vector<std::size_t> order = rising(p);
-    std::vector<double> sorted;
-    for (const std::size_t i : order) sorted.push_back(p[i]);
-    const std::size_t last = discovered(sorted, static_cast<double>(order.size()), alpha, dependent);
+    std::vector<double> values;
+    for (const std::size_t i : order) values.push_back(p[i]);
+    const std::size_t last = discovered(values, static_cast<double>(order.size()), alpha, dependent);
     std::vector<bool> out(p.size());
     for (std::size_t i = 0; i < last; ++i) out[order[i]] = true;
     return out;

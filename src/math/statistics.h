@@ -169,9 +169,9 @@ std::vector<bool> holm(std::span<const double> p, double alpha);
 
 // ---- A few linear equations, such as the normal equations of least squares.
 
-/// Gauss elimination, the largest pivot first; empty if a pivot is below `least` of its original value.
+/// Gauss elimination, the largest pivot first; empty if a pivot is below `smallest_share` of its original value.
 inline std::optional<std::vector<double>> solved(
-    std::vector<std::vector<double>> a, std::vector<double> b, double least) {
+    std::vector<std::vector<double>> a, std::vector<double> b, double smallest_share) {
     const std::size_t n = b.size();
     std::vector<double> size(n);
     for (std::size_t k = 0; k < n; ++k) size[k] = a[k][k];
@@ -179,7 +179,7 @@ inline std::optional<std::vector<double>> solved(
         std::size_t pivot = k;
         for (std::size_t i = k; i < n; ++i)
             if (std::fabs(a[i][k]) > std::fabs(a[pivot][k])) pivot = i;
-        if (!(std::fabs(a[pivot][k]) > least * size[k])) return {};
+        if (!(std::fabs(a[pivot][k]) > smallest_share * size[k])) return {};
         std::swap(a[k], a[pivot]);
         std::swap(b[k], b[pivot]);
         for (std::size_t i = k + 1; i < n; ++i) {

@@ -80,41 +80,43 @@ std::string fault_of_reference(
     if (q.word != "rmse") return "";
     const double s = q.s > 0 ? q.s : experiment.s();
     const ReferencePlan& reference = experiment.reference;
-    const auto more = [](std::uint64_t samples, double factor) {  // an experiment takes at most 2^24 samples
-        const double wanted = std::ceil(static_cast<double>(samples) * factor);
-        return wanted < 0x1p24 ? fmt::format("about {:.0f} is needed", wanted) : "more than can be set is needed";
+    const auto need_of = [](std::uint64_t samples, double factor) {  // an experiment takes at most 2^24 samples
+        const double sample_count = std::ceil(static_cast<double>(samples) * factor);
+        return sample_count < 0x1p24 ? fmt::format("about {:.0f} is needed", sample_count)
+                                     : "more than can be set is needed";
     };
     if (reference.kind == ReferenceKind::paired) {
-        const double needed = most_error_share * most_error_share * value * value;
+        const double limit = most_error_share * most_error_share * value * value;
         double error = 0;  // half of the 95 % interval of the mean squared error
         for (const RunMetrics& run : metrics.runs)
             if (const RegionMetrics* region = run.region(q.region);
                 region && run.key.arm == q.adapter && run.key.n == q.n && run.key.s == s)
                 error = std::max(error, 1.96 * region->mse_error);
-        if (!(error > needed)) return "";
+        if (!(error > limit)) return "";
         const std::uint64_t n = reference.n > 0 ? reference.n : paired_samples;
         std::string out = fmt::format(
             "the squared error {} in region {} has the error {}, and at most {} is needed, 1/16 "
             "of it; next: reference.n is {}",
-            compact(value * value), q.region, compact(error), compact(needed), n);
+            compact(value * value), q.region, compact(error), compact(limit), n);
         // Its error is that of the mean of n samples.
-        return out + (needed > 0 ? ", " + more(n, square_of(error / needed)) : ", raise it");
+        return out + (limit > 0 ? ", " + need_of(n, square_of(error / limit)) : ", raise it");
     }
-    const bool quadrature = reference.kind == ReferenceKind::quadrature;
+    const bool is_quadrature = reference.kind == ReferenceKind::quadrature;
     for (const ReferenceQuality& r : metrics.references) {
-        const double error = (quadrature ? r.quadrature_error : r.rms_standard_error).value_or(0);
-        const double needed = most_error_share * value;
-        if (r.s != s || r.region != q.region || !(error > needed)) continue;
+        const double error = (is_quadrature ? r.quadrature_error : r.rms_standard_error).value_or(0);
+        const double limit = most_error_share * value;
+        if (r.s != s || r.region != q.region || !(error > limit)) continue;
         std::string out = fmt::format(
             "its error in region {} is {}, and at most {} is needed, a quarter of the RMSE {}; next: ", q.region,
-            compact(error), compact(needed), compact(value));
-        if (quadrature)
+            compact(error), compact(limit), compact(value));
+        if (is_quadrature)
             return out + "reference.kind = \"paired\", whose error does not add to the RMSE, or a smaller n of the arm";
-        const double factor = needed > 0 ? square_of(error / needed) : 0;
+        const double factor = limit > 0 ? square_of(error / limit) : 0;
         return out +
-            (factor > 0 ? fmt::format("reference.disk_spp is {}, {}, and lobe_spp is {}, {}", reference.disk_spp,
-                              more(reference.disk_spp, factor), reference.lobe_spp, more(reference.lobe_spp, factor))
-                        : "raise reference.disk_spp and reference.lobe_spp");
+            (factor > 0
+                    ? fmt::format("reference.disk_spp is {}, {}, and lobe_spp is {}, {}", reference.disk_spp,
+                          need_of(reference.disk_spp, factor), reference.lobe_spp, need_of(reference.lobe_spp, factor))
+                    : "raise reference.disk_spp and reference.lobe_spp");
     }
     return "";
 }
@@ -125,7 +127,7 @@ struct Measurements {
     const Metrics& metrics;
     RunIndex runs;
     const PlateBytes& plate_bytes;
-    bool drawn;  // whether plates were requested
+    bool has_plates;  // whether plates were requested
 
     std::uint32_t own_seed() const { return metrics.series.empty() ? experiment.seed : metrics.series.front(); }
     /// Returns the seeds at which an assertion is evaluated.
@@ -141,11 +143,11 @@ bool is_of_a_run(const ParsedQuantity& q) { return !q.number && make_adapter(q.w
 std::string seeds_missing(const AssertionPlan& plan, const Measurements& measurements) {
     const auto& series = measurements.metrics.series;
     if (!is_of_a_run(plan.check.left) && !is_of_a_run(plan.check.right)) return "";
-    const auto ran = [&](std::uint32_t seed) {
+    const auto was_run = [&](std::uint32_t seed) {
         return std::ranges::find(measurements.runs.seeds(), seed) != measurements.runs.seeds().end();
     };
     if (series.empty() || measurements.runs.seeds().empty() ||
-        std::ranges::all_of(measurements.seeds(plan.median), ran))
+        std::ranges::all_of(measurements.seeds(plan.median), was_run))
         return "";
     return plan.median && series.size() > 1 ? "needs seeds 1 to " + std::to_string(series.size()) : "needs seed 1";
 }
@@ -166,7 +168,7 @@ double side(ParsedQuantity q, bool over_seeds, const Measurements& measurements,
     }
     if (q.number) return value;
     const QuantityOf source = make_adapter(q.word);
-    if (!measurements.drawn && source == QuantityOf::plate) out.skipped = "no plates were drawn";
+    if (!measurements.has_plates && source == QuantityOf::plate) out.skipped = "no plates were drawn";
     if (!measurements.metrics.has_studies && (source == QuantityOf::furnace || q.word == "tail"))
         out.skipped = "tails and furnaces were left out";
     return value;
@@ -174,8 +176,8 @@ double side(ParsedQuantity q, bool over_seeds, const Measurements& measurements,
 
 /// "plate_bytes(hero) > 0": always true for a run that completes.
 bool cannot_fail(const ParsedQuantity& value, const std::string& op, const ParsedQuantity& right) {
-    const bool always_there = value.word == "plate_bytes" || value.word == "region_pixels";
-    return !value.number && always_there && right.number && *right.number <= 0 && (op == ">" || op == ">=");
+    const bool is_always_positive = value.word == "plate_bytes" || value.word == "region_pixels";
+    return !value.number && is_always_positive && right.number && *right.number <= 0 && (op == ">" || op == ">=");
 }
 
 }  // namespace
@@ -187,12 +189,12 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
 }
 
 std::vector<AssertionResult> evaluate_assertions(
-    const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn) {
+    const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool has_plates) {
     const Measurements measurements{.experiment = experiment,
         .metrics = metrics,
         .runs = RunIndex(metrics.runs),
         .plate_bytes = plate_bytes,
-        .drawn = drawn};
+        .has_plates = has_plates};
     std::vector<AssertionResult> results;
     for (const AssertionPlan& plan : experiment.assertions) {
         AssertionResult r;

@@ -54,8 +54,8 @@ int feature_radius(double ppd) { return static_cast<int>(std::ceil(3 * feature_d
 class FilterSet {
 public:
     explicit FilterSet(double ppd) : ppd_(ppd), reach_(std::max(blur_radius(ppd), feature_radius(ppd))) {
-        for (const Sensitivity& one : {achromatic, red_green}) {
-            const Weights gauss = blur(one);
+        for (const Sensitivity& sensitivity : {achromatic, red_green}) {
+            const Weights gauss = blur(sensitivity);
             add(scaled(gauss, 1 / sum_of(gauss)));
         }
         double total = 0;
@@ -75,7 +75,7 @@ public:
     }
 
     FlipFilters filters() const {
-        const auto data = [&](std::size_t k) { return all_[k].data(); };
+        const auto data = [&](std::size_t k) { return filters_[k].data(); };
         return {.reach = reach_,
             .achromatic = data(0),
             .red_green = data(1),
@@ -108,11 +108,11 @@ private:
         for (double& v : weights) v /= v > 0 ? positive : -negative;
         return scaled(weights, 1);
     }
-    void add(std::vector<float> weights) { all_.push_back(std::move(weights)); }
+    void add(std::vector<float> weights) { filters_.push_back(std::move(weights)); }
 
     double ppd_;
     int reach_;
-    std::vector<std::vector<float>> all_;
+    std::vector<std::vector<float>> filters_;
 };
 
 // --- parts of pictures -----------------------------------------------------------------------------------------------
@@ -127,8 +127,8 @@ struct Size {
     }
 };
 
-/// What FLIP is wanted of, and where the results are written: rows of the box's width.
-struct Wanted {
+/// What FLIP is computed of, and where the results are written: rows of the box's width.
+struct FlipJob {
     const FlipImage& reference;
     const FlipImage& test;
     Box box;
@@ -144,9 +144,9 @@ void copy_around(std::span<const float> plane, Size size, const Box& box, int re
     }
 }
 
-/// Computes one tile of what is wanted.
-void compute_tile(const Wanted& wanted, const Box& box, const FilterSet& filters, std::span<const float> exposures,
-    FlipKernel kernel) {
+/// Computes one tile of a job.
+void compute_tile(
+    const FlipJob& job, const Box& box, const FilterSet& filters, std::span<const float> exposures, FlipKernel kernel) {
     const int reach = filters.reach();
     const std::size_t plane = flip_stride(box.width() + 2 * reach) * static_cast<std::size_t>(box.height() + 2 * reach);
     const std::size_t stride = flip_stride(box.width());
@@ -160,7 +160,7 @@ void compute_tile(const Wanted& wanted, const Box& box, const FilterSet& filters
         .out = out.data()};
     float* next = pixels.data();
     for (std::size_t p = 0; p < 2; ++p) {
-        const FlipImage& image = p == 0 ? wanted.reference : wanted.test;
+        const FlipImage& image = p == 0 ? job.reference : job.test;
         const std::span<const float> channels[3] = {image.r, image.g, image.b};
         for (std::size_t c = 0; c < 3; ++c, next += plane) {
             copy_around(channels[c], {image.width, image.height}, box, reach, next);
@@ -168,23 +168,23 @@ void compute_tile(const Wanted& wanted, const Box& box, const FilterSet& filters
         }
     }
     kernel(tile);
-    const Size size{wanted.box.width(), wanted.box.height()};
+    const Size size{job.box.width(), job.box.height()};
     for (int y = box.y0; y <= box.y1; ++y)
         std::copy_n(&out[static_cast<std::size_t>(y - box.y0) * stride], box.width(),
-            wanted.out + size.at(box.x0 - wanted.box.x0, y - wanted.box.y0));
+            job.out + size.at(box.x0 - job.box.x0, y - job.box.y0));
 }
 
 /// No exposures: LDR.
 void compute_flips(
-    const std::vector<Wanted>& jobs, double ppd, std::span<const float> exposures, const std::string& isa) {
+    const std::vector<FlipJob>& jobs, double ppd, std::span<const float> exposures, const std::string& isa) {
     const FilterSet filters(ppd);
     const FlipKernel kernel = flip_kernel_for(isa);
-    std::vector<std::pair<const Wanted*, Box>> tiles;
-    for (const Wanted& wanted : jobs)
-        for (int y = wanted.box.y0; y <= wanted.box.y1; y += tile_height)
-            for (int x = wanted.box.x0; x <= wanted.box.x1; x += tile_width)
-                tiles.push_back({&wanted,
-                    {x, y, std::min(x + tile_width - 1, wanted.box.x1), std::min(y + tile_height - 1, wanted.box.y1)}});
+    std::vector<std::pair<const FlipJob*, Box>> tiles;
+    for (const FlipJob& job : jobs)
+        for (int y = job.box.y0; y <= job.box.y1; y += tile_height)
+            for (int x = job.box.x0; x <= job.box.x1; x += tile_width)
+                tiles.push_back({&job,
+                    {x, y, std::min(x + tile_width - 1, job.box.x1), std::min(y + tile_height - 1, job.box.y1)}});
     parallel_for(std::size_t{0}, tiles.size(),
         [&](std::size_t k) { compute_tile(*tiles[k].first, tiles[k].second, filters, exposures, kernel); });
 }
@@ -256,10 +256,10 @@ std::vector<std::vector<double>> mean_hdr_flips(const FlipImage& reference, cons
     for (std::size_t t = 0; t < tests.size(); ++t)
         for (const Box& box : boxes)
             maps.emplace_back(static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()));
-    std::vector<Wanted> wanted;
+    std::vector<FlipJob> jobs;
     for (std::size_t k = 0; k < maps.size(); ++k)
-        wanted.push_back({reference, tests[k / boxes.size()], boxes[k % boxes.size()], maps[k].data()});
-    compute_flips(wanted, ppd, factors(exposures), isa);
+        jobs.push_back({reference, tests[k / boxes.size()], boxes[k % boxes.size()], maps[k].data()});
+    compute_flips(jobs, ppd, factors(exposures), isa);
     std::vector<std::vector<double>> out(tests.size());
     for (std::size_t k = 0; k < maps.size(); ++k)
         out[k / boxes.size()].push_back(

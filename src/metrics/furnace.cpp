@@ -27,7 +27,7 @@ std::optional<Tail> tail_of(std::vector<float> x) {
 }  // namespace
 
 FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa,
-    ProgressMonitor& monitor, const ExternalSamplers& outside) {
+    ProgressMonitor& monitor, const ExternalSamplers& external) {
     const auto arm = std::find_if(
         experiment.arms.begin(), experiment.arms.end(), [&](const ArmPlan& a) { return a.name == plan.arm; });
     ensure(arm != experiment.arms.end(), "a furnace's arm is known");
@@ -38,7 +38,7 @@ FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan,
     const ShadingPoints shading_points = furnace_points(surface, 1);
     FurnaceDraws out;
     out.samples.resize(plan.n);
-    const Moments m = estimate_points(shading_points, {arm->sampler, external_of(outside, arm->name)}, plan.n,
+    const Moments m = estimate_points(shading_points, {arm->sampler, external_of(external, arm->name)}, plan.n,
         experiment.seed, isa, &monitor.stop, out.samples.data());
     const double n = static_cast<double>(plan.n);
     FurnaceResult& metric = out.metric;
@@ -61,10 +61,10 @@ FurnaceResult read_furnace(FurnaceDraws draws) {
 }
 
 std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
-    ProgressMonitor& monitor, const ExternalSamplers& outside) {
+    ProgressMonitor& monitor, const ExternalSamplers& external) {
     std::vector<FurnaceResult> out;
     for (const FurnacePlan& plan : experiment.furnaces) {
-        out.push_back(read_furnace(draw_furnace(experiment, plan, isa, monitor, outside)));
+        out.push_back(read_furnace(draw_furnace(experiment, plan, isa, monitor, external)));
         if (published) out.back().published = published->furnace(plan.name);
         monitor.check();
     }
@@ -120,9 +120,10 @@ TailPlan tail_plan(std::uint64_t pixels) {
 std::optional<Tail> region_tail(const Scene& scene, const SamplerRef& arm, std::uint32_t seed, const AreaPixels& pixels,
     const std::string& isa, ProgressMonitor& monitor) {
     const TailPlan plan = tail_plan(pixels.count());
-    if (plan.kept == 0) return std::nullopt;
-    std::uint64_t drawn = 0;
-    return fit_pooled_tail(largest_samples(scene, arm, plan.n, seed, pixels.tight(), plan.kept, isa, monitor, drawn));
+    if (plan.largest_count == 0) return std::nullopt;
+    std::uint64_t draw_count = 0;
+    return fit_pooled_tail(
+        largest_samples(scene, arm, plan.n, seed, pixels.tight(), plan.largest_count, isa, monitor, draw_count));
 }
 
 }  // namespace crescent

@@ -25,12 +25,12 @@ struct FurnaceDraws {
 /// Computes one furnace of the experiment in two steps, between which a page may handle input; `plan` may have another
 /// n.
 FurnaceDraws draw_furnace(const Experiment& experiment, const FurnacePlan& plan, const std::string& isa,
-    ProgressMonitor& monitor, const ExternalSamplers& outside = {});
+    ProgressMonitor& monitor, const ExternalSamplers& external = {});
 FurnaceResult read_furnace(FurnaceDraws draws);
 
 /// Returns every furnace of the experiment, measured. Throws Interrupted if the monitor requests a stop.
 std::vector<FurnaceResult> furnaces(const Experiment& experiment, const Published* published, const std::string& isa,
-    ProgressMonitor& monitor, const ExternalSamplers& outside = {});
+    ProgressMonitor& monitor, const ExternalSamplers& external = {});
 
 // ---- Surface points in a white furnace: L_i = 1 over the whole hemisphere, no disk, by default seen from directly
 // above.
@@ -43,11 +43,11 @@ ShadingPoints furnace_points(const Surface& surface, std::size_t count, double c
 
 // ---- The tail index of one arm's samples in an area of the image.
 
-/// How an area of the image is sampled: n samples per pixel, about four million in all, of which the `kept` largest are
-/// used; kept is 0 if too few vary.
+/// How an area of the image is sampled: n samples per pixel, about four million in all, of which the largest are used:
+/// `largest_count` of them, 0 if too few vary.
 struct TailPlan {
     std::uint64_t n = 0;
-    std::size_t kept = 0;
+    std::size_t largest_count = 0;
 };
 TailPlan tail_plan(std::uint64_t pixels);
 

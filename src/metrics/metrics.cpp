@@ -14,15 +14,15 @@
 namespace crescent {
 
 const RegionMetrics* RunMetrics::region(const std::string& name) const {
-    const auto found =
+    const auto match =
         std::find_if(regions.begin(), regions.end(), [&](const RegionMetrics& r) { return r.region == name; });
-    return found == regions.end() ? nullptr : &*found;
+    return match == regions.end() ? nullptr : &*match;
 }
 
 const RunMetrics* Metrics::find(const std::string& arm, std::uint64_t n, double s, std::uint32_t seed) const {
     const RunKey key{.arm = arm, .n = n, .s = s, .seed = seed};
-    const auto found = std::find_if(runs.begin(), runs.end(), [&](const RunMetrics& r) { return r.key == key; });
-    return found == runs.end() ? nullptr : &*found;
+    const auto match = std::find_if(runs.begin(), runs.end(), [&](const RunMetrics& r) { return r.key == key; });
+    return match == runs.end() ? nullptr : &*match;
 }
 
 bool Metrics::all_hold() const { return std::ranges::none_of(assertions, &AssertionResult::failed); }
@@ -39,16 +39,16 @@ std::size_t RunIndex::Hash::operator()(const RunKey& key) const {
 
 RunIndex::RunIndex(const std::vector<RunMetrics>& runs) {
     runs_.reserve(runs.size());
-    std::unordered_set<std::uint32_t> seen;
+    std::unordered_set<std::uint32_t> distinct_seeds;
     for (const RunMetrics& run : runs) {
         runs_.emplace(run.key, &run);
-        if (seen.insert(run.key.seed).second) seeds_.push_back(run.key.seed);
+        if (distinct_seeds.insert(run.key.seed).second) seeds_.push_back(run.key.seed);
     }
 }
 
 const RunMetrics* RunIndex::find(const RunKey& key) const {
-    const auto found = runs_.find(key);
-    return found == runs_.end() ? nullptr : found->second;
+    const auto entry = runs_.find(key);
+    return entry == runs_.end() ? nullptr : entry->second;
 }
 
 // ---- A metric reads pixels one by one and then returns a value; the two lists of metrics are expanded to readers
@@ -86,18 +86,18 @@ FilmPixel pixel_at(
 /// the variance of R, the variance of d^2 - e^2 over references is 4 d^2 e^2 in the mean, for errors of R1 and R2 that
 /// are independent and symmetric.
 struct PairedError {
-    double squares = 0, variance = 0, own = 0;
+    double squares = 0, variance = 0, reference_squares = 0;
     void add(const FilmPixel& p) {
         const double e2 = p.pair_error * p.pair_error;
         squares += p.squared_error();
         variance += 4 * p.difference() * p.difference() * e2;
-        own += e2;
+        reference_squares += e2;
     }
     void write(RegionMetrics& m) const {
         const double pixels = static_cast<double>(m.pixels);
         m.mse = squares / pixels;
         m.mse_error = std::sqrt(variance) / pixels;
-        m.reference_error = std::sqrt(own / pixels);
+        m.reference_error = std::sqrt(reference_squares / pixels);
     }
 };
 
@@ -157,7 +157,7 @@ double rms(const std::vector<float>& a, const AreaPixels& pixels) {
 }
 
 ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, const Region& region,
-    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used, const ShapeMap& shapes) {
+    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind kind, const ShapeMap& shapes) {
     const AreaPixels pixels(region.area(), shapes);
     ReferenceQuality m;
     m.s = q.s;
@@ -168,15 +168,15 @@ ReferenceQuality compare(const ReferenceFilm& q, const ReferenceFilm* note, cons
         m.rms_standard_error = rms(note->error, pixels);
         m.max_relative_rmse_change = 0;
     }
-    ensure(used != ReferenceKind::paired, "a paired reference is compared with no other");
-    const bool quadrature = used == ReferenceKind::quadrature;
-    ensure(quadrature || note, "the reference that the metrics use was computed");
+    ensure(kind != ReferenceKind::paired, "a paired reference is compared with no other");
+    const bool is_quadrature = kind == ReferenceKind::quadrature;
+    ensure(is_quadrature || note, "the reference that the metrics use was computed");
     for (const auto& [key, film] : films) {
         if (key.s != q.s) continue;
         const double a = rms_difference(film.y, q.y, pixels);
         const double b = note ? rms_difference(film.y, note->y, pixels) : a;
         if (note && a > 0) m.max_relative_rmse_change = std::max(*m.max_relative_rmse_change, std::fabs(b - a) / a);
-        const double error = quadrature ? *m.quadrature_error : *m.rms_standard_error, rmse = quadrature ? a : b;
+        const double error = is_quadrature ? *m.quadrature_error : *m.rms_standard_error, rmse = is_quadrature ? a : b;
         if (error > 0) m.error_share = std::max(m.error_share, error / rmse);
     }
     return m;
@@ -192,8 +192,8 @@ std::vector<ReferenceQuality> paired_quality(const std::vector<ReferenceFilm>& r
             m.region = region.name;
             m.paired_error = rms(film.error, AreaPixels(region.area(), shapes));
             for (const RunMetrics& run : runs)
-                if (const RegionMetrics* measured = run.region(region.name); measured && run.key.s == film.s)
-                    m.error_share = std::max(m.error_share, share_of_reference(*measured));
+                if (const RegionMetrics* metrics = run.region(region.name); metrics && run.key.s == film.s)
+                    m.error_share = std::max(m.error_share, share_of_reference(*metrics));
         }
     return out;
 }
@@ -218,16 +218,16 @@ std::vector<MetricName> metric_names(const Experiment& experiment) {
 
 double metric_value(const RunMetrics& run, const std::string& metric) {
     const std::size_t dot = metric.find('.');
-    std::optional<double> found;
-    const auto look = [&](std::string_view name, const MetricInfo&, auto value) {
-        if (name == std::string_view(metric).substr(0, dot)) found = static_cast<double>(value);
+    std::optional<double> result;
+    const auto take_value = [&](std::string_view name, const MetricInfo&, auto value) {
+        if (name == std::string_view(metric).substr(0, dot)) result = static_cast<double>(value);
     };
-    if (dot == std::string::npos) for_each_metric(run, look);
-    else if (const RegionMetrics* region = run.region(metric.substr(dot + 1))) for_each_metric(*region, look);
+    if (dot == std::string::npos) for_each_metric(run, take_value);
+    else if (const RegionMetrics* region = run.region(metric.substr(dot + 1))) for_each_metric(*region, take_value);
     if (const RegionMetrics* region = metric.starts_with("flip.") ? run.region(metric.substr(5)) : nullptr)
-        found = region->flip;
-    ensure(found.has_value(), "a metric of the list, of a region that was measured");
-    return *found;
+        result = region->flip;
+    ensure(result.has_value(), "a metric of the list, of a region that was measured");
+    return *result;
 }
 
 namespace {
@@ -276,12 +276,12 @@ std::vector<SeedSpread> bands(
             if (run.key.n < 2 && info->from_two_samples) continue;
             std::vector<double> values = over_seeds(runs, run.key, metric);
             // An RMSE below the error of a paired reference is the smallest of all; a quantile among such is not known.
-            const bool of_pair = paired && metric.starts_with("rmse");
+            const bool is_paired_rmse = paired && metric.starts_with("rmse");
             for (double& v : values)
-                if (of_pair && std::isnan(v)) v = -1;
+                if (is_paired_rmse && std::isnan(v)) v = -1;
             const auto quantile = [&](const std::vector<double>& of_seeds, double q) {
                 const double value = crescent::quantile(of_seeds, q);
-                return of_pair && value < 0 ? not_paired : value;
+                return is_paired_rmse && value < 0 ? not_paired : value;
             };
             SeedSpread b;
             b.key = run.key;
@@ -294,9 +294,9 @@ std::vector<SeedSpread> bands(
                 .heavy = heavy(run, metric)};
             if (published) b.published = published->find(run.key.arm, run.key.n, run.key.s, metric);
             if (b.published) {
-                const auto below =
+                const auto lower_count =
                     std::count_if(values.begin(), values.end(), [&](double v) { return v < *b.published; });
-                b.published_rank = static_cast<double>(below) / static_cast<double>(values.size());
+                b.published_rank = static_cast<double>(lower_count) / static_cast<double>(values.size());
             }
             out.push_back(std::move(b));
         }
@@ -409,10 +409,10 @@ std::optional<Ladder> ladder(
     const Line line = fit_known(out.n, out.rmse, paired);
     std::vector<double> slopes;
     for (const auto& [_, values] : by_seed) slopes.push_back(fit_known(out.n, values, paired).slope);
-    const bool many = slopes.size() > 1;
+    const bool has_several_seeds = slopes.size() > 1;
     out.slope = line.slope;
-    out.low = many ? quantile(slopes, 0.05) : line.slope - line.half_width;
-    out.high = many ? quantile(slopes, 0.95) : line.slope + line.half_width;
+    out.low = has_several_seeds ? quantile(slopes, 0.05) : line.slope - line.half_width;
+    out.high = has_several_seeds ? quantile(slopes, 0.95) : line.slope + line.half_width;
     return out;
 }
 
@@ -423,8 +423,8 @@ std::vector<Ladder> ladders(const Experiment& experiment, const std::vector<RunM
     for (const ArmPlan& arm : experiment.arms) {
         if (arm.n.size() < 2) continue;
         for (const Region& region : experiment.regions)
-            if (auto fitted = ladder(runs, arm, region.name, experiment.s(), experiment.seed))
-                out.push_back(std::move(*fitted));
+            if (auto fit = ladder(runs, arm, region.name, experiment.s(), experiment.seed))
+                out.push_back(std::move(*fit));
     }
     return out;
 }

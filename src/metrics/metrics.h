@@ -189,7 +189,7 @@ double rms(const std::vector<float>& a, const AreaPixels& pixels);
 /// Compares two references of one exponent in a region, and the effect on the RMSE of any of the films; only the
 /// quadrature's part if the article's reference is missing. `used` is the one that the metrics use.
 ReferenceQuality compare(const ReferenceFilm& quadrature, const ReferenceFilm* note, const Region& region,
-    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind used, const ShapeMap& shapes);
+    const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind kind, const ShapeMap& shapes);
 
 /// Returns the quality of a paired reference in every region at every exponent, one film for each.
 std::vector<ReferenceQuality> paired_quality(const std::vector<ReferenceFilm>& references, const Experiment& experiment,
@@ -231,6 +231,6 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
 /// median, else the experiment's own; none if neither side is read from a film), a tail or furnace without studies, or,
 /// with `drawn` = false, a plate.
 std::vector<AssertionResult> evaluate_assertions(
-    const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool drawn = true);
+    const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool has_plates = true);
 
 }  // namespace crescent

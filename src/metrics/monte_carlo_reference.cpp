@@ -24,21 +24,21 @@ ShadingPoints only_light(const Scene& scene, const ShadingPoints& points, std::s
         const Rgb& tint = points.tint[i];
         return luminance(Rgb{light[0] * tint[0], light[1] * tint[1], light[2] * tint[2]});
     };
-    const auto alone = [&](auto& light, const auto& as_it_was, bool this_one) {
-        light.power = this_one ? 1 : 0;
+    const auto isolate = [&](auto& light, const auto& original, bool is_chosen) {
+        light.power = is_chosen ? 1 : 0;
         for (auto* array : {&light.d, &light.s}) std::fill(array->begin(), array->end(), 0.0f);
-        for (std::size_t i = 0; this_one && i < shading_points.pixel.size(); ++i) {
+        for (std::size_t i = 0; is_chosen && i < shading_points.pixel.size(); ++i) {
             light.d[i] =
-                as_it_was.d[i] - shading_points.fill_d[i];  // L_key - L_fill: the light replaces the fill behind it
-            const double full = tinted(scene.lights()[k].radiance, i), over = full - tinted(scene.fill(), i);
-            light.s[i] = full > 0 ? static_cast<float>(static_cast<double>(as_it_was.s[i]) * over / full)
+                original.d[i] - shading_points.fill_d[i];  // L_key - L_fill: the light replaces the fill behind it
+            const double full = tinted(scene.lights()[k].radiance, i), difference = full - tinted(scene.fill(), i);
+            light.s[i] = full > 0 ? static_cast<float>(static_cast<double>(original.s[i]) * difference / full)
                                   : -shading_points.fill_s[i];
         }
     };
     for (std::size_t j = 0; j < shading_points.disks.size(); ++j)
-        alone(shading_points.disks[j], points.disks[j], j == k);
+        isolate(shading_points.disks[j], points.disks[j], j == k);
     for (std::size_t j = 0; j < shading_points.others.size(); ++j)
-        alone(shading_points.others[j], points.others[j], shading_points.disks.size() + j == k);
+        isolate(shading_points.others[j], points.others[j], shading_points.disks.size() + j == k);
     for (auto* array : {&shading_points.fill_d, &shading_points.fill_s}) std::fill(array->begin(), array->end(), 0.0f);
     return shading_points;
 }
@@ -76,11 +76,11 @@ bool may_be_missed(const ShadingPoints& shading_points, std::size_t i, std::size
     const LobeInfo& lobe = lobe_info(static_cast<LobeKind>(shading_points.lobe));
     const double s =
         lobe.exponent(static_cast<double>(shading_points.s[i]), static_cast<double>(shading_points.alpha[i]));
-    const double across = lobe.about_mirror ? 1 : wo.z, far = std::sqrt(dot(c, c));
-    const double distance = math::acos(std::clamp(dot(c, mirror(wo)) / far, -1.0, 1.0));
-    const bool peak_is_near = distance < math::atan2(radius, far) + 8 / std::sqrt(s);
+    const double foreshortening = lobe.about_mirror ? 1 : wo.z, distance = std::sqrt(dot(c, c));
+    const double angle = math::acos(std::clamp(dot(c, mirror(wo)) / distance, -1.0, 1.0));
+    const bool peak_is_near = angle < math::atan2(radius, distance) + 8 / std::sqrt(s);
     return peak_is_near &&
-        n * 2 * across / (s + 1) < 10 * sqr(radius / far);  // solid angles 2 pi / (s + 1) and pi (r / d)^2
+        n * 2 * foreshortening / (s + 1) < 10 * sqr(radius / distance);  // solid angles 2 pi / (s + 1) and pi (r / d)^2
 }
 
 /// Computes the article's reference over one group of shading points.
@@ -141,13 +141,13 @@ private:
 std::uint32_t reference_seed(const Experiment& experiment, std::uint32_t k) {
     constexpr std::uint32_t salt = 0x4ef1ce;
     constexpr std::uint32_t longest_series = 4096;  // the largest value of an experiment's `seeds`
-    const auto drawn_from = [&](std::uint32_t seed) {
+    const auto is_in_series = [&](std::uint32_t seed) {
         for (std::uint32_t a = 0; a < longest_series; ++a)
             if (seed_of(experiment.seed, a) == seed) return true;
         return false;
     };
     std::uint32_t seed = pcg4d(Vec4u<std::uint32_t>{experiment.reference.seed, k, salt, 0u}).x;
-    while (drawn_from(seed)) ++seed;
+    while (is_in_series(seed)) ++seed;
     return seed;
 }
 
@@ -173,10 +173,10 @@ std::vector<ReferenceFilm> monte_carlo_reference(const std::vector<TiledScene>& 
             for (const ShadingPoints& group : *groups) {
                 estimate(views[0].scene(), group, films[0]);
                 if (group.lobe >= 0 && views.size() > 1) {
-                    ShadingPoints at_s = group;
+                    ShadingPoints points = group;
                     for (std::size_t e = 1; e < views.size(); ++e) {
-                        at_s.take_s(views[e].scene());
-                        estimate(views[e].scene(), at_s, films[e]);
+                        points.take_s(views[e].scene());
+                        estimate(views[e].scene(), points, films[e]);
                     }
                 } else {
                     for (std::size_t e = 1; e < views.size(); ++e)

@@ -23,10 +23,10 @@ double Axis::share(double x) const {
 
 bool Axis::can_hold(double x) const { return std::isfinite(x) && (!log || x > 0); }
 
-double round_up(double least, std::initializer_list<double> leads) {
-    const double power = math::pow(10.0, std::floor(math::log10(least)));
+double round_up(double value, std::initializer_list<double> leads) {
+    const double power = math::pow(10.0, std::floor(math::log10(value)));
     for (const double lead : leads)
-        if (lead * power >= least * (1 - 1e-9)) return lead * power;
+        if (lead * power >= value * (1 - 1e-9)) return lead * power;
     return 10 * power;
 }
 
@@ -51,7 +51,7 @@ Axis linear_axis(std::string label, const std::vector<double>& values) {
     return axis;
 }
 
-Axis log_axis(std::string label, const std::vector<double>& values, double wider) {
+Axis log_axis(std::string label, const std::vector<double>& values, double factor) {
     Axis axis;
     axis.label = std::move(label);
     axis.log = true;
@@ -59,8 +59,8 @@ Axis log_axis(std::string label, const std::vector<double>& values, double wider
     for (const double v : values)
         if (axis.can_hold(v)) positive.push_back(v);
     if (positive.empty()) positive = {1, 10};
-    axis.low = *std::min_element(positive.begin(), positive.end()) / wider;
-    axis.high = *std::max_element(positive.begin(), positive.end()) * wider;
+    axis.low = *std::min_element(positive.begin(), positive.end()) / factor;
+    axis.high = *std::max_element(positive.begin(), positive.end()) * factor;
     axis.ticks = log_ticks(axis.low, axis.high);
     return axis;
 }
@@ -88,17 +88,17 @@ std::vector<double> moved_apart(const std::vector<double>& places, double pitch,
     std::vector<std::size_t> order(places.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return places[a] < places[b]; });
-    std::vector<double> moved = places;
-    double least = first, greatest = last;
+    std::vector<double> positions = places;
+    double lowest = first, highest = last;
     for (const std::size_t i : order) {
-        moved[i] = std::max(moved[i], least);
-        least = moved[i] + pitch;
+        positions[i] = std::max(positions[i], lowest);
+        lowest = positions[i] + pitch;
     }
     for (auto i = order.rbegin(); i != order.rend(); ++i) {
-        moved[*i] = std::min(moved[*i], greatest);
-        greatest = moved[*i] - pitch;
+        positions[*i] = std::min(positions[*i], highest);
+        highest = positions[*i] - pitch;
     }
-    return moved;
+    return positions;
 }
 
 namespace {
@@ -128,7 +128,7 @@ void Chart::line(const std::vector<Point>& points, std::string_view css) {
     std::string path;
     for (const Point& p : points)
         if (drawable(p.x, p.y)) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", px(p.x), py(p.y));
-    if (!path.empty()) inside_ += fmt::format("<path class=\"line {}\" d=\"{}\" />\n", css, path);
+    if (!path.empty()) frame_content_ += fmt::format("<path class=\"line {}\" d=\"{}\" />\n", css, path);
 }
 
 void Chart::dots(const std::vector<Point>& points, std::string_view css) {
@@ -147,13 +147,14 @@ void Chart::diamonds(const std::vector<Point>& points, std::string_view css) {
 
 void Chart::band(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high,
     std::string_view css) {
-    std::string outward, back;
+    std::string upper_edge, lower_edge;
     for (std::size_t i = 0; i < x.size(); ++i) {
         if (!drawable(x[i], low[i]) || !drawable(x[i], high[i])) continue;
-        outward += fmt::format("{}{:.1f} {:.1f}", outward.empty() ? "M" : " L", px(x[i]), py(high[i]));
-        back = fmt::format(" L{:.1f} {:.1f}", px(x[i]), py(low[i])) + back;
+        upper_edge += fmt::format("{}{:.1f} {:.1f}", upper_edge.empty() ? "M" : " L", px(x[i]), py(high[i]));
+        lower_edge = fmt::format(" L{:.1f} {:.1f}", px(x[i]), py(low[i])) + lower_edge;
     }
-    if (!outward.empty()) inside_ += fmt::format("<path class=\"area {}\" d=\"{}{} Z\" />\n", css, outward, back);
+    if (!upper_edge.empty())
+        frame_content_ += fmt::format("<path class=\"area {}\" d=\"{}{} Z\" />\n", css, upper_edge, lower_edge);
 }
 
 void Chart::bar(double x, double low, double high, std::string_view css) {
@@ -217,7 +218,7 @@ std::string Chart::framed() const {  // an inner svg hides what is outside
     const double w = width_ - left_margin - right_margin, h = height_ - top_margin - bottom_margin;
     return fmt::format(
         "<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n{4}</svg>\n", left_margin,
-        top_margin, w, h, inside_);
+        top_margin, w, h, frame_content_);
 }
 
 std::string Chart::str() const {

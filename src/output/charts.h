@@ -29,17 +29,17 @@ struct Axis {
 /// Returns an axis that contains all values and ends at ticks a round step apart. Values that are not finite are
 /// ignored; equal values still give an axis of positive length.
 Axis linear_axis(std::string label, const std::vector<double>& values);
-/// Returns a logarithmic axis from the smallest value / `wider` to the largest x `wider`; only positive finite values
+/// Returns a logarithmic axis from the smallest value / `factor` to the largest x `factor`; only positive finite values
 /// count.
-Axis log_axis(std::string label, const std::vector<double>& values, double wider = 1.25);
+Axis log_axis(std::string label, const std::vector<double>& values, double factor = 1.25);
 
 /// Returns round numbers from `low` to `high`, both above 0: the more decades, the fewer per decade. At least one if
 /// high / low is 1.4 or more.
 std::vector<double> log_ticks(double low, double high);
 
-/// Returns the smallest of `leads` times a power of ten that is at least `least` (above 0). Leads ascend from 1 to
+/// Returns the smallest of `leads` times a power of ten that is at least `value` (above 0). Leads ascend from 1 to
 /// below 10.
-double round_up(double least, std::initializer_list<double> leads = {1, 2, 5});
+double round_up(double value, std::initializer_list<double> leads = {1, 2, 5});
 
 /// Returns places of names along a side, in the order given: moved up to be `pitch` apart and from `first` on, then
 /// down so that none is above `last`.
@@ -83,7 +83,7 @@ private:
 
     int width_, height_;
     Axis x_, y_;
-    std::string title_, inside_, body_;  // inside_ is clipped at the frame
+    std::string title_, frame_content_, body_;  // frame_content_ is clipped at the frame
     struct Name {
         double x = 0, y = 0;
         std::string text, css;

@@ -20,9 +20,9 @@ bool starts_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0) !
 
 /// Returns the offset of code point number `count`.
 std::size_t offset_of(std::string_view text, std::size_t count) {
-    std::size_t seen = 0;
+    std::size_t index = 0;
     for (std::size_t i = 0; i < text.size(); ++i)
-        if (starts_code_point(text[i]) && seen++ == count) return i;
+        if (starts_code_point(text[i]) && index++ == count) return i;
     return text.size();
 }
 
@@ -75,8 +75,8 @@ std::string with_error_and_unit(double value, double half, std::string_view unit
     const double exponent = std::floor(math::log10(half) + 1e-9);
     const int digits = -static_cast<int>(exponent) + (half < 1.95 * math::pow(10, exponent) ? 1 : 0);
     if (digits > 12 || digits < -3) return fmt::format("{:.5g}{} +- {:.1g}{}", value, unit, half, unit);
-    const int shown = std::max(digits, 0);
-    return fmt::format("{:.{}f}{} +- {:.{}f}{}", value, shown, unit, half, shown, unit);
+    const int decimals = std::max(digits, 0);
+    return fmt::format("{:.{}f}{} +- {:.{}f}{}", value, decimals, unit, half, decimals, unit);
 }
 
 }  // namespace
@@ -92,12 +92,12 @@ std::size_t width(std::string_view utf8) {
 }
 
 std::string clip(std::string_view utf8, std::size_t columns) {
-    const std::size_t wide = width(utf8);
-    if (wide <= columns) return std::string(utf8);
+    const std::size_t text_width = width(utf8);
+    if (text_width <= columns) return std::string(utf8);
     if (columns == 0) return {};
     const std::size_t head = (columns - 1) / 2, tail = columns - 1 - head;
     return std::string(utf8.substr(0, offset_of(utf8, head))) + "…" +
-        std::string(utf8.substr(offset_of(utf8, wide - tail)));
+        std::string(utf8.substr(offset_of(utf8, text_width - tail)));
 }
 
 std::string left(std::string_view utf8, std::size_t columns) {
@@ -113,8 +113,8 @@ std::string right(std::string_view utf8, std::size_t columns) {
 std::string with_minus(std::string_view text) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {
-        const bool minus = text[i] == '-' && i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
-        out += minus ? "−" : std::string(1, text[i]);
+        const bool is_minus = text[i] == '-' && i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+        out += is_minus ? "−" : std::string(1, text[i]);
     }
     return out;
 }
@@ -217,8 +217,8 @@ std::string outcome(const JunitCase& c) {
 std::string case_text(const JunitCase& c) {
     std::string head = fmt::format("    <testcase classname=\"{}\" name=\"{}\"", escape(c.group), escape(c.name));
     if (c.seconds) head += fmt::format(" time=\"{:.3f}\"", *c.seconds);
-    const std::string how = outcome(c);
-    return how.empty() ? head + " />\n" : head + ">\n" + how + "    </testcase>\n";
+    const std::string details = outcome(c);
+    return details.empty() ? head + " />\n" : head + ">\n" + details + "    </testcase>\n";
 }
 
 std::string counts_of(const std::vector<JunitCase>& cases) {
@@ -266,12 +266,13 @@ std::string sarif_text(
     const std::string& version, const std::vector<std::string>& rules, const std::vector<SarifResult>& results) {
     Json rule_list = Json::array(), result_list = Json::array();
     for (const std::string& rule : rules) rule_list.push_back({{"id", rule}});
-    for (const SarifResult& each : results) {
-        const std::string uri = each.file.empty() ? "." : uri_of(each.file);
+    for (const SarifResult& result : results) {
+        const std::string uri = result.file.empty() ? "." : uri_of(result.file);
         const Json place = {{"physicalLocation",
-            {{"artifactLocation", {{"uri", uri}}}, {"region", {{"startLine", std::max(1u, each.line)}}}}}};
-        result_list.push_back({{"ruleId", each.rule}, {"level", each.level}, {"message", {{"text", each.message}}},
-            {"locations", Json::array({place})}, {"partialFingerprints", {{"crescent", each.identity}}}});
+            {{"artifactLocation", {{"uri", uri}}}, {"region", {{"startLine", std::max(1u, result.line)}}}}}};
+        result_list.push_back(
+            {{"ruleId", result.rule}, {"level", result.level}, {"message", {{"text", result.message}}},
+                {"locations", Json::array({place})}, {"partialFingerprints", {{"crescent", result.identity}}}});
     }
     const Json driver = {{"name", "crescent"}, {"version", version}, {"rules", rule_list}};
     const Json run = {{"tool", {{"driver", driver}}}, {"results", result_list}};

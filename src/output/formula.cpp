@@ -88,13 +88,13 @@ public:
     Node row(char end = 0) {
         Node out;
         for (;;) {
-            while (at_ < tex_.size() && tex_[at_] == ' ') ++at_;
-            if (at_ == tex_.size()) {
+            while (position_ < tex_.size() && tex_[position_] == ' ') ++position_;
+            if (position_ == tex_.size()) {
                 ensure(end == 0, "every bracket of a formula is closed");
                 return out;
             }
-            if (end == '|' ? starts("\\rvert") : end != 0 && tex_[at_] == end) {
-                at_ += end == '|' ? 6 : 1;
+            if (end == '|' ? starts("\\rvert") : end != 0 && tex_[position_] == end) {
+                position_ += end == '|' ? 6 : 1;
                 return out;
             }
             out.parts.push_back(scripted(atom()));
@@ -102,12 +102,12 @@ public:
     }
 
 private:
-    bool starts(std::string_view with) const { return tex_.substr(at_).starts_with(with); }
+    bool starts(std::string_view prefix) const { return tex_.substr(position_).starts_with(prefix); }
 
     Node scripted(Node base) {
         Node sub, sup;
-        while (at_ < tex_.size() && (tex_[at_] == '_' || tex_[at_] == '^')) {
-            const bool low = tex_[at_++] == '_';
+        while (position_ < tex_.size() && (tex_[position_] == '_' || tex_[position_] == '^')) {
+            const bool low = tex_[position_++] == '_';
             (low ? sub : sup) = atom();
         }
         if (sub.empty() && sup.empty()) return base;
@@ -115,8 +115,8 @@ private:
     }
 
     Node atom() {
-        ensure(at_ < tex_.size(), "a formula does not end before a required part");
-        const char c = tex_[at_++];
+        ensure(position_ < tex_.size(), "a formula does not end before a required part");
+        const char c = tex_[position_++];
         const auto is = [&](int (*what)(int)) { return what(static_cast<unsigned char>(c)) != 0; };
         if (c == '{') return row('}');
         if (c == '(') return {Kind::paren, "", {row(')')}};
@@ -124,8 +124,9 @@ private:
         if (is(std::isalpha)) return {Kind::letter, std::string(1, c), {}};
         if (is(std::isdigit)) {
             std::string digits(1, c);
-            while (at_ < tex_.size() && (std::isdigit(static_cast<unsigned char>(tex_[at_])) || tex_[at_] == '.'))
-                digits += tex_[at_++];
+            while (position_ < tex_.size() &&
+                (std::isdigit(static_cast<unsigned char>(tex_[position_])) || tex_[position_] == '.'))
+                digits += tex_[position_++];
             return {Kind::number, digits, {}};
         }
         ensure(signs.find(c) != signs.npos, "a formula has no other signs");
@@ -133,13 +134,13 @@ private:
     }
 
     Node command() {
-        if (starts(",")) return ++at_, Node{Kind::space, "", {}};
-        std::string_view name = tex_.substr(at_);
+        if (starts(",")) return ++position_, Node{Kind::space, "", {}};
+        std::string_view name = tex_.substr(position_);
         std::size_t length = 0;
         while (length < name.size() && std::isalpha(static_cast<unsigned char>(name[length]))) ++length;
         name = name.substr(0, length);
-        at_ += length;
-        while (at_ < tex_.size() && tex_[at_] == ' ') ++at_;
+        position_ += length;
+        while (position_ < tex_.size() && tex_[position_] == ' ') ++position_;
         if (name == "frac") {
             Node top = atom(), bottom = atom();
             return {Kind::fraction, "", {std::move(top), std::move(bottom)}};
@@ -147,10 +148,10 @@ private:
         if (name == "sqrt") return {Kind::root, "", {atom()}};
         if (name == "lvert") return {Kind::bars, "", {row('|')}};
         if (name == "mathrm") {
-            const std::size_t end = tex_.find('}', at_);
+            const std::size_t end = tex_.find('}', position_);
             ensure(starts("{") && end != tex_.npos, "\\mathrm has a word in braces");
-            Node word{Kind::word, std::string(tex_.substr(at_ + 1, end - at_ - 1)), {}};
-            return at_ = end + 1, word;
+            Node word{Kind::word, std::string(tex_.substr(position_ + 1, end - position_ - 1)), {}};
+            return position_ = end + 1, word;
         }
         for (const Word& word : words)
             if (word.name == name) return {word.kind, std::string(word.text), {}};
@@ -158,11 +159,11 @@ private:
     }
 
     std::string_view tex_;
-    std::size_t at_ = 0;
+    std::size_t position_ = 0;
 };
 
-std::string element(std::string_view tag, const std::string& inside) {
-    return fmt::format("<{0}>{1}</{0}>", tag, inside);
+std::string element(std::string_view tag, const std::string& content) {
+    return fmt::format("<{0}>{1}</{0}>", tag, content);
 }
 
 std::string as_mathml(const Node& n) {
@@ -187,9 +188,9 @@ std::string as_mathml(const Node& n) {
         case Kind::row: break;
     }
     if (n.parts.size() == 1) return part(0);
-    std::string inside;
-    for (const Node& each : n.parts) inside += as_mathml(each);
-    return element("mrow", inside);
+    std::string content;
+    for (const Node& child : n.parts) content += as_mathml(child);
+    return element("mrow", content);
 }
 
 bool is_sign(const Node& n, std::string_view text) { return n.kind == Kind::sign && n.text == text; }
@@ -197,26 +198,26 @@ bool is_sign(const Node& n, std::string_view text) { return n.kind == Kind::sign
 std::string as_pango(const Node& n);
 
 /// Numerator or denominator on one line: in brackets if a neighbour would bind closer.
-std::string beside_slash(const Node& n, bool below) {
-    const Node& only = n.kind == Kind::row && n.parts.size() == 1 ? n.parts[0] : n;
-    bool brackets = below && only.kind == Kind::row && only.parts.size() > 1;
-    if (only.kind == Kind::row)
-        for (const Node& each : only.parts) brackets = brackets || is_sign(each, "+") || is_sign(each, "−");
-    const std::string line = as_pango(only);
+std::string beside_slash(const Node& n, bool is_denominator) {
+    const Node& inner = n.kind == Kind::row && n.parts.size() == 1 ? n.parts[0] : n;
+    bool brackets = is_denominator && inner.kind == Kind::row && inner.parts.size() > 1;
+    if (inner.kind == Kind::row)
+        for (const Node& term : inner.parts) brackets = brackets || is_sign(term, "+") || is_sign(term, "−");
+    const std::string line = as_pango(inner);
     return brackets ? "(" + line + ")" : line;
 }
 
 std::string row_as_pango(const Node& n) {
-    const bool close = n.parts.size() == 3 && is_sign(n.parts[1], "+") && n.parts[2].kind == Kind::number;  // s+1
+    const bool is_sum = n.parts.size() == 3 && is_sign(n.parts[1], "+") && n.parts[2].kind == Kind::number;  // s+1
     std::string out;
     for (std::size_t k = 0; k < n.parts.size(); ++k) {
-        const Node& each = n.parts[k];
-        const bool wide =
-            each.kind == Kind::sign && each.text != "·" && each.text != "," && each.text != "/" && k > 0 && !close;
-        const bool after_word = k > 0 && n.parts[k - 1].kind == Kind::word && each.kind != Kind::paren;
-        if (wide || (after_word && each.kind != Kind::sign)) out += ' ';
-        out += as_pango(each);
-        if (wide || is_sign(each, ",")) out += ' ';
+        const Node& piece = n.parts[k];
+        const bool is_spaced =
+            piece.kind == Kind::sign && piece.text != "·" && piece.text != "," && piece.text != "/" && k > 0 && !is_sum;
+        const bool follows_word = k > 0 && n.parts[k - 1].kind == Kind::word && piece.kind != Kind::paren;
+        if (is_spaced || (follows_word && piece.kind != Kind::sign)) out += ' ';
+        out += as_pango(piece);
+        if (is_spaced || is_sign(piece, ",")) out += ' ';
     }
     return out;
 }
@@ -241,8 +242,8 @@ std::string as_pango(const Node& n) {
 }
 
 void put_in(Node& n, const Value& value) {
-    const auto is_letter = [&](const Node& each) {
-        return each.kind == Kind::letter && each.text == std::string_view(&value.letter, 1);
+    const auto is_letter = [&](const Node& node) {
+        return node.kind == Kind::letter && node.text == std::string_view(&value.letter, 1);
     };
     for (std::size_t k = 0; k + 2 < n.parts.size() && n.kind == Kind::row; ++k)
         if (is_letter(n.parts[k]) && is_sign(n.parts[k + 1], "+") && n.parts[k + 2].text == "1") {
@@ -253,7 +254,7 @@ void put_in(Node& n, const Value& value) {
     for (std::size_t k = 1; k < n.parts.size() && n.kind == Kind::row; ++k)  // 2s is 2·40, and not 240
         if (is_letter(n.parts[k]) && n.parts[k - 1].kind == Kind::number)
             n.parts.insert(n.parts.begin() + static_cast<std::ptrdiff_t>(k), Node{Kind::sign, "·", {}});
-    for (Node& each : n.parts) put_in(each, value);
+    for (Node& child : n.parts) put_in(child, value);
     if (is_letter(n)) n = {Kind::number, value.number, {}};
 }
 
@@ -262,9 +263,9 @@ void put_in(Node& n, const Value& value) {
 std::string mathml(std::string_view tex) { return as_mathml(Reader(tex).row()); }
 
 std::string pango(std::string_view tex, const Value& value) {
-    Node whole = Reader(tex).row();
-    if (value.letter != 0) put_in(whole, value);
-    return as_pango(whole);
+    Node root = Reader(tex).row();
+    if (value.letter != 0) put_in(root, value);
+    return as_pango(root);
 }
 
 std::string html(std::string_view words_and_tex) {

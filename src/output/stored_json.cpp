@@ -33,12 +33,12 @@ std::vector<std::pair<std::string, StoredJson>> StoredJson::items() const {
 
 void StoredJson::refuse(const std::string& message) const {
     constexpr std::size_t longest = 40;
-    std::string found = json_->is_object() ? "an object"
-        : json_->is_array()                ? fmt::format("a list of {}", json_->size())
-                                           : json_->dump(-1, ' ', true, Json::error_handler_t::replace);
-    if (found.size() > longest) found = found.substr(0, longest - 3) + "...";
+    std::string description = json_->is_object() ? "an object"
+        : json_->is_array()                      ? fmt::format("a list of {}", json_->size())
+                                                 : json_->dump(-1, ' ', true, Json::error_handler_t::replace);
+    if (description.size() > longest) description = description.substr(0, longest - 3) + "...";
     throw StoredJsonError(
-        fmt::format("{}{}, found {}", place_.empty() ? "" : printable(place_) + ": ", message, found));
+        fmt::format("{}{}, found {}", place_.empty() ? "" : printable(place_) + ": ", message, description));
 }
 
 void StoredJson::missing(const std::string& key) const {
@@ -53,12 +53,12 @@ std::string unreadable_json(const Json::exception& error) {
     if (text.starts_with("key '") && text.ends_with("' not found"))
         return fmt::format("expected an object with {}, found none",
             text.substr(4, text.size() - 4 - std::string_view(" not found").size()));
-    if (const std::size_t with = text.find(" with "); text.starts_with("cannot use ") && with != text.npos)
-        return fmt::format("expected a value of another type, found {}", text.substr(with + 6));
-    const std::string_view must = "type must be ", is = ", but is ";
-    if (const std::size_t but = text.find(is); text.starts_with(must) && but != text.npos)
-        return fmt::format("expected a value of type {}, found {}", text.substr(must.size(), but - must.size()),
-            text.substr(but + is.size()));
+    if (const std::size_t position = text.find(" with "); text.starts_with("cannot use ") && position != text.npos)
+        return fmt::format("expected a value of another type, found {}", text.substr(position + 6));
+    const std::string_view prefix = "type must be ", infix = ", but is ";
+    if (const std::size_t position = text.find(infix); text.starts_with(prefix) && position != text.npos)
+        return fmt::format("expected a value of type {}, found {}",
+            text.substr(prefix.size(), position - prefix.size()), text.substr(position + infix.size()));
     return text;
 }
 

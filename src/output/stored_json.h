@@ -48,10 +48,10 @@ public:
     const Json& value() const { return *json_; }
     /// The member of an object.
     StoredJson at(const std::string& key) const {
-        const auto found = json_->is_object() ? json_->find(key) : json_->end();
+        const auto match = json_->is_object() ? json_->find(key) : json_->end();
         if (!json_->is_object()) refuse(expected_object(key));
-        if (found == json_->end()) missing(key);
-        return {*found, member(key)};
+        if (match == json_->end()) missing(key);
+        return {*match, member(key)};
     }
     /// The entry of a list.
     StoredJson at(std::size_t index) const {

@@ -44,9 +44,9 @@ public:
 
     const mustache::data* get(const std::string& name) const override {
         if (name.starts_with("count.")) return &(count_ = mustache::data(std::to_string(++counts_[name])));
-        const mustache::data* found = context::get(name);
-        ensure(found != nullptr, fmt::format("{}: the model has no value '{}'", page_, name));
-        return found;
+        const mustache::data* value = context::get(name);
+        ensure(value != nullptr, fmt::format("{}: the model has no value '{}'", page_, name));
+        return value;
     }
     const mustache::data* get_partial(const std::string& name) const override {
         std::string text = text_of(name);
@@ -56,8 +56,8 @@ public:
     }
     std::string text_of(std::string_view name) const {
         for (const Templates& templates : {templates_, output_templates()})
-            if (const auto found = std::ranges::find(templates, name, &Template::name); found != templates.end())
-                return std::string(found->text);
+            if (const auto match = std::ranges::find(templates, name, &Template::name); match != templates.end())
+                return std::string(match->text);
         throw Bug(std::source_location::current(), fmt::format("{}: there is no template '{}'", page_, name));
     }
 

@@ -18,7 +18,7 @@ namespace crescent {
 
 /// One direction of a sample: X gains weight f L cos / pdf.
 struct WeightedDirection {
-    DrawnByAny<float> drawn;
+    DrawnByAny<float> draw;
     float weight = 0;
 };
 
@@ -42,7 +42,7 @@ public:
         std::shared_ptr<const SamplerAdapter> weigh = nullptr);
 
     SamplerDeclaration declaration() const override {
-        return {.name = name_, .traits = {.has_pdf = false}, .device = device_of(of_)};
+        return {.name = name_, .traits = {.has_pdf = false}, .device = device_of(parts_)};
     }
     /// Is not called: a combination is estimated at shading points, by sample().
     void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override;
@@ -53,13 +53,13 @@ public:
     std::size_t directions() const { return cost().directions; }
 
     /// Writes directions() entries for each row.
-    void sample(const PointRows& rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample(const PointRows& point_rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
 
     /// Returns its density if a sample is one direction that is weighted by its density; else null.
     std::shared_ptr<const Technique> technique() const;
 
     /// Its samplers, and the weight of a direction of sampler k, w_k, from the densities of all at it.
-    const Techniques& parts() const { return of_; }
+    const Techniques& parts() const { return parts_; }
     double mis_weight(std::size_t k, FormulaInputs in, std::span<const double> p) const;
     /// Whether they come from a function, which mis_weight() does not call.
     bool has_weight_function() const { return weigh_ != nullptr; }
@@ -75,17 +75,17 @@ public:
     void shares_at(const ShadingPoints& points, std::size_t point, std::span<double> out) const;
 
 private:
-    void sample_every(const PointRows& rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
-    void sample_mixture(const PointRows& rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
-    void sample_one(const PointRows& rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
-    void sample_resampled(const PointRows& rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_every(const PointRows& point_rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_mixture(const PointRows& point_rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_one(const PointRows& point_rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
+    void sample_resampled(const PointRows& point_rows, const NumberBlocks& u, std::span<WeightedDirection> out) const;
     std::uint64_t samples_of(std::size_t k) const;
     /// n_k of draw = "every", c_k of draw = "one".
     std::vector<double> shares(const FormulaInputs& in) const;
 
     std::string name_;
     CombinationPlan plan_;
-    Techniques of_;
+    Techniques parts_;
     std::shared_ptr<const Technique> target_;
     WeightList weights_, probabilities_;
     std::shared_ptr<const Technique> mixture_;  // of a mixture

@@ -110,8 +110,8 @@ void compare(const Estimate& a, const Estimate& b, std::size_t points) {
     for (std::size_t k = 0; k < a.moments.light_g.size(); ++k)
         EXPECT_EQ(differences(a.moments.light_g_lobe[k], b.moments.light_g_lobe[k], points), 0u);
     for (std::size_t c = 0; !a.moments.around_g.empty() && c < 3; ++c) {
-        EXPECT_EQ(differences(a.moments.around[c], b.moments.around[c], points), 0u);
-        EXPECT_EQ(differences(a.moments.around_lobe[c], b.moments.around_lobe[c], points), 0u);
+        EXPECT_EQ(differences(a.moments.around_rgb[c], b.moments.around_rgb[c], points), 0u);
+        EXPECT_EQ(differences(a.moments.around_rgb_lobe[c], b.moments.around_rgb_lobe[c], points), 0u);
     }
 }
 

@@ -34,32 +34,32 @@ template <class F> CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& dis
 /// Like meets_disk, for a drawn direction. A sampler that aimed at disk k already knows the result. `alone`: the scene
 /// has no other disk.
 template <class F, class D>
-CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& drawn, std::size_t k, bool alone, F& v) {
-    if constexpr (requires { drawn.met; }) {
+CRESCENT_INLINE MaskOf<F> meets_disk(const FacingDisk<F>& disk, const D& draw, std::size_t k, bool alone, F& v) {
+    if constexpr (requires { draw.meets_light; }) {
         constexpr bool aims = !requires { D::by_any; };  // every direction is aimed at a light
         if (aims && alone) {
-            v = dot(drawn.wi, disk.n);
-            return drawn.met & (v < number<F>(0));
+            v = dot(draw.wi, disk.n);
+            return draw.meets_light & (v < number<F>(0));
         }
-        const auto tested = meets_disk(disk, drawn.wi, v), is_own = drawn.disk == number<F>(static_cast<double>(k));
-        return (is_own & drawn.met & (v < number<F>(0))) | (tested & !is_own);
+        const auto meets = meets_disk(disk, draw.wi, v), is_own = draw.disk == number<F>(static_cast<double>(k));
+        return (is_own & draw.meets_light & (v < number<F>(0))) | (meets & !is_own);
     } else {
-        return meets_disk(disk, drawn.wi, v);
+        return meets_disk(disk, draw.wi, v);
     }
 }
 
 /// Like meets_disk, for a light of another kind, at index k of all lights. Sets t to its distance.
-template <class F, class D> MaskOf<F> meets_light(const LocalLight<F>& light, const D& drawn, std::size_t k, F& t) {
-    MaskOf<F> met = drawn.wi.x > drawn.wi.x, shines = met;
+template <class F, class D> MaskOf<F> meets_light(const LocalLight<F>& light, const D& draw, std::size_t k, F& t) {
+    MaskOf<F> meets = draw.wi.x > draw.wi.x, shines = meets;
     with_light_kind(light.kind, [&]<class Kind>() {
-        met = Kind::meets(light, drawn.wi, t);
+        meets = Kind::meets(light, draw.wi, t);
         shines = Kind::shines(light);
     });
-    if constexpr (requires { drawn.met; }) {
-        const auto is_own = drawn.disk == number<F>(static_cast<double>(k));
-        return (is_own & drawn.met & shines) | (met & !is_own);
+    if constexpr (requires { draw.meets_light; }) {
+        const auto is_own = draw.disk == number<F>(static_cast<double>(k));
+        return (is_own & draw.meets_light & shines) | (meets & !is_own);
     }
-    return met;
+    return meets;
 }
 
 /// Compares two disks on one ray: the nearer one is met. If rounding cannot order them, the first one in the file is
@@ -77,10 +77,10 @@ template <class F> struct DiskCone {
     /// Makes the cone of a sphere around c.
     DiskCone(Vec3<F> c, F r2, MaskOf<F> shines) {
         const F one = number<F>(1), d2 = dot(c, c);
-        const auto outside = d2 > r2;
+        const auto is_outside = d2 > r2;
         axis = c * (one / sqrt(larger(d2, number<F>(1e-30))));
-        cos = select(
-            outside, sqrt(larger(one - r2 / select(outside, d2, one), number<F>(0))) - number<F>(1e-5), number<F>(-2));
+        cos = select(is_outside, sqrt(larger(one - r2 / select(is_outside, d2, one), number<F>(0))) - number<F>(1e-5),
+            number<F>(-2));
         cos = select(shines, cos, number<F>(2));
     }
     CRESCENT_INLINE MaskOf<F> holds(Vec3<F> w) const { return dot(w, axis) > cos; }

@@ -55,8 +55,8 @@ public:
     /// Of points first to first + count, by colour channel.
     void operator()(std::size_t first, std::size_t count, Means& out) const {
         Means diffuse{}, lobe{};
-        add_lights(first, count, m_.g, m_.light_g, m_.around_g, m_.around, diffuse);
-        add_lights(first, count, m_.g_lobe, m_.light_g_lobe, m_.around_g_lobe, m_.around_lobe, lobe);
+        add_lights(first, count, m_.g, m_.light_g, m_.around_g, m_.around_rgb, diffuse);
+        add_lights(first, count, m_.g_lobe, m_.light_g_lobe, m_.around_g_lobe, m_.around_rgb_lobe, lobe);
         for (std::size_t c = 0; c < 3; ++c) {
             for (std::size_t i = 0; i < count; ++i) {
                 const std::size_t index = first + i;
@@ -72,7 +72,7 @@ private:
 
     /// Adds the light of each emitter, and of the fill where no other is met.
     void add_lights(std::size_t first, std::size_t count, const Sums& g, const std::vector<Sums>& light_g,
-        const Sums& around_g, const std::array<Sums, 3>& around, Means& out) const {
+        const Sums& around_g, const std::array<Sums, 3>& around_rgb, Means& out) const {
         std::array<double, longest> fill_g;
         std::copy_n(g.data() + first, count, fill_g.data());
         const auto subtract = [&](const double* __restrict from) {
@@ -87,7 +87,7 @@ private:
         }
         if (shading_points_.around) {
             subtract(around_g.data() + first);
-            for (std::size_t c = 0; c < 3; ++c) add(c, 1, around[c].data() + first);
+            for (std::size_t c = 0; c < 3; ++c) add(c, 1, around_rgb[c].data() + first);
         }
         for (std::size_t i = 0; i < count; ++i) fill_g[i] = fill_g[i] < 0 ? 0 : fill_g[i];
         for (std::size_t c = 0; c < 3; ++c) add(c, scene_.fill()[c], fill_g.data());
@@ -245,8 +245,8 @@ std::vector<Moments> estimate_points(const ShadingPoints& shading_points, const 
 
 Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
     const std::string& isa, const std::atomic<bool>* stop, float* samples) {
-    const std::array<std::uint64_t, 1> one = {n};
-    return std::move(estimate_points(shading_points, arm, one, seed, isa, stop, samples)[0]);
+    const std::array<std::uint64_t, 1> counts = {n};
+    return std::move(estimate_points(shading_points, arm, counts, seed, isa, stop, samples)[0]);
 }
 
 namespace {
@@ -258,32 +258,32 @@ public:
 
     /// Changes `samples`. Drops NaN, which the kernels count.
     void add(std::vector<float>& samples) {
-        const float least = least_.load(std::memory_order_relaxed);
-        const std::size_t drawn = samples.size();
-        std::erase_if(samples, [least](float x) { return !(x > least); });
+        const float threshold = threshold_.load(std::memory_order_relaxed);
+        const std::size_t count = samples.size();
+        std::erase_if(samples, [threshold](float x) { return !(x > threshold); });
         const Guard guard(lock_);
-        drawn_ += drawn;
-        all_.insert(all_.end(), samples.begin(), samples.end());
-        if (all_.size() <= count_) return;
-        const auto last = all_.begin() + static_cast<std::ptrdiff_t>(count_) - 1;
-        std::nth_element(all_.begin(), last, all_.end(), std::greater<>());
-        all_.resize(count_);
-        least_.store(all_.back(), std::memory_order_relaxed);
+        sample_count_ += count;
+        values_.insert(values_.end(), samples.begin(), samples.end());
+        if (values_.size() <= count_) return;
+        const auto last = values_.begin() + static_cast<std::ptrdiff_t>(count_) - 1;
+        std::nth_element(values_.begin(), last, values_.end(), std::greater<>());
+        values_.resize(count_);
+        threshold_.store(values_.back(), std::memory_order_relaxed);
     }
 
-    std::uint64_t drawn() const { return drawn_; }
+    std::uint64_t sample_count() const { return sample_count_; }
     std::vector<float> in_order() && {
-        std::sort(all_.begin(), all_.end(), std::greater<>());
-        return std::move(all_);
+        std::sort(values_.begin(), values_.end(), std::greater<>());
+        return std::move(values_);
     }
 
 private:
     std::size_t count_;
     Mutex lock_;
-    std::atomic<float> least_ = -std::numeric_limits<float>::infinity();  // values up to this one are no longer among
-                                                                          // the largest
-    std::vector<float> all_;
-    std::uint64_t drawn_ = 0;
+    // Values up to this one are no longer among the largest.
+    std::atomic<float> threshold_ = -std::numeric_limits<float>::infinity();
+    std::vector<float> values_;
+    std::uint64_t sample_count_ = 0;
 };
 
 /// Keeps the samples of points on one surface, n for each point.
@@ -298,7 +298,8 @@ void keep_surface(const ShadingPoints& points, int surface, std::uint64_t n, std
 }  // namespace
 
 std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
-    const Area& area, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn) {
+    const Area& area, std::size_t count, const std::string& isa, ProgressMonitor& monitor,
+    std::uint64_t& sample_count) {
     const Box& box = area.box;
     std::vector<TileBox> tiles;
     for (const TileBox& t : tiles_of(box.width(), box.height()))
@@ -314,7 +315,7 @@ std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, st
         }
     });
     monitor.check();
-    drawn = largest.drawn();
+    sample_count = largest.sample_count();
     return std::move(largest).in_order();
 }
 
@@ -387,10 +388,10 @@ void estimate_external(const SamplerAdapter& sampler, const KernelCall& call) {
     std::vector<LightAtPoint> lights_at;
     std::vector<double> u;
     std::vector<Draw> draws;
-    std::vector<Drawn<float>> drawn;
+    std::vector<Drawn<float>> directions;
     for (std::size_t i = 0; i < shading_points.count; i += points_a_batch) {
         const std::size_t end = std::min<std::size_t>(shading_points.count, i + points_a_batch);
-        drawn.clear();
+        directions.clear();
         for (std::uint64_t first = 0; first < n; first += longest_batch) {
             if (call.stop && call.stop->load(std::memory_order_relaxed)) return;
             const std::uint64_t count = std::min(longest_batch, n - first);
@@ -408,10 +409,10 @@ void estimate_external(const SamplerAdapter& sampler, const KernelCall& call) {
             const SceneRows scene{.runs = runs, .lights = lights, .lights_at = lights_at};
             sampler.evaluate(
                 {.kind = SamplerQuery::Kind::sample, .u = {u, numbers}, .scene = &scene}, {.draws = draws});
-            for (const Draw& draw : draws) drawn.push_back(usable(draw));
+            for (const Draw& draw : draws) directions.push_back(usable(draw));
         }
         for (std::size_t index = i; index < end; ++index)
-            kernel(call, index, Prefetched<float>(drawn.data() + (index - i) * n));
+            kernel(call, index, Prefetched<float>(directions.data() + (index - i) * n));
     }
 }
 

@@ -48,9 +48,9 @@ Rgb mean_radiance(
 ShapeMap shape_map(const Scene& scene);
 
 /// Returns the `count` >= 1 largest samples X of one sampler over the geometry pixels of an area, n samples each, in
-/// descending order. `drawn` receives the number of samples.
+/// descending order. `sample_count` receives the number of samples.
 std::vector<float> largest_samples(const Scene& scene, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,
-    const Area& area, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& drawn);
+    const Area& area, std::size_t count, const std::string& isa, ProgressMonitor& monitor, std::uint64_t& sample_count);
 
 /// Runs a kernel over shading points made by the caller and returns the moments of the last sample count.
 Moments estimate_points(const ShadingPoints& shading_points, const SamplerRef& arm, std::uint64_t n, std::uint32_t seed,

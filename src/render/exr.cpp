@@ -82,10 +82,10 @@ template <class AnyFilm> Imf::FrameBuffer frame_buffer(const AnyFilm& film) {
 /// one file is written, then restores it.
 class ExrThreads {
 public:
-    ExrThreads() : guard_(lock()), before_(Imf::globalThreadCount()) {
+    ExrThreads() : guard_(lock()), old_count_(Imf::globalThreadCount()) {
         Imf::setGlobalThreadCount(threads_here() > 1 ? threads_here() : 0);  // 0: this thread alone
     }
-    ~ExrThreads() { Imf::setGlobalThreadCount(before_); }
+    ~ExrThreads() { Imf::setGlobalThreadCount(old_count_); }
     ExrThreads(const ExrThreads&) = delete;
     ExrThreads& operator=(const ExrThreads&) = delete;
 
@@ -95,7 +95,7 @@ private:
         return mutex;
     }
     Guard guard_;
-    int before_;
+    int old_count_;
 };
 
 template <class AnyFilm> void write_parts(const std::string& path,
@@ -180,14 +180,14 @@ ImageChannels channels_of(const std::string& path, const std::string& layer) {
     const OpenFile file(path);
     const ExrFile exr(file);
     if (!layer.empty()) {
-        const ExrLayer found = chosen_layer(exr, path, layer);
-        const ExrPart& part = exr.parts()[static_cast<std::size_t>(found.part)];
-        const std::vector<std::string>& names = found.channels;
-        if (found.kind == ExrLayer::Kind::grey) return channels_in(part, path, {names[0], names[0], names[0]});
-        if (found.kind == ExrLayer::Kind::rgb) return channels_in(part, path, {names[0], names[1], names[2]});
+        const ExrLayer match = chosen_layer(exr, path, layer);
+        const ExrPart& part = exr.parts()[static_cast<std::size_t>(match.part)];
+        const std::vector<std::string>& names = match.channels;
+        if (match.kind == ExrLayer::Kind::grey) return channels_in(part, path, {names[0], names[0], names[0]});
+        if (match.kind == ExrLayer::Kind::rgb) return channels_in(part, path, {names[0], names[1], names[2]});
         throw LayerError({path, 0, 0},
             fmt::format(
-                "expected a layer of R, G and B, or Y, found '{}' of {}", layer, fmt::join(found.channels, ", ")));
+                "expected a layer of R, G and B, or Y, found '{}' of {}", layer, fmt::join(match.channels, ", ")));
     }
     const ExrPart& part = exr.parts().front();
     if (!part.channel("R") && part.channel("Y")) return channels_in(part, path, {"Y", "Y", "Y"});
@@ -290,15 +290,15 @@ std::shared_ptr<const RgbImage> read_hdr(const std::string& path, WhyNot why_not
     if (header.primaries && !are_near_rec709(*header.primaries))
         file.fail("expected colours in Rec.709, found other PRIMARIES in the header");
     if (const std::string why = why_not(header.width, header.height); !why.empty()) file.fail(why);
-    const StoredImage stored = decoded(file);
-    const ImageHead& head = stored.head;
+    const StoredImage image = decoded(file);
+    const ImageHead& head = image.head;
     auto out = std::make_shared<RgbImage>();
     out->width = static_cast<int>(head.width);
     out->height = static_cast<int>(head.height);
     out->rgb.resize(3 * out->texels());
     for (std::size_t k = 0; k < out->rgb.size(); ++k) {
         const std::size_t channel = head.channels < 3 ? 0 : k % 3;
-        out->rgb[k] = static_cast<float>(stored.sample(k / 3 * head.channels + channel) * header.unit[k % 3]);
+        out->rgb[k] = static_cast<float>(image.sample(k / 3 * head.channels + channel) * header.unit[k % 3]);
     }
     out->hash = hash_of_texels(*out);
     return out;

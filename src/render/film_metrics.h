@@ -132,15 +132,15 @@ struct HorizonFracMetric {
     static constexpr MetricInfo info = {
         .means = "part of the directions drawn at geometry pixels that fall under the horizon",
         .label = "horizon share"};
-    double under = 0, geometry = 0;
+    double directions = 0, geometry = 0;
     void add(const FilmPixel& p, const FilmFacts&) {
         if (p.geometry) {
             ++geometry;
-            under += p.horizon;
+            directions += p.horizon;
         }
     }
     double value(const FilmFacts& f) const {
-        return geometry > 0 ? under / (geometry * static_cast<double>(f.n * f.directions)) : 0;
+        return geometry > 0 ? directions / (geometry * static_cast<double>(f.n * f.directions)) : 0;
     }
 };
 
@@ -164,9 +164,9 @@ struct LargestMetric {
         .means = "largest single sample of the frame; the arm's highest sample count unless n is given",
         .in_tables = false,
         .of_single_samples = true};
-    double most = 0;
-    void add(const FilmPixel& p, const FilmFacts&) { most = std::max(most, p.largest); }
-    double value(const FilmFacts&) const { return most; }
+    double largest = 0;
+    void add(const FilmPixel& p, const FilmFacts&) { largest = std::max(largest, p.largest); }
+    double value(const FilmFacts&) const { return largest; }
 };
 
 /// bad: samples that are NaN, infinite or negative.

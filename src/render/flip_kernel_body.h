@@ -21,9 +21,9 @@ template <class F> struct FlipPixels {
     static constexpr double sum_of(const double (&row)[3]) { return row[0] + row[1] + row[2]; }
     static constexpr double white[3] = {sum_of(xyz_of_rgb[0]), sum_of(xyz_of_rgb[1]), sum_of(xyz_of_rgb[2])};
     static CRESCENT_INLINE Vec3<F> relative_xyz(Vec3<F> rgb) {
-        constexpr double one[3] = {1, 1, 1};
-        return {row(xyz_of_rgb[0], one, 1 / white[0], rgb), row(xyz_of_rgb[1], one, 1 / white[1], rgb),
-            row(xyz_of_rgb[2], one, 1 / white[2], rgb)};
+        constexpr double ones[3] = {1, 1, 1};
+        return {row(xyz_of_rgb[0], ones, 1 / white[0], rgb), row(xyz_of_rgb[1], ones, 1 / white[1], rgb),
+            row(xyz_of_rgb[2], ones, 1 / white[2], rgb)};
     }
     static CRESCENT_INLINE Vec3<F> rgb_of_relative(Vec3<F> xyz) {
         return {
@@ -71,9 +71,9 @@ template <class F> struct FlipPixels {
     [[gnu::noinline]] static F difference(const Seen& a, const Seen& b, F largest) {
         const F one = number<F>(1);
         const F d = power_of(smaller(hyab(a.lab, b.lab) / largest, one), number<F>(0.7));
-        constexpr double knee = 0.4, above = 0.95;  // the largest differences are compressed most
-        const F colour = select(d < number<F>(knee), number<F>(above / knee) * d,
-            number<F>(above) + (d - number<F>(knee)) * number<F>((1 - above) / (1 - knee)));
+        constexpr double knee = 0.4, knee_height = 0.95;  // the largest differences are compressed most
+        const F colour = select(d < number<F>(knee), number<F>(knee_height / knee) * d,
+            number<F>(knee_height) + (d - number<F>(knee)) * number<F>((1 - knee_height) / (1 - knee)));
         const F edges = abs(a.edges - b.edges), points = abs(a.points - b.points);
         const F shape = sqrt(larger(edges, points) * number<F>(0.70710678118654752));
         return select(shape < one, power_of(colour, one - smaller(shape, one)), one);
@@ -128,8 +128,8 @@ private:
         for (std::size_t x = 0; x < width_ + taps_ - 1; x += lanes) {
             const std::size_t i = y * stride_in_ + x;
             const Vec3<F> rgb = {load_as<F>(in[0] + i), load_as<F>(in[1] + i), load_as<F>(in[2] + i)};
-            const auto seen = [&](F v) { return mapped ? Pixels::tone_mapped(v, exposure) : Pixels::unit(v); };
-            const Vec3<F> xyz = Pixels::relative_xyz({seen(rgb.x), seen(rgb.y), seen(rgb.z)});
+            const auto unit_of = [&](F v) { return mapped ? Pixels::tone_mapped(v, exposure) : Pixels::unit(v); };
+            const Vec3<F> xyz = Pixels::relative_xyz({unit_of(rgb.x), unit_of(rgb.y), unit_of(rgb.z)});
             store(xyz.y, line(0) + x);
             store(xyz.x - xyz.y, line(1) + x);
             store(xyz.y - xyz.z, line(2) + x);

@@ -55,7 +55,7 @@ void Moments::resize(const ShadingPoints& shading_points) {
         for (std::vector<double>& of_light : *sums) of_light.resize(size);
     }
     for (auto* sums : {&around_g, &around_g_lobe}) sums->resize(of_around);
-    for (auto* sums : {&around, &around_lobe})
+    for (auto* sums : {&around_rgb, &around_rgb_lobe})
         for (std::vector<double>& of_channel : *sums) of_channel.resize(of_around);
     largest.resize(size);
     for (auto* counts : {&horizon, &hits, &bad}) counts->resize(size);
@@ -65,7 +65,7 @@ namespace {
 
 struct Isa {
     const char* name;
-    bool here;
+    bool is_available;
     KernelTable (*kernels)();  // compiled for this set: called only if the machine has it
 };
 
@@ -85,7 +85,7 @@ const std::vector<Isa>& family() {
 std::vector<KernelTable> tables_here() {
     std::vector<KernelTable> tables;
     for (const Isa& isa : family()) {
-        if (!isa.here) continue;
+        if (!isa.is_available) continue;
         const KernelTable table = isa.kernels();
         if (!table.isa.empty()) tables.push_back(table);
     }
@@ -113,35 +113,35 @@ std::string all_isas() {
 
 const KernelTable& kernels_for(const std::string& isa) {
     const std::string_view best = tables().back().isa;
-    const std::string_view wanted = isa.empty() ? best : std::string_view(isa);
+    const std::string_view name = isa.empty() ? best : std::string_view(isa);
     for (const KernelTable& table : tables())
-        if (table.isa == wanted) return table;
+        if (table.isa == name) return table;
     std::vector<std::string> names;
     for (const Isa& candidate : family()) {
         names.emplace_back(candidate.name);
-        if (wanted != candidate.name) continue;
-        if (candidate.here) throw not_built("--isa " + isa);
+        if (name != candidate.name) continue;
+        if (candidate.is_available) throw not_built("--isa " + isa);
         throw InputError({"--isa", 0, 0}, "this machine has no " + isa + "; it has " + std::string(best) + " at best");
     }
     throw InputError({"--isa", 0, 0}, expected_one_of(names, isa));
 }
 
 FlipKernel flip_kernel_for(const std::string& isa) {
-    const std::string_view found = kernels_for(isa).isa;
+    const std::string_view kernel_isa = kernels_for(isa).isa;
 #define CRESCENT_FIND(name, needs) \
-    if (found == #name) return name##_flip();
+    if (kernel_isa == #name) return name##_flip();
     CRESCENT_ISAS(CRESCENT_FIND)
 #undef CRESCENT_FIND
     return scalar_flip();
 }
 
 int arm_index(std::string_view sampler) {
-    int index = 0, found = -1;
+    int index = 0, match = -1;
     for_each_sampler(Samplers{}, [&]<template <class> class A>() {
-        if (A<float>::name == sampler) found = index;
+        if (A<float>::name == sampler) match = index;
         ++index;
     });
-    return found;
+    return match;
 }
 
 }  // namespace crescent

@@ -57,14 +57,14 @@ CRESCENT_INLINE float as_float(double u) {
 /// Chooses one of `parts` parts by u and stretches u back to (0, 1); share(k): the probability of part k. A part of
 /// probability 0 is never chosen.
 template <class Share>
-CRESCENT_INLINE double choose_part(const Share& share, std::size_t parts, double u, std::size_t& chosen) {
+CRESCENT_INLINE double choose_part(const Share& share, std::size_t parts, double u, std::size_t& choice) {
     std::size_t last = 0, k = 0;
     for (std::size_t j = 0; j < parts; ++j)
         if (share(j) > 0) last = j;
-    double below = 0;
-    while (k < last && u >= below + share(k)) below += share(k++);
-    chosen = k;
-    return clamped((u - below) / (k == last ? 1 - below : share(k)), 0x1p-53, 1 - 0x1p-53);
+    double start = 0;
+    while (k < last && u >= start + share(k)) start += share(k++);
+    choice = k;
+    return clamped((u - start) / (k == last ? 1 - start : share(k)), 0x1p-53, 1 - 0x1p-53);
 }
 
 /// A combination whose samplers are all built in, as kernels take it.
@@ -96,7 +96,7 @@ struct Moments {
     std::vector<std::vector<double>> light_g, light_g_lobe;  // over the samples that met light k, disks first
     /// Over the samples that met light that varies: g, g * lobe, and both times L by colour channel. Empty without it.
     std::vector<double> around_g, around_g_lobe;
-    std::array<std::vector<double>, 3> around, around_lobe;
+    std::array<std::vector<double>, 3> around_rgb, around_rgb_lobe;
     std::vector<double> spread;  // sum of (X - mean X)^2
     std::vector<float> largest;  // largest X
     std::vector<std::uint32_t> horizon, hits, bad;

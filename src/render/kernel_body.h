@@ -23,18 +23,18 @@ inline constexpr std::uint64_t block_length = 16;
 template <class E, class F>
 concept Emitters = std::constructible_from<E, const ShadingPoints&, std::size_t, typename E::Room&> &&
     std::constructible_from<typename E::Totals, typename E::Room&> &&
-    requires(E emitters, const E& seen, ShadingPoint<F>& shading_point, typename E::Totals totals, Moments& out) {
-        { seen.first() } -> std::same_as<typename E::First>;
-        seen.show(shading_point);
+    requires(E emitters, const E& lights, ShadingPoint<F>& shading_point, typename E::Totals totals, Moments& out) {
+        { lights.first() } -> std::same_as<typename E::First>;
+        lights.show(shading_point);
         totals.take(emitters);
-        totals.write(seen, out);
+        totals.write(lights, out);
     };
 
 /// The sums of one pack of pixels: those of the current block and those over all samples. Sums that only samples which
 /// meet an emitter change are kept elsewhere, so that these can stay in registers.
 template <class F> struct RunningSums {
     F g = number<F>(0), g_lobe = number<F>(0);
-    F off = number<F>(0), square = number<F>(0);  // sums of X - pivot and of its square
+    F offset = number<F>(0), square = number<F>(0);  // sums of X - pivot and of its square
     F pivot = number<F>(
         0);  // the smaller of the first two X (outliers are large), then the mean of the first 16, 64, 256, ...
     F largest = number<F>(0);
@@ -54,67 +54,67 @@ template <class E, class F> struct Constants {
 template <class A, class L, class E, class F> struct Lane : E {
     static_assert(Emitters<E, F>);
     using U = UintOf<F>;
-    using E::shading_points, E::at;
+    using E::shading_points, E::start;
     ShadingPoint<F> shading_point;
 
     Lane(const ShadingPoints& points, std::size_t first, typename E::Room& room) : E(points, first, room) {
-        shading_point = {load_lanes<F>(shading_points.wox, shading_points.woy, shading_points.woz, at),
-            load_lanes<F>(shading_points.s, at), load_lanes<F>(shading_points.alpha, at),
-            load_lanes<F>(shading_points.diffuse, at), load_lanes<F>(shading_points.rho_s, at)};
+        shading_point = {load_lanes<F>(shading_points.wox, shading_points.woy, shading_points.woz, start),
+            load_lanes<F>(shading_points.s, start), load_lanes<F>(shading_points.alpha, start),
+            load_lanes<F>(shading_points.diffuse, start), load_lanes<F>(shading_points.rho_s, start)};
         shading_point.lobe_kind = static_cast<LobeKind>(shading_points.lobe);
         this->show(shading_point);
     }
 
     Constants<E, F> constants() const {
-        return {shading_point.wo, load_lanes<F>(shading_points.fill_d, at), load_lanes<F>(shading_points.fill_s, at),
-            load_lanes<F>(shading_points.pixel, at), this->first()};
+        return {shading_point.wo, load_lanes<F>(shading_points.fill_d, start),
+            load_lanes<F>(shading_points.fill_s, start), load_lanes<F>(shading_points.pixel, start), this->first()};
     }
 
     /// Returns X of one drawn direction and adds its contribution to the sums.
     template <class D> [[gnu::always_inline]] F accumulate(
-        RunningSums<F>& to, const Constants<E, F>& c, const L& brdf, const D& drawn, F weight) {
+        RunningSums<F>& to, const Constants<E, F>& c, const L& brdf, const D& draw, F weight) {
         const F zero = number<F>(0);
-        const F cos = drawn.wi.z;
-        auto down = cos <= zero;  // false for NaN, which must reach the sums and be counted
-        if constexpr (requires { this->below_face(drawn.wi); }) down = down | this->below_face(drawn.wi);
-        const auto up = !(down | (drawn.pdf.v == zero));
-        to.horizon = plus_one_where(down, to.horizon);
-        const F g = select(up, weight * (cos / drawn.pdf.v), zero);
-        const F lobe = select(up, brdf(c.wo, drawn.wi), zero);
+        const F cos = draw.wi.z;
+        auto is_below = cos <= zero;  // false for NaN, which must reach the sums and be counted
+        if constexpr (requires { this->below_face(draw.wi); }) is_below = is_below | this->below_face(draw.wi);
+        const auto can_contribute = !(is_below | (draw.pdf.v == zero));
+        to.horizon = plus_one_where(is_below, to.horizon);
+        const F g = select(can_contribute, weight * (cos / draw.pdf.v), zero);
+        const F lobe = select(can_contribute, brdf(c.wo, draw.wi), zero);
         F x = g * c.fill_d;
         to.g = to.g + g;
         if constexpr (L::present) {
             to.g_lobe = to.g_lobe + g * lobe;
             x = g * (c.fill_d + lobe * c.fill_s);
         }
-        return this->gather(c.first, drawn, g, lobe, x, up);
+        return this->gather(c.first, draw, g, lobe, x, can_contribute);
     }
 
     /// The same for a direction whose weight and density are work: weigh(lanes) is called for those lanes where X may
-    /// not be 0. `drawn` receives the texel of the sky that it meets.
+    /// not be 0. `draw` receives the texel of the sky that it meets.
     template <class D, class Weigh>
-    F accumulate_seen(RunningSums<F>& to, const Constants<E, F>& c, const L& brdf, D& drawn, const Weigh& weigh) {
+    F accumulate_seen(RunningSums<F>& to, const Constants<E, F>& c, const L& brdf, D& draw, const Weigh& weigh) {
         const F zero = number<F>(0);
-        const F cos = drawn.wi.z;
-        auto down = cos <= zero;
-        if constexpr (requires { this->below_face(drawn.wi); }) down = down | this->below_face(drawn.wi);
-        const auto up = !(down | (drawn.pdf.v == zero));
-        to.horizon = plus_one_where(down, to.horizon);
-        if (!any(up)) return zero;
-        const auto seen = this->look(drawn, up);
-        const auto counts =
-            up & (seen.lit() | (c.fill_d > zero) | (c.fill_s > zero) | !(drawn.pdf.v >= zero));  // NaN is counted
+        const F cos = draw.wi.z;
+        auto is_below = cos <= zero;
+        if constexpr (requires { this->below_face(draw.wi); }) is_below = is_below | this->below_face(draw.wi);
+        const auto can_contribute = !(is_below | (draw.pdf.v == zero));
+        to.horizon = plus_one_where(is_below, to.horizon);
+        if (!any(can_contribute)) return zero;
+        const auto hit = this->look(draw, can_contribute);
+        const auto counts = can_contribute &
+            (hit.lit() | (c.fill_d > zero) | (c.fill_s > zero) | !(draw.pdf.v >= zero));  // NaN is counted
         F g = zero, lobe = zero;
         if (any(counts)) {
-            if constexpr (requires { seen.texel; }) drawn.texel = seen.texel.pack();
+            if constexpr (requires { hit.texel; }) draw.texel = hit.texel.pack();
             const auto [weight, pdf] = weigh(counts);
-            const auto some = counts & !(pdf == zero);
-            g = select(some, weight * (cos / pdf), zero);
-            lobe = select(some, brdf(c.wo, drawn.wi), zero);
+            const auto contributes = counts & !(pdf == zero);
+            g = select(contributes, weight * (cos / pdf), zero);
+            lobe = select(contributes, brdf(c.wo, draw.wi), zero);
         }
         to.g = to.g + g;
         to.g_lobe = to.g_lobe + g * lobe;
-        return this->add_seen(drawn, seen, g, lobe, g * (c.fill_d + lobe * c.fill_s));
+        return this->add_seen(draw, hit, g, lobe, g * (c.fill_d + lobe * c.fill_s));
     }
 
     template <class First, class Second> struct TwoDirections {
@@ -141,24 +141,24 @@ template <class A, class L, class E, class F> struct Lane : E {
 
     /// Takes one sample by what draw() returned.
     template <class D> [[gnu::always_inline]] void step(RunningSums<F>& to, const Constants<E, F>& c, const A& arm,
-        const L& brdf, const D& drawn, std::uint64_t j, const KernelCall& call) {
+        const L& brdf, const D& draw, std::uint64_t j, const KernelCall& call) {
         F x;
         if constexpr (requires { A::many_directions; }) {
-            x = accumulate(to, c, brdf, arm.next->drawn, arm.next->weight);
+            x = accumulate(to, c, brdf, arm.next->draw, arm.next->weight);
             ++arm.next;
             for (std::size_t k = 1; k < arm.count; ++k, ++arm.next)
-                x = x + accumulate(to, c, brdf, arm.next->drawn, arm.next->weight);
+                x = x + accumulate(to, c, brdf, arm.next->draw, arm.next->weight);
         } else if constexpr (requires { A::combines; }) {
-            x = arm.sample(c.pixel, j, call.seed, drawn,
-                [&](auto& one, const auto& weigh) { return accumulate_seen(to, c, brdf, one, weigh); });
+            x = arm.sample(c.pixel, j, call.seed, draw,
+                [&](auto& direction, const auto& weigh) { return accumulate_seen(to, c, brdf, direction, weigh); });
         } else if constexpr (requires { A::techniques; }) {
-            x = accumulate(to, c, brdf, drawn.a, drawn.weight_a);  // sums depend on the order
-            x = x + accumulate(to, c, brdf, drawn.b, drawn.weight_b);
+            x = accumulate(to, c, brdf, draw.a, draw.weight_a);  // sums depend on the order
+            x = x + accumulate(to, c, brdf, draw.b, draw.weight_b);
         } else {
-            x = accumulate(to, c, brdf, drawn, number<F>(1));
+            x = accumulate(to, c, brdf, draw, number<F>(1));
         }
         const F offset = x - to.pivot;
-        to.off = to.off + offset;
+        to.offset = to.offset + offset;
         to.square = to.square + offset * offset;
         to.largest = larger(x, to.largest);
         // Only NaN, infinite and negative numbers have bits from 0x7f800000 up. -0, which is not negative, cannot arise
@@ -170,34 +170,34 @@ template <class A, class L, class E, class F> struct Lane : E {
     void record_sample(F x, float* samples, std::uint64_t j, std::uint64_t n) const {
         float lanes[Lanes<F>::count];
         store(x, lanes);
-        for (std::size_t l = 0; l < Lanes<F>::count && at + l < shading_points.count; ++l)
-            samples[(at + l) * n + j] = lanes[l];
+        for (std::size_t l = 0; l < Lanes<F>::count && start + l < shading_points.count; ++l)
+            samples[(start + l) * n + j] = lanes[l];
     }
 };
 
 /// Double totals of one pack.
 template <class F> struct Totals {
     static constexpr std::size_t count = Lanes<F>::count;
-    double g[count] = {}, g_lobe[count] = {}, off[count] = {}, square[count] = {};
+    double g[count] = {}, g_lobe[count] = {}, offset[count] = {}, square[count] = {};
 
     /// Adds the block's sums and clears them.
     void take(RunningSums<F>& p) {
         add_lanes(p.g, g);
         add_lanes(p.g_lobe, g_lobe);
-        add_lanes(p.off, off);
+        add_lanes(p.offset, offset);
         add_lanes(p.square, square);
-        p.g = p.g_lobe = p.off = p.square = number<F>(0);
+        p.g = p.g_lobe = p.offset = p.square = number<F>(0);
     }
     /// Moves the pivot of the second moment to the mean of the n samples so far. Requires that the block's sums are 0.
-    [[gnu::noinline]] F turn(F about, double n) {
+    [[gnu::noinline]] F turn(F old_pivot, double n) {
         float pivot[count];
-        store(about, pivot);
+        store(old_pivot, pivot);
         const double share = 1 / n;  // a power of two: exact
         for (std::size_t l = 0; l < count; ++l) {
-            const float next = static_cast<float>(static_cast<double>(pivot[l]) + off[l] * share);
+            const float next = static_cast<float>(static_cast<double>(pivot[l]) + offset[l] * share);
             const double shift = static_cast<double>(next) - static_cast<double>(pivot[l]);
-            square[l] += shift * (n * shift - 2 * off[l]);
-            off[l] -= n * shift;
+            square[l] += shift * (n * shift - 2 * offset[l]);
+            offset[l] -= n * shift;
             pivot[l] = next;
         }
         return load_as<F>(pivot);
@@ -205,7 +205,7 @@ template <class F> struct Totals {
     /// Writes the sum of (X - mean X)^2 over the n samples of the full blocks and of the partial one.
     void spread(const RunningSums<F>& p, double n, double* out) const {
         double first[count];
-        add_lanes(p.off, off, first);
+        add_lanes(p.offset, offset, first);
         add_lanes(p.square, square, out);
         for (std::size_t l = 0; l < count; ++l) {
             out[l] -= first[l] * first[l] / n;
@@ -217,7 +217,7 @@ template <class F> struct Totals {
 template <class E, class F> [[gnu::noinline]] void write_sample_count(const E& emitters,
     const typename E::Totals& emitted, const RunningSums<F>& p, const Totals<F>& totals, std::uint64_t n,
     Moments& out) {
-    const std::size_t index = emitters.at;
+    const std::size_t index = emitters.start;
     add_lanes(p.g, totals.g, out.g.data() + index);
     add_lanes(p.g_lobe, totals.g_lobe, out.g_lobe.data() + index);
     totals.spread(p, static_cast<double>(n), out.spread.data() + index);
@@ -279,23 +279,23 @@ void estimate_pack(const KernelCall& call, std::size_t index, typename E::Room& 
     const std::uint64_t n = call.sample_counts.back();
     std::size_t sample_count = 0;
     Vec2<F> u[block_length], second[block_length];
-    decltype(lane.draw(c, arm, u[0], second[0])) drawn[block_length];
+    decltype(lane.draw(c, arm, u[0], second[0])) draws[block_length];
     for (std::uint64_t j = 0; j < n;) {
         const std::uint64_t block_end = (j / block_length + 1) * block_length;
         const std::uint64_t end =
             block_end < call.sample_counts[sample_count] ? block_end : call.sample_counts[sample_count];
         draw_numbers(c.pixel, call.seed, 0, j, end, u);
         if constexpr (requires { A::techniques; }) draw_numbers(c.pixel, call.seed, 1, j, end, second);
-        for (std::uint64_t k = 0; k < end - j; ++k) drawn[k] = lane.draw(c, arm, u[k], second[k]);
+        for (std::uint64_t k = 0; k < end - j; ++k) draws[k] = lane.draw(c, arm, u[k], second[k]);
         for (std::uint64_t k = 0; j < end; ++k, ++j) {
-            lane.step(gathered, c, arm, brdf, drawn[k], j, call);
+            lane.step(gathered, c, arm, brdf, draws[k], j, call);
             if (j == 0) {  // X - pivot is X because the pivot is 0
-                gathered.pivot = gathered.off;
-                gathered.off = gathered.square = number<F>(0);
+                gathered.pivot = gathered.offset;
+                gathered.offset = gathered.square = number<F>(0);
             } else if (j == 1) {  // X_1 - X_0 is the sum so far; relative to the smaller of the two it is its size, and
                                   // the square is unchanged
-                gathered.pivot = gathered.pivot + smaller(gathered.off, number<F>(0));
-                gathered.off = abs(gathered.off);
+                gathered.pivot = gathered.pivot + smaller(gathered.offset, number<F>(0));
+                gathered.offset = abs(gathered.offset);
             }
         }
         if (j == block_end) {

@@ -57,8 +57,8 @@ template <class F> struct LightRoom {
 
 protected:
     template <class T> static T* take(std::byte*& memory, std::size_t elements) {
-        const std::size_t past = reinterpret_cast<std::uintptr_t>(memory) % alignof(T);
-        memory += past ? alignof(T) - past : 0;
+        const std::size_t misalignment = reinterpret_cast<std::uintptr_t>(memory) % alignof(T);
+        memory += misalignment ? alignof(T) - misalignment : 0;
         T* const first = reinterpret_cast<T*>(memory);
         for (std::size_t k = 0; k < elements; ++k) ::new (static_cast<void*>(first + k)) T;
         memory += elements * sizeof(T);
@@ -91,21 +91,21 @@ template <class F> struct LightTotals {
     }
     /// Adds the block's sums and clears them.
     void take(Lights<F>& lights) {
-        LightHitSums<F>& met = lights.met;
-        for (std::size_t k = 0; met.any && k < lights.light_count; ++k) {
-            add_lanes(met.light_g[k], g + k * count);
-            add_lanes(met.light_g_lobe[k], g_lobe + k * count);
-            met.light_g[k] = met.light_g_lobe[k] = number<F>(0);
+        LightHitSums<F>& hit_sums = lights.hit_sums;
+        for (std::size_t k = 0; hit_sums.any && k < lights.light_count; ++k) {
+            add_lanes(hit_sums.light_g[k], g + k * count);
+            add_lanes(hit_sums.light_g_lobe[k], g_lobe + k * count);
+            hit_sums.light_g[k] = hit_sums.light_g_lobe[k] = number<F>(0);
         }
-        met.any = false;
+        hit_sums.any = false;
     }
     /// Writes the totals so far, including the partial block.
     void write(const Lights<F>& lights, Moments& out) const {
         for (std::size_t k = 0; k < lights.light_count; ++k) {
-            add_lanes(lights.met.light_g[k], g + k * count, out.light_g[k].data() + lights.at);
-            add_lanes(lights.met.light_g_lobe[k], g_lobe + k * count, out.light_g_lobe[k].data() + lights.at);
+            add_lanes(lights.hit_sums.light_g[k], g + k * count, out.light_g[k].data() + lights.start);
+            add_lanes(lights.hit_sums.light_g_lobe[k], g_lobe + k * count, out.light_g_lobe[k].data() + lights.start);
         }
-        store(lights.met.hits, out.hits.data() + lights.at);
+        store(lights.hit_sums.hits, out.hits.data() + lights.start);
     }
 };
 
@@ -116,27 +116,27 @@ template <class F> struct Lights {
     using Totals = LightTotals<F>;
     using First = DiskCone<F>;  // around the first light; most scenes have only one
     const ShadingPoints& shading_points;
-    std::size_t at;
+    std::size_t start;
     std::size_t disk_count, light_count;
     LocalDisk<F>* disks;
     FacingDisk<F>* facing;
     LocalLight<F>* others;
     DiskCone<F>* cones;
-    LightHitSums<F> met;
+    LightHitSums<F> hit_sums;
 
     [[gnu::noinline]] Lights(const ShadingPoints& points, std::size_t first, LightRoom<F>& room)
         : shading_points(points),
-          at(first),
+          start(first),
           disk_count(points.disks.size()),
           light_count(points.light_count()),
           disks(room.disks),
           facing(room.facing),
           others(room.others),
           cones(room.cones),
-          met{room.met_g, room.met_g_lobe} {
+          hit_sums{room.met_g, room.met_g_lobe} {
         for (std::size_t k = 0; k < disk_count; ++k) {
             const DiskArrays& d = shading_points.disks[k];
-            disks[k] = LocalDisk<F>(load_lanes<F>(d.cx, d.cy, d.cz, at), load_lanes<F>(d.nx, d.ny, d.nz, at),
+            disks[k] = LocalDisk<F>(load_lanes<F>(d.cx, d.cy, d.cz, start), load_lanes<F>(d.nx, d.ny, d.nz, start),
                 F(d.radius), F(d.two_sided ? 1.0f : 0.0f), F(d.power));
             facing[k] = FacingDisk<F>(disks[k]);
             cones[k] = DiskCone<F>(facing[k]);
@@ -147,7 +147,7 @@ template <class F> struct Lights {
             with_light_kind(light.kind,
                 [&]<class Kind>() { cones[k] = DiskCone<F>(light.a, Kind::radius2(light), Kind::shines(light)); });
         }
-        for (std::size_t k = 0; k < light_count; ++k) met.light_g[k] = met.light_g_lobe[k] = number<F>(0);
+        for (std::size_t k = 0; k < light_count; ++k) hit_sums.light_g[k] = hit_sums.light_g_lobe[k] = number<F>(0);
     }
 
     First first() const { return light_count > 0 ? cones[0] : DiskCone<F>{}; }
@@ -164,16 +164,16 @@ template <class F> struct Lights {
     }
 
     /// Returns X of a sample with known g and lobe; x is the part from the fill.
-    template <class D>
-    [[gnu::always_inline]] F gather(const First& around, const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
+    template <class D> [[gnu::always_inline]] F gather(
+        const First& first_cone, const D& draw, F g, F lobe, F x, MaskOf<F> can_contribute) {
         if (light_count == 0) return x;
-        if constexpr (requires { drawn.met; }) {
-            if (any(up)) x = resolve_light_hit(drawn, g, lobe, x, up);
+        if constexpr (requires { draw.meets_light; }) {
+            if (any(can_contribute)) x = resolve_light_hit(draw, g, lobe, x, can_contribute);
         } else {
-            auto near = around.holds(drawn.wi);
-            for (std::size_t k = 1; k < light_count; ++k) near = near | cones[k].holds(drawn.wi);
-            if (any(near & up)) [[unlikely]]
-                x = resolve_light_hit(drawn, g, lobe, x, up);
+            auto is_near = first_cone.holds(draw.wi);
+            for (std::size_t k = 1; k < light_count; ++k) is_near = is_near | cones[k].holds(draw.wi);
+            if (any(is_near & can_contribute)) [[unlikely]]
+                x = resolve_light_hit(draw, g, lobe, x, can_contribute);
         }
         return x;
     }
@@ -183,10 +183,10 @@ template <class F> struct Lights {
         LocalLight<F> out;
         out.kind = from.kind;
         out.power = F(from.power);
-        out.a = load_lanes<F>(n[0], n[1], n[2], at);
-        out.b = load_lanes<F>(n[3], n[4], n[5], at);
-        out.c = load_lanes<F>(n[6], n[7], n[8], at);
-        for (std::size_t k = 0; k < out.number.size(); ++k) out.number[k] = load_lanes<F>(n[9 + k], at);
+        out.a = load_lanes<F>(n[0], n[1], n[2], start);
+        out.b = load_lanes<F>(n[3], n[4], n[5], start);
+        out.c = load_lanes<F>(n[6], n[7], n[8], start);
+        for (std::size_t k = 0; k < out.number.size(); ++k) out.number[k] = load_lanes<F>(n[9 + k], start);
         return out;
     }
 
@@ -196,24 +196,26 @@ template <class F> struct Lights {
         MaskOf<F> lit() const { return open > number<F>(0); }
     };
     /// Finds the nearest light, then tests the bodies before it.
-    template <class D> [[gnu::always_inline]] Seen look(const D& drawn, MaskOf<F> up) const {
-        const Met nearest = nearest_light(drawn);
-        const F seen = select(up & (nearest.distance < number<F>(far)), number<F>(1), number<F>(0));
-        const WorldRay ray = ray_of(drawn.wi);
+    template <class D> [[gnu::always_inline]] Seen look(const D& draw, MaskOf<F> can_contribute) const {
+        const Met nearest = nearest_light(draw);
+        const F visibility = select(can_contribute & (nearest.distance < number<F>(far)), number<F>(1), number<F>(0));
+        const WorldRay ray = ray_of(draw.wi);
         return {nearest.light,
-            seen_past_bodies(ray, nearest.distance * number<F>(1e-5), nearest.distance * number<F>(1 - 1e-5), seen)};
+            seen_past_bodies(
+                ray, nearest.distance * number<F>(1e-5), nearest.distance * number<F>(1 - 1e-5), visibility)};
     }
     /// Returns X if a light was met; x is the part from the fill.
-    template <class D> [[gnu::always_inline]] F add_seen(const D& /*drawn*/, const Seen& seen, F g, F lobe, F x) {
-        x = add_light(seen.light, seen.open, g, lobe, x);
-        met.hits = plus_one_where(seen.lit(), met.hits);
-        met.any = true;
+    template <class D> [[gnu::always_inline]] F add_seen(const D& /*draw*/, const Seen& hit, F g, F lobe, F x) {
+        x = add_light(hit.light, hit.open, g, lobe, x);
+        hit_sums.hits = plus_one_where(hit.lit(), hit_sums.hits);
+        hit_sums.any = true;
         return x;
     }
 
     /// Handles samples that may have met a light. Returns X if one was met.
-    template <class D> [[gnu::noinline]] F resolve_light_hit(const D& drawn, F g, F lobe, F x, MaskOf<F> up) {
-        return add_seen(drawn, look(drawn, up), g, lobe, x);
+    template <class D>
+    [[gnu::noinline]] F resolve_light_hit(const D& draw, F g, F lobe, F x, MaskOf<F> can_contribute) {
+        return add_seen(draw, look(draw, can_contribute), g, lobe, x);
     }
 
 protected:
@@ -223,13 +225,13 @@ protected:
     struct Met {
         F distance, light;
     };
-    template <class D> [[gnu::always_inline]] Met nearest_light(const D& drawn) const {
+    template <class D> [[gnu::always_inline]] Met nearest_light(const D& draw) const {
         const F none = number<F>(far);
         F nearest = none;
         F index = number<F>(-1);
         for (std::size_t k = 0; k < disk_count; ++k) {
             F v;
-            const auto hit = meets_disk(facing[k], drawn, k, light_count == 1, v);
+            const auto hit = meets_disk(facing[k], draw, k, light_count == 1, v);
             const F t = select(hit, facing[k].k / select(hit, v, number<F>(1)), none);
             const auto nearer = is_nearer(t, nearest);
             index = select(nearer, F(static_cast<float>(k)), index);
@@ -237,7 +239,7 @@ protected:
         }
         for (std::size_t k = disk_count; k < light_count; ++k) {
             F t;
-            const auto hit = meets_light(others[k - disk_count], drawn, k, t);
+            const auto hit = meets_light(others[k - disk_count], draw, k, t);
             const auto nearer = hit & is_nearer(t, nearest);
             index = select(nearer, F(static_cast<float>(k)), index);
             nearest = select(nearer, t, nearest);
@@ -250,35 +252,35 @@ protected:
         Vec3<F> o, d;
     };
     [[gnu::always_inline]] WorldRay ray_of(Vec3<F> wi) const { return {position(), frame().to_world(wi)}; }
-    Vec3<F> position() const { return load_lanes<F>(shading_points.px, shading_points.py, shading_points.pz, at); }
+    Vec3<F> position() const { return load_lanes<F>(shading_points.px, shading_points.py, shading_points.pz, start); }
     Frame<F> frame() const {
-        return {load_lanes<F>(shading_points.tx, shading_points.ty, shading_points.tz, at),
-            load_lanes<F>(shading_points.bx, shading_points.by, shading_points.bz, at),
-            load_lanes<F>(shading_points.nx, shading_points.ny, shading_points.nz, at)};
+        return {load_lanes<F>(shading_points.tx, shading_points.ty, shading_points.tz, start),
+            load_lanes<F>(shading_points.bx, shading_points.by, shading_points.bz, start),
+            load_lanes<F>(shading_points.nx, shading_points.ny, shading_points.nz, start)};
     }
 
-    /// Returns `seen`, with 0 where a body crosses the ray between lo and hi.
-    [[gnu::always_inline]] F seen_past_bodies(const WorldRay& ray, F lo, F hi, F seen) const {
-        const U own_shape = load_lanes<F>(shading_points.shape, at);
+    /// Returns `visibility`, with 0 where a body crosses the ray between lo and hi.
+    [[gnu::always_inline]] F seen_past_bodies(const WorldRay& ray, F lo, F hi, F visibility) const {
+        const U own_shape = load_lanes<F>(shading_points.shape, start);
         for (const OccluderF& body : shading_points.occluders) {
-            const auto other = select(own_shape == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
-            seen = select(other & blocked_by(body, ray.o, ray.d, lo, hi), number<F>(0), seen);
+            const auto is_other = select(own_shape == U(body.shape), number<F>(0), number<F>(1)) > number<F>(0);
+            visibility = select(is_other & blocked_by(body, ray.o, ray.d, lo, hi), number<F>(0), visibility);
         }
-        return seen;
+        return visibility;
     }
 
     /// Adds the samples that met a light. Returns their X, else x.
-    [[gnu::always_inline]] F add_light(F index, F seen, F g, F lobe, F x) {
+    [[gnu::always_inline]] F add_light(F index, F visibility, F g, F lobe, F x) {
         for (std::size_t k = 0; k < light_count; ++k) {
-            const auto this_one = (index == F(static_cast<float>(k))) & (seen > number<F>(0));
-            const F gk = select(this_one, g, number<F>(0));
-            met.light_g[k] = met.light_g[k] + gk;
-            met.light_g_lobe[k] = met.light_g_lobe[k] + gk * lobe;
+            const auto meets_k = (index == F(static_cast<float>(k))) & (visibility > number<F>(0));
+            const F gk = select(meets_k, g, number<F>(0));
+            hit_sums.light_g[k] = hit_sums.light_g[k] + gk;
+            hit_sums.light_g_lobe[k] = hit_sums.light_g_lobe[k] + gk * lobe;
             const bool disk = k < disk_count;
             const std::vector<float>& d_of = disk ? shading_points.disks[k].d : shading_points.others[k - disk_count].d;
             const std::vector<float>& s_of = disk ? shading_points.disks[k].s : shading_points.others[k - disk_count].s;
-            const F xk = g * (load_lanes<F>(d_of, at) + lobe * load_lanes<F>(s_of, at));
-            x = select(this_one, xk, x);
+            const F xk = g * (load_lanes<F>(d_of, start) + lobe * load_lanes<F>(s_of, start));
+            x = select(meets_k, xk, x);
         }
         return x;
     }

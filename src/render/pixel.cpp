@@ -18,12 +18,12 @@ namespace crescent {
 
 namespace {
 
-Vec3f at(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
+Vec3f vector_of(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
     return {x[0], y[0], z[0]};
 }
 
 float lobe_of(const ShadingPoints& shading_points, Vec3f wi) {
-    const Vec3f wo = at(shading_points.wox, shading_points.woy, shading_points.woz);
+    const Vec3f wo = vector_of(shading_points.wox, shading_points.woy, shading_points.woz);
     const float s = shading_points.s[0], alpha = shading_points.alpha[0];
     return lobe_value(static_cast<LobeKind>(shading_points.lobe), s, alpha, wo, wi);
 }
@@ -32,7 +32,7 @@ std::vector<LocalDisk<float>> local_disks(const ShadingPoints& shading_points) {
     std::vector<LocalDisk<float>> out;
     for (const DiskArrays& d : shading_points.disks) {
         const float sides = d.two_sided ? 1.0f : 0.0f;
-        out.push_back({at(d.cx, d.cy, d.cz), at(d.nx, d.ny, d.nz), d.radius, sides, d.power});
+        out.push_back({vector_of(d.cx, d.cy, d.cz), vector_of(d.nx, d.ny, d.nz), d.radius, sides, d.power});
     }
     return out;
 }
@@ -44,9 +44,9 @@ std::vector<LocalLight<float>> local_others(const ShadingPoints& shading_points)
         const auto& n = from.numbers;
         light.kind = from.kind;
         light.power = from.power;
-        light.a = at(n[0], n[1], n[2]);
-        light.b = at(n[3], n[4], n[5]);
-        light.c = at(n[6], n[7], n[8]);
+        light.a = vector_of(n[0], n[1], n[2]);
+        light.b = vector_of(n[3], n[4], n[5]);
+        light.c = vector_of(n[6], n[7], n[8]);
         for (std::size_t k = 0; k < light.number.size(); ++k) light.number[k] = n[9 + k][0];
     }
     return out;
@@ -61,65 +61,65 @@ struct Locals {
 /// What a direction meets first: a light, or light that varies; neither: the fill.
 struct Seen {
     int disk = -1;
-    bool around = false;
+    bool meets_surroundings = false;
     Vec3f radiance{};  // of light that varies
 };
 
 /// Returns whether a direction is below the triangle of the surface point.
 bool is_below_face(const ShadingPoints& points, Vec3f wi) {
-    return points.has_faces && dot(at(points.face_x, points.face_y, points.face_z), wi) <= 0;
+    return points.has_faces && dot(vector_of(points.face_x, points.face_y, points.face_z), wi) <= 0;
 }
 
 /// In the order of the kernels: the nearest light first, then the meshes and the bodies before it.
-template <class D> Seen seen_by(const ShadingPoints& shading_points, const Locals& locals, const D& drawn) {
+template <class D> Seen seen_by(const ShadingPoints& shading_points, const Locals& locals, const D& draw) {
     const auto& [disks, others] = locals;
-    const Vec3f wi = drawn.wi;
+    const Vec3f wi = draw.wi;
     constexpr float far = 1e30f;
     float nearest = far;
-    int met = -1;
+    int light = -1;
     for (std::size_t k = 0; k < disks.size(); ++k) {
         const FacingDisk<float> facing(disks[k]);
         float v;
-        if (!meets_disk(facing, drawn, k, shading_points.light_count() == 1, v) || !is_nearer(facing.k / v, nearest))
+        if (!meets_disk(facing, draw, k, shading_points.light_count() == 1, v) || !is_nearer(facing.k / v, nearest))
             continue;
         nearest = facing.k / v;
-        met = static_cast<int>(k);
+        light = static_cast<int>(k);
     }
     for (std::size_t k = 0; k < others.size(); ++k) {
         float t;
-        if (!meets_light(others[k], drawn, disks.size() + k, t) || !is_nearer(t, nearest)) continue;
+        if (!meets_light(others[k], draw, disks.size() + k, t) || !is_nearer(t, nearest)) continue;
         nearest = t;
-        met = static_cast<int>(disks.size() + k);
+        light = static_cast<int>(disks.size() + k);
     }
-    const Surroundings* const around = shading_points.around.get();
-    if (met < 0 && !around) return {};
-    const Vec3f t = at(shading_points.tx, shading_points.ty, shading_points.tz),
-                b = at(shading_points.bx, shading_points.by, shading_points.bz);
-    const Frame<float> frame = {t, b, at(shading_points.nx, shading_points.ny, shading_points.nz)};
-    const Vec3f o = at(shading_points.px, shading_points.py, shading_points.pz), d = frame.to_world(wi);
+    const Surroundings* const surroundings = shading_points.around.get();
+    if (light < 0 && !surroundings) return {};
+    const Vec3f t = vector_of(shading_points.tx, shading_points.ty, shading_points.tz),
+                b = vector_of(shading_points.bx, shading_points.by, shading_points.bz);
+    const Frame<float> frame = {t, b, vector_of(shading_points.nx, shading_points.ny, shading_points.nz)};
+    const Vec3f o = vector_of(shading_points.px, shading_points.py, shading_points.pz), d = frame.to_world(wi);
     std::uint32_t triangle = no_triangle, texel = no_texel;
-    if (around && has_meshes(*around)) {
-        std::uint32_t aimed = no_triangle;
-        if constexpr (requires { drawn.triangle; }) aimed = drawn.triangle;
-        const MeshesBefore before = meshes_before(*around, o, d, nearest, aimed);
-        if (before.hidden) return {};
-        if (before.triangle != no_triangle) {
-            triangle = before.triangle;
-            nearest = before.distance;
+    if (surroundings && has_meshes(*surroundings)) {
+        std::uint32_t aimed_triangle = no_triangle;
+        if constexpr (requires { draw.triangle; }) aimed_triangle = draw.triangle;
+        const MeshesBefore meshes = meshes_before(*surroundings, o, d, nearest, aimed_triangle);
+        if (meshes.is_hidden) return {};
+        if (meshes.triangle != no_triangle) {
+            triangle = meshes.triangle;
+            nearest = meshes.distance;
         }
     }
-    const bool met_one = nearest < far;
-    if (!met_one && !has_sky(*around)) return {};
-    const float from = met_one ? nearest : length(o - around->eye);  // as the kernels: lo in units of it
+    const bool meets_emitter = nearest < far;
+    if (!meets_emitter && !has_sky(*surroundings)) return {};
+    const float from = meets_emitter ? nearest : length(o - surroundings->eye);  // as the kernels: lo in units of it
     for (const OccluderF& body : shading_points.occluders)
         if (body.shape != shading_points.shape[0] &&
             blocked_by(body, o, d, from * float(1e-5), nearest * float(1 - 1e-5)))
             return {};
-    if (met_one && triangle == no_triangle) return {met};
-    if constexpr (requires { drawn.texel; }) texel = drawn.texel;
+    if (meets_emitter && triangle == no_triangle) return {light};
+    if constexpr (requires { draw.texel; }) texel = draw.texel;
     float rgb[3] = {0, 0, 0};
-    if (triangle != no_triangle) triangle_radiance(*around, triangle, rgb);
-    else sky_radiance(*around, texel, d, rgb);
+    if (triangle != no_triangle) triangle_radiance(*surroundings, triangle, rgb);
+    else sky_radiance(*surroundings, texel, d, rgb);
     return {-1, true, {rgb[0], rgb[1], rgb[2]}};
 }
 
@@ -158,27 +158,29 @@ double reflected(const ShadingPoints& shading_points, const Worth& w, float lobe
 /// Computes X of a direction, in the kernels' own order of operations.
 class Carrier {
 public:
-    Carrier(const ShadingPoints& shading_points, const Locals& disks, const std::vector<PixelLight>& seen, double fill)
-        : shading_points_(shading_points), lights_(disks), seen_(seen), fill_(fill) {}
+    Carrier(const ShadingPoints& shading_points, const Locals& disks, const std::vector<PixelLight>& pixel_lights,
+        double fill)
+        : shading_points_(shading_points), lights_(disks), pixel_lights_(pixel_lights), fill_(fill) {}
 
-    template <class D> PixelSample operator()(Vec2<float> u, const D& drawn, float weight, int technique) const {
+    template <class D> PixelSample operator()(Vec2<float> u, const D& draw, float weight, int technique) const {
         PixelSample out;
         out.u = u;
-        out.wi = drawn.wi;
-        out.pdf = drawn.pdf.v;
-        out.cos = drawn.wi.z;
+        out.wi = draw.wi;
+        out.pdf = draw.pdf.v;
+        out.cos = draw.wi.z;
         out.weight = weight;
         out.technique = technique;
         if (out.cos <= 0 || is_below_face(shading_points_, out.wi) || out.pdf == 0) return out;
         const float g = weight * (out.cos / out.pdf), lobe = lobe_of(shading_points_, out.wi);
-        const Seen seen = seen_by(shading_points_, lights_, drawn);
-        out.disk = seen.disk;
-        out.around = seen.around;
-        const Worth w = seen.around ? worth(shading_points_, seen.radiance, lobe) : worth(shading_points_, out.disk);
+        const Seen hit = seen_by(shading_points_, lights_, draw);
+        out.disk = hit.disk;
+        out.meets_surroundings = hit.meets_surroundings;
+        const Worth w =
+            hit.meets_surroundings ? worth(shading_points_, hit.radiance, lobe) : worth(shading_points_, out.disk);
         out.x = g * (w.d + lobe * w.s);
-        out.light = static_cast<float>(seen.around ? luminance_of(seen.radiance)
-                : out.disk < 0                     ? fill_
-                                                   : seen_[static_cast<std::size_t>(out.disk)].light);
+        out.light = static_cast<float>(hit.meets_surroundings ? luminance_of(hit.radiance)
+                : out.disk < 0                                ? fill_
+                               : pixel_lights_[static_cast<std::size_t>(out.disk)].light);
         out.f = static_cast<float>(reflected(shading_points_, w, lobe, double(out.light)));
         return out;
     }
@@ -186,19 +188,19 @@ public:
 private:
     const ShadingPoints& shading_points_;
     const Locals lights_;
-    const std::vector<PixelLight>& seen_;
+    const std::vector<PixelLight>& pixel_lights_;
     double fill_;
 };
 
 /// Calls work.template operator()<A>() for the sampler of that name.
 template <class Work> void with_arm(std::string_view sampler, Work&& work) {
-    bool found = false;
+    bool has_match = false;
     for_each_sampler(Samplers{}, [&]<template <class> class A>() {
         if (A<float>::name != sampler) return;
-        found = true;
+        has_match = true;
         work.template operator()<A>();
     });
-    ensure(found, "a sampler is a word of arms/all.h");
+    ensure(has_match, "a sampler is a word of arms/all.h");
 }
 
 PixelLight seen_light(const Light& light, const Hit& hit) {
@@ -215,12 +217,13 @@ PixelLight seen_light(const Light& light, const Hit& hit) {
     constexpr int points = 96;
     const auto disk = std::get_if<shapes::Disk>(&figure);
     const std::array<Vec3d, 4> corners = corners_about(figure);
-    const Frame<double> about = frame_about(normal_of(figure));
+    const Frame<double> light_frame = frame_about(normal_of(figure));
     for (int k = 0; k <= points; ++k) {
         const double a = 2 * pi * k / points, side = 4.0 * (k % points) / points;
         const std::size_t first = static_cast<std::size_t>(side);
         const Vec3d edge = corners[first] + (side - std::floor(side)) * (corners[(first + 1) % 4] - corners[first]);
-        const Vec3d y = disk ? disk->center + disk->radius * (about.t * math::cos(a) + about.b * math::sin(a)) : edge;
+        const Vec3d y =
+            disk ? disk->center + disk->radius * (light_frame.t * math::cos(a) + light_frame.b * math::sin(a)) : edge;
         out.rim.push_back(normalize(frame.to_local(y - hit.x)));
     }
     return out;
@@ -240,7 +243,7 @@ OpenPixel::OpenPixel(const Scene& scene, int i, int j)
       shading_points_(point_of(scene, i, j)),
       hit_(*scene.primary(i, j)),
       surface_(scene.surface(hit_)),
-      wo_(widen(at(shading_points_.wox, shading_points_.woy, shading_points_.woz))),
+      wo_(widen(vector_of(shading_points_.wox, shading_points_.woy, shading_points_.woz))),
       fill_(luminance(scene.fill())),
       local_(local_disks(shading_points_)),
       others_(local_others(shading_points_)) {
@@ -249,7 +252,7 @@ OpenPixel::OpenPixel(const Scene& scene, int i, int j)
 
 ShadingPoint<float> OpenPixel::aimed_from() const {
     const ShadingPoints& p = shading_points_;
-    ShadingPoint<float> out{.wo = at(p.wox, p.woy, p.woz),
+    ShadingPoint<float> out{.wo = vector_of(p.wox, p.woy, p.woz),
         .s = p.s[0],
         .alpha = p.alpha[0],
         .diffuse = p.diffuse[0],
@@ -261,8 +264,8 @@ ShadingPoint<float> OpenPixel::aimed_from() const {
     out.lobe_kind = static_cast<LobeKind>(p.lobe);
     if (!p.around) return out;
     out.around = p.around.get();
-    out.position = at(p.px, p.py, p.pz);
-    out.frame = {at(p.tx, p.ty, p.tz), at(p.bx, p.by, p.bz), at(p.nx, p.ny, p.nz)};
+    out.position = vector_of(p.px, p.py, p.pz);
+    out.frame = {vector_of(p.tx, p.ty, p.tz), vector_of(p.bx, p.by, p.bz), vector_of(p.nx, p.ny, p.nz)};
     return out;
 }
 
@@ -280,14 +283,14 @@ Seen seen_in(const ShadingPoints& points, const Locals& lights, Vec3d wi) {
 int OpenPixel::disk_met(Vec3d wi) const { return seen_in(shading_points_, {local_, others_}, wi).disk; }
 
 bool OpenPixel::meets_light(Vec3d wi) const {
-    const Seen seen = seen_in(shading_points_, {local_, others_}, wi);
-    return seen.disk >= 0 || seen.around;
+    const Seen hit = seen_in(shading_points_, {local_, others_}, wi);
+    return hit.disk >= 0 || hit.meets_surroundings;
 }
 
 double OpenPixel::light(Vec3d wi) const {
-    const Seen seen = seen_in(shading_points_, {local_, others_}, wi);
-    if (seen.around) return luminance_of(seen.radiance);
-    return seen.disk < 0 ? fill_ : lights_[static_cast<std::size_t>(seen.disk)].light;
+    const Seen hit = seen_in(shading_points_, {local_, others_}, wi);
+    if (hit.meets_surroundings) return luminance_of(hit.radiance);
+    return hit.disk < 0 ? fill_ : lights_[static_cast<std::size_t>(hit.disk)].light;
 }
 
 double OpenPixel::f(Vec3d wi, int disk) const {

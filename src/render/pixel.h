@@ -25,12 +25,12 @@ struct PixelSample {
     float pdf = 0, f = 0, light = 0, cos = 0;
     float weight = 1;  // of multiple importance sampling
     float x = 0;
-    int disk = -1;        // index of the light that was met; -1: none
-    bool around = false;  // light that varies was met: that of the sky, or of a triangle that emits
+    int disk = -1;                    // index of the light that was met; -1: none
+    bool meets_surroundings = false;  // light that varies was met: that of the sky, or of a triangle that emits
     int technique = 0;
 
     /// Returns whether it met more than the fill.
-    bool meets_light() const { return disk >= 0 || around; }
+    bool meets_light() const { return disk >= 0 || meets_surroundings; }
 };
 
 /// A light as the surface point sees it.

@@ -59,7 +59,7 @@ std::set<int> expect_kernels_draws(const Experiment& e) {
             estimate_points(shading_points[0], A<float>::name, n, 11, "", nullptr, x.data());
             std::vector<float> opened(n);
             for (std::size_t at = 0; const PixelSample& sample : pixel.samples(A<float>::name, n, 11)) {
-                lights.insert(sample.around ? -2 : sample.disk);
+                lights.insert(sample.meets_surroundings ? -2 : sample.disk);
                 if (sample.technique == 0) opened[at++] = sample.x;
                 else opened[at - 1] += sample.x;
             }
@@ -108,7 +108,7 @@ TEST(OpenPixel, AsksTheFieldsWhatItDraws) {
             EXPECT_EQ(pixel.disk_met(wi), s.disk);
             EXPECT_EQ(pixel.meets_light(wi), s.meets_light());
             if (s.light > 0) EXPECT_NEAR(pixel.light(wi) / double(s.light), 1, 1e-6);
-            if (s.f > 0 && !s.around) EXPECT_NEAR(pixel.f(wi, s.disk) / double(s.f), 1, 1e-5);
+            if (s.f > 0 && !s.meets_surroundings) EXPECT_NEAR(pixel.f(wi, s.disk) / double(s.f), 1, 1e-5);
             EXPECT_NEAR(pixel.pdf("cosine", wi) / double(s.pdf), 1, 1e-6);
         }
         EXPECT_EQ(pixel.f({0, 0, -1}), 0);

@@ -95,7 +95,7 @@ ShadingPoints empty_points(const Scene& scene, int lobe) {
     return shading_points;
 }
 
-Shading::Shading(const Scene& scene, const Surface& on) : surface(on) {
+Shading::Shading(const Scene& scene, const Surface& point_surface) : surface(point_surface) {
     for (std::size_t c = 0; c < 3; ++c) lambert[c] = surface.rho_d[c] / pi;
     const double fill = reflected(scene.fill(), surface.rho_d);
     fill_d = worth(fill / pi);
@@ -168,8 +168,8 @@ void ShadingPoints::reserve(std::size_t shading_points) {
     each_array([&](auto& array) { array.reserve(whole_packs(shading_points)); });
 }
 
-void ShadingPoints::grow(std::size_t more) {
-    each_array([&](auto& array) { array.resize(count + more); });
+void ShadingPoints::grow(std::size_t extra) {
+    each_array([&](auto& array) { array.resize(count + extra); });
 }
 
 void ShadingPoints::pad() {
@@ -205,16 +205,16 @@ void ShadingPoints::cull_occluders(const Scene& scene) {
     const auto [x, half_x] = range(px);
     const auto [y, half_y] = range(py);
     const auto [z, half_z] = range(pz);
-    const auto rounded = [](double middle, double half) { return half + 0x1p-23 * (std::fabs(middle) + half); };
+    const auto round_up = [](double middle, double half) { return half + 0x1p-23 * (std::fabs(middle) + half); };
     const Extent extent = {
-        scene.origin() + Vec3d{x, y, z}, {rounded(x, half_x), rounded(y, half_y), rounded(z, half_z)}};
-    std::size_t kept = 0;
+        scene.origin() + Vec3d{x, y, z}, {round_up(x, half_x), round_up(y, half_y), round_up(z, half_z)}};
+    std::size_t occluder_count = 0;
     for (std::size_t k = 0; k < occluders.size(); ++k) {  // in the scene's order, as empty_points created them
         const bool clear = std::all_of(scene.lights().begin(), scene.lights().end(),
             [&](const Light& light) { return is_separated(scene.occluders()[k], extent, light.body()); });
-        if (!clear) occluders[kept++] = occluders[k];
+        if (!clear) occluders[occluder_count++] = occluders[k];
     }
-    occluders.resize(kept);
+    occluders.resize(occluder_count);
 }
 
 namespace {
@@ -233,11 +233,12 @@ public:
 
     void add(std::uint32_t pixel, const Hit& hit) {
         const Texels texels = scene_.texels(hit);
-        if (!shading_ || hit.shape != shape_ || hit.reveal != reveal_ || hit.below != below_ || texels != texels_) {
+        if (!shading_ || hit.shape != shape_ || hit.reveal != reveal_ || hit.is_below != is_below_ ||
+            texels != texels_) {
             shading_.emplace(scene_, scene_.surface(hit));
             shape_ = hit.shape;
             reveal_ = hit.reveal;
-            below_ = hit.below;
+            is_below_ = hit.is_below;
             texels_ = texels;
         }
         const int lobe = shading_->surface.rho_s > 0 ? static_cast<int>(shading_->surface.brdf) : -1;
@@ -257,7 +258,7 @@ private:
     std::size_t columns_, area_;  // pixels in a row, and in the tile
     std::optional<Shading> shading_;
     int shape_ = -1;
-    bool reveal_ = false, below_ = false;
+    bool reveal_ = false, is_below_ = false;
     Texels texels_;
 };
 

@@ -50,7 +50,7 @@ struct Shading {
     float fill_d = 0, fill_s = 0;
     std::vector<float> disk_d, disk_s;            // like DiskArrays, one per disk
     std::array<float, 3> around_d{}, around_s{};  // like ShadingPoints
-    Shading(const Scene& scene, const Surface& on);
+    Shading(const Scene& scene, const Surface& point_surface);
 };
 
 /// Occluders in float, as the kernels test them: relative to the scene's origin, so that a scene far from (0, 0, 0)
@@ -97,7 +97,7 @@ struct ShadingPoints {
 
     /// Adds a shading point; space must be reserved.
     void add(const Scene& scene, std::uint32_t pixel_index, const Hit& hit, const Shading& shading);
-    void grow(std::size_t more);
+    void grow(std::size_t extra);
     void reserve(std::size_t shading_points);
     /// Repeats the last shading point until every pack is full.
     void pad();

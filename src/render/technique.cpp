@@ -28,9 +28,9 @@ public:
             for (std::size_t i = 0; i < run.rows; ++i, ++row) {
                 const auto d = arm.sample(run.wo, {as_float(u[2 * row]), as_float(u[2 * row + 1])});
                 out[row] = {d.wi, static_cast<double>(d.pdf.v)};
-                if constexpr (requires { d.met; }) {
+                if constexpr (requires { d.meets_light; }) {
                     out[row].light = d.disk;
-                    out[row].met = d.met;
+                    out[row].meets_light = d.meets_light;
                 }
                 if constexpr (requires { d.texel; }) out[row].texel = d.texel;
                 if constexpr (requires { d.triangle; }) out[row].triangle = d.triangle;
@@ -79,11 +79,11 @@ template <class Work> void in_batches(const SamplerDeclaration& declaration, con
         lights_at.clear();
     };
     for (const PointRun& run : point_rows.runs)
-        for (std::size_t done = 0; done < run.rows;) {
-            const std::size_t part = std::min(run.rows - done, declaration.batch_rows - rows);
+        for (std::size_t start = 0; start < run.rows;) {
+            const std::size_t part = std::min(run.rows - start, declaration.batch_rows - rows);
             runs.push_back(run_at(p, run.point, widen(run.wo), part));
             if (!lights.empty()) add_lights_at(p, run.point, lights_at);
-            done += part;
+            start += part;
             rows += part;
             if (rows == declaration.batch_rows) flush();
         }
@@ -269,49 +269,49 @@ void draw_chosen(const Techniques& parts, const PointRows& point_rows, std::span
     const Choices& choices, std::span<PointDraw> out, std::vector<std::vector<double>>& p) {
     const std::size_t rows = choices.part.size();
     p.assign(parts.size(), std::vector<double>(rows));
-    std::vector<std::size_t> mine;
+    std::vector<std::size_t> row_indices;
     std::vector<PointRun> runs;
     std::vector<double> numbers_of_part, densities;
-    std::vector<PointDraw> drawn;
+    std::vector<PointDraw> draws;
     std::vector<Vec3<float>> wi;
     /// Collects the rows that have the part, or have not.
-    const auto select_rows = [&](std::size_t k, bool chosen) {
-        mine.clear();
+    const auto select_rows = [&](std::size_t k, bool has_part) {
+        row_indices.clear();
         runs.clear();
         std::size_t row = 0;
         for (const PointRun& run : point_rows.runs) {
             runs.push_back({run.point, run.wo, 0});
             for (std::size_t i = 0; i < run.rows; ++i, ++row)
-                if ((choices.part[row] == k) == chosen && (chosen || out[row].pdf != 0)) {
-                    mine.push_back(row);
+                if ((choices.part[row] == k) == has_part && (has_part || out[row].pdf != 0)) {
+                    row_indices.push_back(row);
                     ++runs.back().rows;
                 }
             if (runs.back().rows == 0) runs.pop_back();
         }
-        return !mine.empty();
+        return !row_indices.empty();
     };
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (!select_rows(k, true)) continue;
         const auto count = static_cast<std::size_t>(parts[k]->numbers());
         numbers_of_part.clear();
-        for (const std::size_t row : mine) {
+        for (const std::size_t row : row_indices) {
             numbers_of_part.push_back(choices.stretched[row]);
             for (std::size_t j = 1; j < count; ++j) numbers_of_part.push_back(u[row * numbers + j]);
         }
-        drawn.resize(mine.size());
-        parts[k]->draw({point_rows.points, runs}, numbers_of_part, drawn);
-        for (std::size_t i = 0; i < mine.size(); ++i) {
-            out[mine[i]] = drawn[i];
-            p[k][mine[i]] = drawn[i].pdf;
+        draws.resize(row_indices.size());
+        parts[k]->draw({point_rows.points, runs}, numbers_of_part, draws);
+        for (std::size_t i = 0; i < row_indices.size(); ++i) {
+            out[row_indices[i]] = draws[i];
+            p[k][row_indices[i]] = draws[i].pdf;
         }
     }
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (!select_rows(k, false)) continue;
         wi.clear();
-        for (const std::size_t row : mine) wi.push_back(out[row].wi);
-        densities.resize(mine.size());
+        for (const std::size_t row : row_indices) wi.push_back(out[row].wi);
+        densities.resize(row_indices.size());
         parts[k]->density({point_rows.points, runs}, wi, densities);
-        for (std::size_t i = 0; i < mine.size(); ++i) p[k][mine[i]] = densities[i];
+        for (std::size_t i = 0; i < row_indices.size(); ++i) p[k][row_indices[i]] = densities[i];
     }
 }
 

@@ -34,7 +34,7 @@ struct PointDraw {
     Vec3<float> wi{0, 0, 1};
     double pdf = 0;
     float light = -1;                                        // the light at which it was aimed, disks first
-    bool met = false;                                        // it meets that light
+    bool meets_light = false;                                // it meets that light
     std::uint32_t texel = no_texel, triangle = no_triangle;  // of the sky and of emitting triangles, if drawn there
 };
 

@@ -17,21 +17,21 @@ TiledScene::TiledScene(Scene scene)
     : scene_(std::move(scene)),
       tiles_(std::make_shared<const std::vector<TileBox>>(tiles_of(scene_.image().width, scene_.image().height))) {}
 
-void TiledScene::keep_points() { kept_ = std::make_shared<std::vector<Kept>>(tiles_->size()); }
+void TiledScene::keep_points() { kept_points_ = std::make_shared<std::vector<Kept>>(tiles_->size()); }
 
 TiledScene TiledScene::with_s(double s) const {
     TiledScene other = *this;
     other.scene_ = scene_.with_s(s);
-    if (kept_) {
+    if (kept_points_) {
         other.other_s_ = std::make_shared<const TiledScene>(*this);
-        other.kept_ = nullptr;
+        other.kept_points_ = nullptr;
     }
     return other;
 }
 
 std::shared_ptr<const TiledScene::Points> TiledScene::points(std::size_t k) const {
-    if (!kept_) return make(k);
-    Kept& tile = (*kept_)[k];
+    if (!kept_points_) return make(k);
+    Kept& tile = (*kept_points_)[k];
     const Guard guard(tile.lock);
     if (!tile.points) tile.points = make(k);
     return tile.points;

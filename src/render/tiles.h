@@ -20,7 +20,7 @@ public:
     TiledScene(Scene scene);  // NOLINT(google-explicit-constructor): a scene is a tiled one that keeps nothing
     /// From now on the points of a tile are created on first use, and kept while this object or a copy lives.
     void keep_points();
-    bool keeps_points() const { return kept_ != nullptr; }
+    bool keeps_points() const { return kept_points_ != nullptr; }
     /// Gives up the hits of primary rays, which nothing needs once all points are kept.
     void forget_hits() { scene_.forget_hits(); }
     /// Returns the same view with another exponent, see Scene::with_s. If this one keeps points, the other copies them
@@ -38,8 +38,8 @@ private:
 
     Scene scene_;
     std::shared_ptr<const std::vector<TileBox>> tiles_;
-    std::shared_ptr<std::vector<Kept>> kept_;    // one per tile; null: nothing is kept
-    std::shared_ptr<const TiledScene> other_s_;  // keeps points of the same view; null: none
+    std::shared_ptr<std::vector<Kept>> kept_points_;  // one per tile; null: nothing is kept
+    std::shared_ptr<const TiledScene> other_s_;       // keeps points of the same view; null: none
 };
 
 /// Returns the view at each exponent, in order; they share the points that `view` keeps.

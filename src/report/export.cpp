@@ -123,9 +123,9 @@ Json rejection_json(const FalseRejection& r) {
         {"low", number(r.low)}, {"high", number(r.high)}};
 }
 
-template <class T, class F> Json list(const std::vector<T>& items, F one) {
+template <class T, class F> Json list(const std::vector<T>& items, F convert) {
     Json out = Json::array();
-    for (const T& x : items) out.push_back(one(x));
+    for (const T& x : items) out.push_back(convert(x));
     return out;
 }
 
@@ -194,13 +194,13 @@ Json provenance_json(const Provenance& p) {
 std::string metrics_json(const ReportInputs& in) {
     const Metrics& m = in.metrics;
     const bool paired = in.experiment.reference.kind == ReferenceKind::paired;
-    const auto of_rmse = [&](const SeedSpread& b) { return band_json(b, paired && b.metric.starts_with("rmse")); };
+    const auto convert_band = [&](const SeedSpread& b) { return band_json(b, paired && b.metric.starts_with("rmse")); };
     Json provenance = provenance_json(in.provenance);
     provenance["experiment"] = experiment_json(in);
     Json out = {{"format", "crescent metrics 2"}, {"title", in.experiment.title},
         {"geometry_pixels", m.geometry_pixels}, {"shape_pixels", m.shape_pixels},
         {"runs", list(m.runs, [&](const RunMetrics& run) { return run_json(run, paired); })},
-        {"bands", list(m.bands, of_rmse)},
+        {"bands", list(m.bands, convert_band)},
         {"ladders", list(m.ladders, [&](const Ladder& l) { return ladder_json(l, paired); })},
         {"furnace", list(m.furnaces, furnace_json)}, {"references", list(m.references, reference_json)},
         {"assertions", list(m.assertions, assertion_json)}, {"films", m.film_hashes},
@@ -255,9 +255,9 @@ std::vector<std::pair<std::string, std::string>> overrides_of(const Experiment& 
         const std::size_t equals = end_of_path(text);
         const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
         if (path == "seeds") continue;
-        const auto found = std::ranges::find(out, path, &std::pair<std::string, std::string>::first);
-        if (found == out.end()) out.emplace_back(path, value);
-        else found->second = value;
+        const auto entry = std::ranges::find(out, path, &std::pair<std::string, std::string>::first);
+        if (entry == out.end()) out.emplace_back(path, value);
+        else entry->second = value;
     }
     return out;
 }

@@ -11,11 +11,11 @@ namespace crescent {
 
 RatioOfErrors compare(const std::string& a, double value_a, const std::string& b, double value_b) {
     RatioOfErrors c;
-    const bool first = value_a >= value_b;
-    c.larger = first ? a : b;
-    c.smaller = first ? b : a;
-    c.high = first ? value_a : value_b;
-    c.low = first ? value_b : value_a;
+    const bool is_a_larger = value_a >= value_b;
+    c.larger = is_a_larger ? a : b;
+    c.smaller = is_a_larger ? b : a;
+    c.high = is_a_larger ? value_a : value_b;
+    c.low = is_a_larger ? value_b : value_a;
     c.equal = value_a == value_b;
     c.ratio = c.equal ? 1 : c.low > 0 ? c.high / c.low : std::numeric_limits<double>::infinity();
     return c;
@@ -40,9 +40,9 @@ std::uint64_t Findings::common_n(const std::vector<const ArmPlan*>& arms) const 
 }
 
 std::uint64_t Findings::headline_n() const {
-    const std::uint64_t given = in_.experiment.n;
+    const std::uint64_t planned_n = in_.experiment.n;
     for (const ArmPlan& arm : in_.experiment.arms)
-        if (given > 0 && run(arm.name, given)) return given;
+        if (planned_n > 0 && run(arm.name, planned_n)) return planned_n;
     std::vector<const ArmPlan*> arms;
     for (const ArmPlan& arm : in_.experiment.arms) arms.push_back(&arm);
     if (const std::uint64_t n = common_n(arms)) return n;
@@ -62,15 +62,15 @@ const SeedSpread* Findings::band(
 }
 
 std::optional<double> Findings::rmse(const std::string& arm, std::uint64_t n, const std::string& region) const {
-    const RunMetrics* found = run(arm, n);
-    const RegionMetrics* metric = found ? found->region(region) : nullptr;
+    const RunMetrics* run_metrics = run(arm, n);
+    const RegionMetrics* metric = run_metrics ? run_metrics->region(region) : nullptr;
     return metric ? std::optional(metric->rmse) : std::nullopt;
 }
 
 std::optional<Tail> Findings::tail(const SeedSpread& band) const {
     const auto dot = band.metric.find('.');
-    const RunMetrics* found = dot == std::string::npos ? nullptr : run(band.key.arm, band.key.n, band.key.s);
-    const RegionMetrics* metric = found ? found->region(band.metric.substr(dot + 1)) : nullptr;
+    const RunMetrics* run_metrics = dot == std::string::npos ? nullptr : run(band.key.arm, band.key.n, band.key.s);
+    const RegionMetrics* metric = run_metrics ? run_metrics->region(band.metric.substr(dot + 1)) : nullptr;
     return metric ? metric->tail : std::nullopt;
 }
 
@@ -82,8 +82,8 @@ SeedCount Findings::seeds_above(
         const RunMetrics* b = runs_.find({.arm = arm_b, .n = n, .s = s(), .seed = a.key.seed});
         const RegionMetrics *in_a = a.region(region), *in_b = b ? b->region(region) : nullptr;
         if (!in_a || !in_b) continue;
-        ++count.of;
-        if (in_a->rmse > in_b->rmse) ++count.held;
+        ++count.total;
+        if (in_a->rmse > in_b->rmse) ++count.larger;
     }
     return count;
 }
@@ -92,9 +92,9 @@ std::string Findings::region_where_worst(const std::string& a, const std::string
     std::string worst;
     double largest = 0;
     for (const Region& region : in_.experiment.regions) {
-        const auto of_a = rmse(a, n, region.name), of_b = rmse(b, n, region.name);
-        if (!of_a || !of_b) continue;
-        const double ratio = *of_b > 0 ? *of_a / *of_b : std::numeric_limits<double>::infinity();
+        const auto rmse_a = rmse(a, n, region.name), rmse_b = rmse(b, n, region.name);
+        if (!rmse_a || !rmse_b) continue;
+        const double ratio = *rmse_b > 0 ? *rmse_a / *rmse_b : std::numeric_limits<double>::infinity();
         if (worst.empty() || ratio > largest) {
             worst = region.name;
             largest = ratio;

@@ -24,7 +24,7 @@ RatioOfErrors compare(const std::string& a, double value_a, const std::string& b
 
 /// The number of seeds with metric(a) > metric(b), and the number of seeds.
 struct SeedCount {
-    int held = 0, of = 0;
+    int larger = 0, total = 0;
 };
 
 /// Returns the probability that all values of one of two equal arms are above all of the other's, with this many seeds

@@ -25,9 +25,9 @@ std::optional<Tail> tail_of(const StoredJson& json) {
     return Tail{tail.at("k").number(), tail.at("se").number(), tail.at("exceedances").get<std::uint64_t>()};
 }
 
-template <class T, class F> std::vector<T> list_of(const StoredJson& json, F one) {
+template <class T, class F> std::vector<T> list_of(const StoredJson& json, F convert) {
     std::vector<T> out;
-    for (const StoredJson& item : json.entries()) out.push_back(one(item));
+    for (const StoredJson& item : json.entries()) out.push_back(convert(item));
     return out;
 }
 
@@ -205,8 +205,8 @@ void check_runs(const MetricsFile& file, const std::string& name) {
     const Experiment& e = file.experiment;
     for (const RunMetrics& run : file.metrics.runs) {
         const ArmPlan* arm = e.find_arm(run.key.arm);
-        const bool made = arm && std::ranges::find(arm->n, run.key.n) != arm->n.end() && std::isfinite(run.key.s);
-        if (!made || !std::ranges::equal(run.regions, e.regions, {}, &RegionMetrics::region, &Region::name))
+        const bool is_planned = arm && std::ranges::find(arm->n, run.key.n) != arm->n.end() && std::isfinite(run.key.s);
+        if (!is_planned || !std::ranges::equal(run.regions, e.regions, {}, &RegionMetrics::region, &Region::name))
             throw InputError({name, 0, 0},
                 fmt::format("the run {} is not one of the experiment in it, or has other regions", to_string(run.key)));
     }

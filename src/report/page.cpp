@@ -37,43 +37,44 @@ Figures::Figures(const ReportInputs& in) : in_(in) {
     std::sort(sizes.rbegin(), sizes.rend());
     for (const auto& [size, name] : sizes) {
         if (total <= page_limit) break;
-        outside_.insert(name);
+        linked_plates_.insert(name);
         total -= size;
     }
 }
 
-Json Figures::plates(PlateKind kind, const std::function<bool(const PlatePlan&)>& only) {
+Json Figures::plates(PlateKind kind, const std::function<bool(const PlatePlan&)>& accepts) {
     Json out = Json::array();
     for (const PlatePlan& plan : in_.experiment.plates)
-        if (plan.kind == kind && in_.plates.count(plan.name) && !shown_.count(plan.name) && (!only || only(plan)))
+        if (plan.kind == kind && in_.plates.count(plan.name) && !placed_plates_.count(plan.name) &&
+            (!accepts || accepts(plan)))
             out.push_back(plate(plan.name, &plan));
     return out;
 }
 
-Json Figures::rest() {
+Json Figures::remaining_plates() {
     Json out = Json::array();
     for (const PlatePlan& plan : in_.experiment.plates)
-        if (in_.plates.count(plan.name) && !shown_.count(plan.name)) out.push_back(plate(plan.name, &plan));
+        if (in_.plates.count(plan.name) && !placed_plates_.count(plan.name)) out.push_back(plate(plan.name, &plan));
     for (const auto& [name, png] : in_.plates)
-        if (!shown_.count(name)) out.push_back(plate(name, nullptr));
+        if (!placed_plates_.count(name)) out.push_back(plate(name, nullptr));
     return out;
 }
 
 Json Figures::plate(const std::string& name, const PlatePlan* plan) {
-    shown_.insert(name);
-    std::string look;
-    if (plan) look = plate_info(plan->kind).look == PlateLook::photograph ? "Photograph" : "Instrument";
-    return {{"name", name}, {"id", slug(name)}, {"look", look},
+    placed_plates_.insert(name);
+    std::string label;
+    if (plan) label = plate_info(plan->kind).look == PlateLook::photograph ? "Photograph" : "Instrument";
+    return {{"name", name}, {"id", slug(name)}, {"look", label},
         {"caption", plan && !plan->caption.empty() ? plan->caption : name},
         {"source",
-            outside_.count(name) ? escape("plates/" + name + ".png")
-                                 : "data:image/png;base64," + base64(in_.plates.at(name))}};
+            linked_plates_.count(name) ? escape("plates/" + name + ".png")
+                                       : "data:image/png;base64," + base64(in_.plates.at(name))}};
 }
 
 std::string Page::colour(const std::string& arm) const {
     const auto& arms = in.experiment.arms;
-    const auto found = std::find_if(arms.begin(), arms.end(), [&](const ArmPlan& a) { return a.name == arm; });
-    return fmt::format("c{}", (found - arms.begin()) % 6);
+    const auto match = std::find_if(arms.begin(), arms.end(), [&](const ArmPlan& a) { return a.name == arm; });
+    return fmt::format("c{}", (match - arms.begin()) % 6);
 }
 
 std::string metric_html(const std::string& metric) {
@@ -81,13 +82,13 @@ std::string metric_html(const std::string& metric) {
     const std::string kind = metric.substr(0, dot);
     const std::string region = dot == std::string::npos ? "" : "<sub>" + escape(metric.substr(dot + 1)) + "</sub>";
     std::string label = kind == "flip" ? "FLIP" : escape(kind);
-    const auto look = [&](std::string_view name, const MetricInfo& info, auto) {
+    const auto take_label = [&](std::string_view name, const MetricInfo& info, auto) {
         if (name == kind && !info.label.empty()) label = info.label;
     };
-    const RegionMetrics of_region;
-    const RunMetrics of_frame;
-    for_each_metric(of_region, look);
-    for_each_metric(of_frame, look);
+    const RegionMetrics region_metrics;
+    const RunMetrics frame_metrics;
+    for_each_metric(region_metrics, take_label);
+    for_each_metric(frame_metrics, take_label);
     return label + region;
 }
 
@@ -193,10 +194,10 @@ std::ptrdiff_t shared_sample_counts(const ArmPlan& a, const ArmPlan& b) {
     return std::ranges::count_if(a.n, [&](std::uint64_t n) { return std::ranges::find(b.n, n) != b.n.end(); });
 }
 
-std::vector<std::string> names_where(const Experiment& e, const std::function<bool(const ArmPlan&)>& is) {
+std::vector<std::string> names_where(const Experiment& e, const std::function<bool(const ArmPlan&)>& accepts) {
     std::vector<std::string> names;
     for (const ArmPlan& arm : e.arms)
-        if (is(arm)) names.push_back("<b>" + escape(arm.name) + "</b>");
+        if (accepts(arm)) names.push_back("<b>" + escape(arm.name) + "</b>");
     return names;
 }
 
@@ -219,21 +220,21 @@ ArmPair arm_pair(const Page& page) {
     ArmPair pair;
     pair.narrow = arm_about_mirror(page.in.experiment);
     if (!pair.narrow) return {};
-    double least = std::numeric_limits<double>::infinity();
+    double smallest_error = std::numeric_limits<double>::infinity();
     std::ptrdiff_t largest = 0;
     for (const ArmPlan* arm : arms_about_normal(page.in.experiment)) {
-        const auto ran = [&](std::uint64_t n) {
+        const auto was_run = [&](std::uint64_t n) {
             return n > 0 && page.find.run(arm->name, n) && page.find.run(pair.narrow->name, n);
         };
-        const std::uint64_t shared = page.find.headline_n();
-        const std::uint64_t n = ran(shared) ? shared : page.find.common_n({arm, pair.narrow});
-        if (!ran(n)) continue;
+        const std::uint64_t headline_n = page.find.headline_n();
+        const std::uint64_t n = was_run(headline_n) ? headline_n : page.find.common_n({arm, pair.narrow});
+        if (!was_run(n)) continue;
         const double error = error_of(page, *arm, n);
         const std::ptrdiff_t sample_counts = shared_sample_counts(*arm, *pair.narrow);
-        if (!pair.broad || sample_counts > largest || (sample_counts == largest && error < least)) {
+        if (!pair.broad || sample_counts > largest || (sample_counts == largest && error < smallest_error)) {
             pair.broad = arm;
             pair.n = n;
-            least = error;
+            smallest_error = error;
             largest = sample_counts;
         }
     }
@@ -259,11 +260,11 @@ std::string ray_words(const Experiment& experiment) {
 std::string bias_words(const Experiment& experiment) {
     std::string out;
     for (const ArmPlan& arm : experiment.arms)
-        if (const std::string missed = missed_light(arm, experiment); !missed.empty())
+        if (const std::string light = missed_light(arm, experiment); !light.empty())
             out += fmt::format(
                 "{}<b>{}</b> is biased in this scene: it cannot reach {}. More samples do not bring that light, so "
                 "that its RMSE stops falling.",
-                out.empty() ? "" : " ", escape(arm.name), escape(missed));
+                out.empty() ? "" : " ", escape(arm.name), escape(light));
     return out;
 }
 
@@ -300,8 +301,8 @@ std::string heavy_words(const Page& page, const SeedSpread& a, const SeedSpread&
 std::string ranking(const Page& page, const SeedSpread& a, const SeedSpread& b) {
     if (a.band.heavy || b.band.heavy) return heavy_words(page, a, b);
     if (a.band.seeds < 2) return " One seed gives no interval, so the two are not ranked.";
-    const bool overlap = a.band.q05 <= b.band.q95 && b.band.q05 <= a.band.q95;
-    if (overlap) return " The <span class=\"v\">5–95 %</span> bands overlap, so the two are not ranked.";
+    const bool bands_overlap = a.band.q05 <= b.band.q95 && b.band.q05 <= a.band.q95;
+    if (bands_overlap) return " The <span class=\"v\">5–95 %</span> bands overlap, so the two are not ranked.";
     const double chance = chance_of_parted_bands(std::min(a.band.seeds, b.band.seeds));
     return chance > 0.05 ? fmt::format(
                                " With {} seeds the bands of equal arms are disjoint in {} of all runs, so the two "
@@ -328,17 +329,17 @@ void add_flip_rows(const Page& page, const std::vector<Column>& columns, Json& r
     for (const Region& region : page.in.experiment.regions) {
         const std::string metric = "flip." + region.name;
         Json cells = Json::array();
-        bool any = false;
+        bool has_values = false;
         for (const Column& column : columns) {
             const RunMetrics* run = page.find.run(column.arm, column.n, column.s);
             const RegionMetrics* values = run ? run->region(region.name) : nullptr;
-            const bool measured = values && values->has_flip();
-            any = any || measured;
+            const bool is_measured = values && values->has_flip();
+            has_values = has_values || is_measured;
             const SeedSpread* band = page.find.band(column.arm, column.n, metric, column.s);
             cells.push_back(metric_cell(page, band));
-            if (!band && measured) cells.back()["value"] = with_minus(figures(values->flip));
+            if (!band && is_measured) cells.back()["value"] = with_minus(figures(values->flip));
         }
-        if (any) rows.push_back({{"metric", metric_html(metric)}, {"cells", cells}});
+        if (has_values) rows.push_back({{"metric", metric_html(metric)}, {"cells", cells}});
     }
 }
 
@@ -349,13 +350,13 @@ Json metrics_table(const Page& page, const std::vector<Column>& columns) {
     for (const Column& column : columns) heads.push_back(column.head);
     for (const std::string& metric : headline_metrics(page.in.experiment)) {
         Json cells = Json::array();
-        bool any = false;
+        bool has_values = false;
         for (const Column& column : columns) {
             const SeedSpread* band = page.find.band(column.arm, column.n, metric, column.s);
-            any = any || band;
+            has_values = has_values || band;
             cells.push_back(metric_cell(page, band));
         }
-        if (any) rows.push_back({{"metric", metric_html(metric)}, {"cells", cells}});
+        if (has_values) rows.push_back({{"metric", metric_html(metric)}, {"cells", cells}});
     }
     add_flip_rows(page, columns, rows);
     if (rows.empty()) return false;
@@ -364,13 +365,14 @@ Json metrics_table(const Page& page, const std::vector<Column>& columns) {
 
 std::string ordering_html(
     const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region) {
-    const auto of_a = page.find.rmse(a, n, region), of_b = page.find.rmse(b, n, region);
-    if (!of_a || !of_b) return {};
-    const RatioOfErrors c = compare(a, *of_a, b, *of_b);
+    const auto rmse_a = page.find.rmse(a, n, region), rmse_b = page.find.rmse(b, n, region);
+    if (!rmse_a || !rmse_b) return {};
+    const RatioOfErrors c = compare(a, *rmse_a, b, *rmse_b);
     const std::string metric = "rmse." + region;
     std::string out = first_words(c, n, metric_html(metric), page.seed_name());
     const SeedCount seeds = page.find.seeds_above(c.larger, c.smaller, n, region);
-    if (seeds.of > 1 && !c.equal) out += fmt::format(" The order is the same in {} of {} seeds.", seeds.held, seeds.of);
+    if (seeds.total > 1 && !c.equal)
+        out += fmt::format(" The order is the same in {} of {} seeds.", seeds.larger, seeds.total);
     const SeedSpread *band_a = page.find.band(a, n, metric), *band_b = page.find.band(b, n, metric);
     if (band_a && band_b) out += ranking(page, *band_a, *band_b);
     return out;
@@ -391,18 +393,18 @@ bool remedies(const Experiment& e) {
 }  // namespace
 
 Json more_plates(Page& page) {
-    Json rest = page.figures.rest();
-    return rest.empty() ? Json(false) : Json{{"plates", std::move(rest)}};
+    Json plates = page.figures.remaining_plates();
+    return plates.empty() ? Json(false) : Json{{"plates", std::move(plates)}};
 }
 
 Json limits(const Page& page) {
     const Experiment& e = page.in.experiment;
     const auto& bands = page.in.metrics.bands;
-    const auto heavy = std::ranges::count_if(bands, [](const SeedSpread& b) { return b.band.heavy; });
+    const auto heavy_count = std::ranges::count_if(bands, [](const SeedSpread& b) { return b.band.heavy; });
     const double chance = chance_of_parted_bands(e.seeds);
     Json out = {{"bands", false}, {"rays", after_space(ray_words(e))}, {"bias", bias_words(e)},
         {"remedies", remedies(e)}, {"one_seed", e.seeds < 2}, {"few_seeds", e.seeds >= 2 && e.seeds < 20},
-        {"heavy", heavy > 0 ? std::to_string(heavy) : ""}, {"metrics", bands.size()}};
+        {"heavy", heavy_count > 0 ? std::to_string(heavy_count) : ""}, {"metrics", bands.size()}};
     if (e.seeds > 1) out["bands"] = {{"chance", chance > 1e-3 ? percent(chance, 2) : "less than 0.1 %"}};
     return out;
 }
@@ -410,18 +412,18 @@ Json limits(const Page& page) {
 Json assertions(const Page& page) {
     const auto& results = page.in.metrics.assertions;
     if (results.empty()) return false;
-    const auto failed = std::ranges::count_if(results, [](const AssertionResult& a) { return a.failed(); });
-    const auto empty = std::ranges::count_if(results, [](const AssertionResult& a) { return a.cannot_fail; });
+    const auto failure_count = std::ranges::count_if(results, [](const AssertionResult& a) { return a.failed(); });
+    const auto empty_count = std::ranges::count_if(results, [](const AssertionResult& a) { return a.cannot_fail; });
     Json rows = Json::array();
     for (const AssertionResult& a : results) {
-        const bool ran = a.skipped.empty(), holds = ran && !a.failed();
+        const bool was_run = a.skipped.empty(), holds = was_run && !a.failed();
         rows.push_back({{"name", a.name}, {"claim", a.text}, {"measured", cell_text(compact(a.measured))}, {"op", a.op},
-            {"bound", cell_text(compact(a.bound))}, {"skipped", a.skipped}, {"fails", ran && a.failed()},
+            {"bound", cell_text(compact(a.bound))}, {"skipped", a.skipped}, {"fails", was_run && a.failed()},
             {"holds", holds}, {"cannot_fail", holds && a.cannot_fail}});
     }
     return {{"total", results.size()}, {"one", results.size() == 1},
-        {"failed", failed > 0 ? std::to_string(failed) : ""}, {"empty", empty > 0 ? std::to_string(empty) : ""},
-        {"rows", rows}};
+        {"failed", failure_count > 0 ? std::to_string(failure_count) : ""},
+        {"empty", empty_count > 0 ? std::to_string(empty_count) : ""}, {"rows", rows}};
 }
 
 Json provenance(const Page& page) {

@@ -20,16 +20,16 @@ class Figures {
 public:
     explicit Figures(const ReportInputs& in);
 
-    /// Returns every plate of a kind that has not been taken yet; `only` may select among them.
-    Json plates(PlateKind kind, const std::function<bool(const PlatePlan&)>& only = {});
+    /// Returns every plate of a kind that has not been taken yet; `accepts` may select among them.
+    Json plates(PlateKind kind, const std::function<bool(const PlatePlan&)>& accepts = {});
     /// Returns the plates that no section has taken.
-    Json rest();
+    Json remaining_plates();
 
 private:
     Json plate(const std::string& name, const PlatePlan* plan);
 
     const ReportInputs& in_;
-    std::set<std::string> shown_, outside_;
+    std::set<std::string> placed_plates_, linked_plates_;
 };
 
 struct Page {

@@ -42,9 +42,9 @@ Json band_row(const Page& page, const SeedSpread& b) {
 /// Returns the metrics in a fixed order, then all others, without the whole frame.
 std::vector<std::string> metrics_in_order(const Page& page) {
     std::vector<std::string> order = headline_metrics(page.in.experiment);
-    std::set<std::string> seen(order.begin(), order.end());
+    std::set<std::string> metrics(order.begin(), order.end());
     for (const SeedSpread& b : page.in.metrics.bands)
-        if (b.metric != "rmse_frame" && seen.insert(b.metric).second) order.push_back(b.metric);
+        if (b.metric != "rmse_frame" && metrics.insert(b.metric).second) order.push_back(b.metric);
     return order;
 }
 
@@ -92,10 +92,10 @@ struct Series {
 std::vector<Series> series_of(const Evidence& evidence) {
     std::vector<Series> series;
     for (const FurnaceQuantiles& q : evidence.furnace) {
-        auto found = std::find_if(series.begin(), series.end(),
+        auto entry = std::find_if(series.begin(), series.end(),
             [&](const Series& s) { return s.arithmetic == q.arithmetic && s.u_bits == q.u_bits; });
-        if (found == series.end()) found = series.insert(series.end(), {q.arithmetic, q.u_bits, {}});
-        found->sample_counts.push_back(&q);
+        if (entry == series.end()) entry = series.insert(series.end(), {q.arithmetic, q.u_bits, {}});
+        entry->sample_counts.push_back(&q);
     }
     for (Series& s : series)
         std::sort(
@@ -134,13 +134,15 @@ Json panel(const Page& page, const Series& s) {
     std::vector<double> n;
     for (const FurnaceQuantiles* q : s.sample_counts) n.push_back(static_cast<double>(q->n));
     const Axis y = y_axis(evidence);
-    const auto held = [&](std::vector<double> v) {
+    const auto limit_to_axis = [&](std::vector<double> v) {
         for (double& x : v) x = std::min(x, y.high);
         return v;
     };
     Chart chart(420, 280, log_axis("N", n), y, "Combined furnace of the Phong arm against N: " + s.name());
-    chart.band(n, held(column(s, &FurnaceQuantiles::q05)), held(column(s, &FurnaceQuantiles::q95)), "c1 faint");
-    chart.band(n, held(column(s, &FurnaceQuantiles::q25)), held(column(s, &FurnaceQuantiles::q75)), "c1");
+    chart.band(n, limit_to_axis(column(s, &FurnaceQuantiles::q05)), limit_to_axis(column(s, &FurnaceQuantiles::q95)),
+        "c1 faint");
+    chart.band(
+        n, limit_to_axis(column(s, &FurnaceQuantiles::q25)), limit_to_axis(column(s, &FurnaceQuantiles::q75)), "c1");
     std::vector<Point> medians;
     for (const FurnaceQuantiles* q : s.sample_counts) medians.push_back({static_cast<double>(q->n), q->median});
     chart.line(medians, "c1");
@@ -155,9 +157,11 @@ Json panel(const Page& page, const Series& s) {
 
 /// Returns the sample count of the series nearest to n, on a log scale.
 const FurnaceQuantiles* nearest_sample_count(const Series& s, double n) {
-    const auto far = [&](const FurnaceQuantiles* q) { return std::fabs(math::log(static_cast<double>(q->n) / n)); };
-    return *std::min_element(
-        s.sample_counts.begin(), s.sample_counts.end(), [&](const auto* a, const auto* b) { return far(a) < far(b); });
+    const auto distance_of = [&](const FurnaceQuantiles* q) {
+        return std::fabs(math::log(static_cast<double>(q->n) / n));
+    };
+    return *std::min_element(s.sample_counts.begin(), s.sample_counts.end(),
+        [&](const auto* a, const auto* b) { return distance_of(a) < distance_of(b); });
 }
 
 std::string share_text(const FalseRejection& r) {
@@ -182,8 +186,8 @@ Json furnace_medians(const Evidence& evidence) {
     for (const std::uint64_t n : sample_counts) {
         Json cells = Json::array();
         for (const Series& s : series) {
-            const auto found = std::ranges::find(s.sample_counts, n, [](const FurnaceQuantiles* q) { return q->n; });
-            cells.push_back(cell_text(found == s.sample_counts.end() ? "" : figures((*found)->median)));
+            const auto match = std::ranges::find(s.sample_counts, n, [](const FurnaceQuantiles* q) { return q->n; });
+            cells.push_back(cell_text(match == s.sample_counts.end() ? "" : figures((*match)->median)));
         }
         out.push_back({{"n", n}, {"cells", cells}});
     }
@@ -220,11 +224,11 @@ std::string furnace_html(const Page& page) {
 /// Draws the diffuse part that the Phong sampler cannot reach, against the tilt: <svg>.
 std::string lost_chart(const Evidence& evidence) {
     std::vector<double> angles{0}, shares{0};
-    std::vector<Point> theory, measured;
+    std::vector<Point> theory, estimates;
     for (const LostSupport& l : evidence.lost) {
         angles.push_back(l.theta_R_deg);
         shares.insert(shares.end(), {l.theory, std::max(0.0, l.measured)});
-        measured.push_back({l.theta_R_deg, l.measured});
+        estimates.push_back({l.theta_R_deg, l.measured});
     }
     const Axis x = linear_axis("tilt of R from the normal, degrees", angles);
     for (int i = 0; i <= 60; ++i) {
@@ -237,7 +241,7 @@ std::string lost_chart(const Evidence& evidence) {
     chart.line(theory, "c0");
     for (const LostSupport& l : evidence.lost)
         chart.bar(l.theta_R_deg, std::max(0.0, l.measured - 2 * l.se), l.measured + 2 * l.se, "c1");
-    chart.dots(measured, "c1");
+    chart.dots(estimates, "c1");
     return chart.str();
 }
 
@@ -291,10 +295,10 @@ std::string rejection_html(const Evidence& evidence) {
     int heavy = 0, heavy_above = 0, light = 0, light_above = 0;
     const FalseRejection* worst = nullptr;
     for (const FalseRejection& r : evidence.rejections) {
-        const bool infinite = r.k > 0.5, above = r.low > evidence.alpha;
-        (infinite ? heavy : light) += 1;
-        (infinite ? heavy_above : light_above) += above;
-        if (infinite && above && (!worst || r.low > worst->low)) worst = &r;
+        const bool is_infinite = r.k > 0.5, is_above = r.low > evidence.alpha;
+        (is_infinite ? heavy : light) += 1;
+        (is_infinite ? heavy_above : light_above) += is_above;
+        if (is_infinite && is_above && (!worst || r.low > worst->low)) worst = &r;
     }
     const auto exponents = [](int count) { return plural(static_cast<std::uint64_t>(count), "exponent"); };
     std::string out;
@@ -360,17 +364,18 @@ std::string spread(const std::vector<double>& values) {
     if (values.empty()) return {};
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     if (*low < 0 && *high > 0) return {};
-    const double least = std::min(std::fabs(*low), std::fabs(*high)),
-                 greatest = std::max(std::fabs(*low), std::fabs(*high));
-    const std::string range = greatest - least < 0.005 ? fmt::format("{:.0f}", 100 * greatest)
-                                                       : fmt::format("{:.0f} to {:.0f}", 100 * least, 100 * greatest);
+    const double smallest = std::min(std::fabs(*low), std::fabs(*high)),
+                 largest = std::max(std::fabs(*low), std::fabs(*high));
+    const std::string range = largest - smallest < 0.005
+        ? fmt::format("{:.0f}", 100 * largest)
+        : fmt::format("{:.0f} to {:.0f}", 100 * smallest, 100 * largest);
     return range + " % " + (*low < 0 ? "below" : "above");
 }
 
 /// The broad arms in the highlight, and why the geometry cannot simply be changed to match them.
 std::string highlight_remark(const Page& page, const std::string& region) {
     std::string parts;
-    bool below = true;
+    bool is_below = true;
     for (const char* kind : {"rmse.", "var."}) {
         std::vector<double> ratios;
         for (const ArmPlan* arm : arms_about_normal(page.in.experiment))
@@ -378,13 +383,13 @@ std::string highlight_remark(const Page& page, const std::string& region) {
                 ratios.push_back(*r);
         const std::string range = spread(ratios);
         if (range.empty()) continue;
-        below = below && ratios.front() < 0;
+        is_below = is_below && ratios.front() < 0;
         parts += (parts.empty() ? "" : ", ") + metric_html(kind + region) + " " + range;
     }
     if (parts.empty()) return {};
     std::string out = "For the arms that do not follow the lobe, medians against the published values: " + parts + ".";
     const auto& control = page.in.experiment.exponent;
-    if (!below || !control || control->s.empty()) return out;
+    if (!is_below || !control || control->s.empty()) return out;
     const double s = *std::max_element(control->s.begin(), control->s.end());
     const auto mean = relative(page.find.band(control->arm, control->n, "y_mean", s));
     if (mean && *mean > 0)
@@ -436,18 +441,18 @@ std::string smooth_ladder_remark(const Page& page, const ArmPlan& narrow, const 
             published.push_back(*b->published);
     if (published.size() < 3 || published.size() != narrow.n.size()) return {};
     const double limit = departure(narrow.n, published);
-    int close = 0, count = 0;
+    int close_count = 0, count = 0;
     for (const std::uint32_t seed : page.in.provenance.seeds) {
         const auto ladder = ladder_of(page, narrow, region, seed);
         if (ladder.empty()) continue;
         ++count;
-        if (departure(narrow.n, ladder) <= limit) ++close;
+        if (departure(narrow.n, ladder) <= limit) ++close_count;
     }
     if (count < 2) return {};
     return fmt::format(
         "The published ladder of {} in {} deviates from slope −1/2 by at most {}. Of {} seeds here, {} keep as "
         "close: the others meet a rare bright sample at some sample count.",
-        escape(narrow.name), escape(region), percent(limit, 2), count, close);
+        escape(narrow.name), escape(region), percent(limit, 2), count, close_count);
 }
 
 /// A published rise of RMSE with N, for an arm whose square has no finite expectation.
@@ -457,20 +462,20 @@ std::string rise_remark(const Page& page, const ArmPlan& narrow, const std::stri
                          *b = page.find.band(narrow.name, narrow.n[i], "rmse." + region);
         if (!a || !b || !a->published || !b->published || *b->published <= *a->published) continue;
         const double factor = *b->published / *a->published;
-        int rose = 0, so_much = 0, count = 0;
+        int rise_count = 0, large_rise_count = 0, count = 0;
         for (const std::uint32_t seed : page.in.provenance.seeds) {
             const auto ladder = ladder_of(page, narrow, region, seed);
             if (ladder.empty()) continue;
             ++count;
-            rose += ladder[i] > ladder[i - 1];
-            so_much += ladder[i] >= factor * ladder[i - 1];
+            rise_count += ladder[i] > ladder[i - 1];
+            large_rise_count += ladder[i] >= factor * ladder[i - 1];
         }
         if (count < 2) return {};
         return fmt::format(
             "From <i>N</i> = {} to {} the published {} of {} rises by a factor of {:.2f}. In {} of {} seeds here it "
             "rises, in {} by that much. With an infinite variance behind it, it need not fall.",
-            narrow.n[i - 1], narrow.n[i], metric_html("rmse." + region), escape(narrow.name), factor, rose, count,
-            so_much);
+            narrow.n[i - 1], narrow.n[i], metric_html("rmse." + region), escape(narrow.name), factor, rise_count, count,
+            large_rise_count);
     }
     return {};
 }
@@ -501,10 +506,10 @@ Json remarks(const Page& page) {
 Json disagreements(const Page& page) {
     if (!page.find.anything_published()) return false;
     Json rows = Json::array();
-    std::size_t checked = 0;
+    std::size_t checked_count = 0;
     for (const SeedSpread& b : page.in.metrics.bands) {
         if (!b.published || b.band.heavy || b.band.seeds < 2) continue;
-        ++checked;
+        ++checked_count;
         if (*b.published >= b.band.q05 && *b.published <= b.band.q95) continue;
         const auto deviation = relative(&b);
         rows.push_back({{"metric", metric_html(b.metric)}, {"run", run_html(b.key, page.in.experiment)},
@@ -512,10 +517,10 @@ Json disagreements(const Page& page) {
             {"median", cell_text(figures_of(b.metric, b.band.median))}, {"interval", interval_html(b.metric, b.band)},
             {"off", deviation ? signed_percent(*deviation) : "–"}});
     }
-    if (checked == 0) return false;
-    const std::size_t outside = rows.size();
-    return {{"compared", plural(checked, "published value")}, {"outside", outside}, {"one_outside", outside == 1},
-        {"rows", std::move(rows)}, {"remarks", remarks(page)}};
+    if (checked_count == 0) return false;
+    const std::size_t disagreement_count = rows.size();
+    return {{"compared", plural(checked_count, "published value")}, {"outside", disagreement_count},
+        {"one_outside", disagreement_count == 1}, {"rows", std::move(rows)}, {"remarks", remarks(page)}};
 }
 
 }  // namespace crescent

@@ -48,8 +48,8 @@ Json broad_arms(const Page& page, const ArmPair& pair, const std::string& region
 
 bool larger_in(
     const Page& page, const std::string& a, const std::string& b, std::uint64_t n, const std::string& region) {
-    const auto of_a = page.find.rmse(a, n, region), of_b = page.find.rmse(b, n, region);
-    return of_a && of_b && *of_a > *of_b;
+    const auto rmse_a = page.find.rmse(a, n, region), rmse_b = page.find.rmse(b, n, region);
+    return rmse_a && rmse_b && *rmse_a > *rmse_b;
 }
 
 /// Returns those of the two failures that this run does not show.
@@ -293,8 +293,9 @@ Json furnaces(const Page& page) {
             {"expected", with_minus(figures(f.expected))}, {"off", percent(std::fabs(deviation), 2)},
             {"short", deviation < 0}, {"tail", tail_text(f.tail)}});
     }
-    const bool published = std::ranges::any_of(results, [](const FurnaceResult& f) { return f.published.has_value(); });
-    return {{"with_published", published}, {"rows", rows}, {"shortfalls", shortfalls}};
+    const bool has_published =
+        std::ranges::any_of(results, [](const FurnaceResult& f) { return f.published.has_value(); });
+    return {{"with_published", has_published}, {"rows", rows}, {"shortfalls", shortfalls}};
 }
 
 }  // namespace crescent

@@ -26,9 +26,9 @@ std::string value_of(bool x) { return x ? "yes" : "no"; }
 std::string value_of(const Vec3d& v) { return html::value(vec(v)); }
 std::string value_of(const std::optional<Rgb>& c) { return c ? rgb(*c) : ""; }
 
-/// Returns "centre (0, 1, 0), radius 0.5", the parameters of the kind that `any` holds, without those that are not
+/// Returns "centre (0, 1, 0), radius 0.5", the parameters of the kind that `variant` holds, without those that are not
 /// given.
-template <class Any> std::string parameters_of(const Any& any) {
+template <class Any> std::string parameters_of(const Any& variant) {
     return std::visit(
         []<class Kind>(const Kind& kind) {
             std::string out;
@@ -42,25 +42,25 @@ template <class Any> std::string parameters_of(const Any& any) {
             }
             return out;
         },
-        any);
+        variant);
 }
 
 std::string lobe(const Material& m) {
     if (m.rho_s == 0) return "–";
     const std::string share = "<i>ρ</i><sub>s</sub> = " + (m.specular ? rgb(*m.specular) : shortest(m.rho_s));
     const LobeInfo& lobe = lobe_info(m.brdf);
-    const bool by_alpha = lobe.parameter == LobeParameter::alpha;
-    return fmt::format("{}, {}, {} = {}", share, lobe.label, by_alpha ? "<i>α</i>" : "<i>s</i>",
-        shortest((by_alpha ? m.alpha : m.s).value_or(0)));
+    const bool has_alpha = lobe.parameter == LobeParameter::alpha;
+    return fmt::format("{}, {}, {} = {}", share, lobe.label, has_alpha ? "<i>α</i>" : "<i>s</i>",
+        shortest((has_alpha ? m.alpha : m.s).value_or(0)));
 }
 
-Json shape_of(const Page& page, const std::string& name, std::string_view kind, const std::string& where,
+Json shape_of(const Page& page, const std::string& name, std::string_view kind, const std::string& description,
     const Material& material, bool blocks) {
-    const auto found = page.in.metrics.shape_pixels.find(name);
-    const bool is_known = found != page.in.metrics.shape_pixels.end();
-    return {{"name", name}, {"kind", kind}, {"where", where}, {"rho_d", rgb(material.rho_d)}, {"rho_d_file", ""},
+    const auto entry = page.in.metrics.shape_pixels.find(name);
+    const bool is_known = entry != page.in.metrics.shape_pixels.end();
+    return {{"name", name}, {"kind", kind}, {"where", description}, {"rho_d", rgb(material.rho_d)}, {"rho_d_file", ""},
         {"lobe", lobe(material)}, {"alpha_file", ""}, {"blocks", blocks},
-        {"pixels", is_known ? std::to_string(found->second) : "–"}};
+        {"pixels", is_known ? std::to_string(entry->second) : "–"}};
 }
 
 Json shapes_of(const Page& page) {
@@ -69,11 +69,11 @@ Json shapes_of(const Page& page) {
         out.push_back(
             shape_of(page, shape.name, shape.kind(), parameters_of(shape.form), shape.material, shape.occludes));
     for (const MeshObject& mesh : page.in.experiment.meshes) {
-        std::string where = escape(mesh.file);
-        if (mesh.pack) where += fmt::format(", {} triangles", mesh.pack->mesh.triangles.size());
-        if (!mesh.instances.empty()) where += fmt::format(", {} instances", mesh.instances.size());
-        if (mesh.emits()) where += fmt::format(", emits {} W/(sr m²)", rgb(mesh.emission));
-        Json row = shape_of(page, mesh.name, "mesh", where, mesh.material, true);
+        std::string description = escape(mesh.file);
+        if (mesh.pack) description += fmt::format(", {} triangles", mesh.pack->mesh.triangles.size());
+        if (!mesh.instances.empty()) description += fmt::format(", {} instances", mesh.instances.size());
+        if (mesh.emits()) description += fmt::format(", emits {} W/(sr m²)", rgb(mesh.emission));
+        Json row = shape_of(page, mesh.name, "mesh", description, mesh.material, true);
         row["rho_d_file"] = mesh.rho_d_texture.file.value_or("");
         row["alpha_file"] = mesh.alpha_texture.file.value_or("");
         out.push_back(row);
@@ -156,10 +156,10 @@ std::string spelled(std::size_t count) {
 std::vector<const LobeInfo*> lobes_of(const Experiment& e) {
     std::vector<const LobeInfo*> out;
     for (const LobeInfo& lobe : lobe_infos()) {
-        bool used = false;
+        bool is_used = false;
         for (std::size_t k = 0; k < e.surface_count(); ++k)
-            used = used || (e.material(k).rho_s > 0 && e.material(k).brdf == lobe.kind);
-        if (used) out.push_back(&lobe);
+            is_used = is_used || (e.material(k).rho_s > 0 && e.material(k).brdf == lobe.kind);
+        if (is_used) out.push_back(&lobe);
     }
     return out;
 }
@@ -172,9 +172,9 @@ namespace {
 std::string pixels_of(const Page& page, const Region& region) {
     if (region.object().empty()) return fmt::format("{} × {} pixels", region.box.width(), region.box.height());
     const auto& runs = page.in.metrics.runs;
-    const RegionMetrics* measured = runs.empty() ? nullptr : runs.front().region(region.name);
-    const std::string of_object = "pixels of " + escape(region.object());
-    return measured ? fmt::format("{} {}", measured->pixels, of_object) : of_object;
+    const RegionMetrics* region_metrics = runs.empty() ? nullptr : runs.front().region(region.name);
+    const std::string object_words = "pixels of " + escape(region.object());
+    return region_metrics ? fmt::format("{} {}", region_metrics->pixels, object_words) : object_words;
 }
 
 }  // namespace
@@ -190,13 +190,13 @@ Json question(const Page& page) {
 
 Json estimator_equation(const Page& page) {
     Json lobes = Json::array(), mirror_lobe = false;
-    bool about_mirror = false;
+    bool is_about_mirror = false;
     for (const LobeInfo* lobe : lobes_of(page.in.experiment)) {
         lobes.push_back({{"label", lobe->label}, {"formula", formula::mathml(lobe->formula)},
             {"summary", formula::html(lobe->summary)}});
-        about_mirror = about_mirror || lobe->about_mirror;
+        is_about_mirror = is_about_mirror || lobe->about_mirror;
     }
-    if (const double s = page.find.s(); about_mirror && s > 0)
+    if (const double s = page.find.s(); is_about_mirror && s > 0)
         mirror_lobe = {{"slip", percent(1 / (s + 1), 2)}, {"s", shortest(s)}};
     return {{"lobes", lobes}, {"mirror_lobe", mirror_lobe}, {"firefly_k", shortest(page.in.experiment.firefly_k)}};
 }
@@ -265,14 +265,14 @@ Json reference(Page& page) {
     const ReferencePlan& plan = page.in.experiment.reference;
     Json plates = page.figures.plates(PlateKind::reference);
     if (references.empty() && plates.empty()) return false;
-    const bool both = !references.empty() && references.front().max_relative_rmse_change.has_value();
+    const bool has_both = !references.empty() && references.front().max_relative_rmse_change.has_value();
     const bool paired = plan.kind == ReferenceKind::paired;
-    Json out = {{"quadrature", !both && !paired}, {"paired", !both && paired}, {"two", both}, {"n", plan.n},
+    Json out = {{"quadrature", !has_both && !paired}, {"paired", !has_both && paired}, {"two", has_both}, {"n", plan.n},
         {"own_seed", plan.seed}, {"lobe", plural(plan.lobe_spp, "sample")}, {"disk", plural(plan.disk_spp, "sample")},
         {"used", plan.kind == ReferenceKind::quadrature ? "quadrature" : "Monte Carlo reference"},
         {"both", Json::array()}, {"one", Json::array()}, {"too_coarse", too_coarse(references)},
         {"below", below_the_reference(page.in)}, {"plates", std::move(plates)}};
-    if (both) add_both(references, out);
+    if (has_both) add_both(references, out);
     else add_one(references, out);
     return out;
 }

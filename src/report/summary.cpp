@@ -21,7 +21,7 @@ constexpr std::size_t no_limit = ~std::size_t{0};
 /// What shows the text: with colours or without, and so many columns, beyond which lines are cut; no_limit: all of
 /// them.
 struct Paint {
-    bool on;
+    bool has_colour;
     std::size_t columns;
     std::string cut(std::string_view text, std::size_t reserved = 0) const {
         return columns == no_limit ? std::string(text) : clip(text, columns - reserved);
@@ -31,18 +31,18 @@ struct Paint {
         return columns == no_limit && width(text) > wide ? std::string(text) : left(text, wide);
     }
     std::string operator()(const char* code, const std::string& text) const {
-        return on ? std::string("\x1b[") + code + "m" + text + "\x1b[0m" : text;
+        return has_colour ? std::string("\x1b[") + code + "m" + text + "\x1b[0m" : text;
     }
 };
 constexpr const char *green = "32", *red = "1;31", *bold = "1";
 
-std::string failures_line(const std::vector<const AssertionResult*>& failed, std::size_t total, const Paint& paint) {
-    const std::string head = fmt::format("{} of {} assertions FAIL: ", failed.size(), total);
+std::string failures_line(const std::vector<const AssertionResult*>& failures, std::size_t total, const Paint& paint) {
+    const std::string head = fmt::format("{} of {} assertions FAIL: ", failures.size(), total);
     std::string line = head;
-    for (const AssertionResult* a : failed) line += (a == failed.front() ? "" : ", ") + a->name;
-    if (width(line) <= paint.columns || failed.size() == 1) return paint.cut(line);
-    const std::string more = fmt::format(", and {} more", failed.size() - 1);
-    return paint.cut(head + failed.front()->name, more.size()) + more;
+    for (const AssertionResult* a : failures) line += (a == failures.front() ? "" : ", ") + a->name;
+    if (width(line) <= paint.columns || failures.size() == 1) return paint.cut(line);
+    const std::string ending = fmt::format(", and {} more", failures.size() - 1);
+    return paint.cut(head + failures.front()->name, ending.size()) + ending;
 }
 
 /// Returns how many were skipped, one line for each reason.
@@ -55,19 +55,19 @@ std::string skipped_lines(const std::vector<AssertionResult>& assertions) {
     return out;
 }
 
-std::string verdict(const std::vector<AssertionResult>& given, const Paint& paint) {
+std::string verdict(const std::vector<AssertionResult>& assertions, const Paint& paint) {
     std::vector<AssertionResult> evaluated;
     std::ranges::copy_if(
-        given, std::back_inserter(evaluated), [](const AssertionResult& a) { return a.skipped.empty(); });
-    if (given.empty()) return "no assertions in this experiment\n";
+        assertions, std::back_inserter(evaluated), [](const AssertionResult& a) { return a.skipped.empty(); });
+    if (assertions.empty()) return "no assertions in this experiment\n";
     if (evaluated.empty()) return "no assertion was evaluated\n";
-    std::vector<const AssertionResult*> failed;
+    std::vector<const AssertionResult*> failures;
     for (const AssertionResult& a : evaluated)
-        if (a.failed()) failed.push_back(&a);
-    if (failed.empty() && evaluated.size() == 1) return paint(green, "the one assertion holds") + "\n";
-    if (failed.empty()) return paint(green, fmt::format("all {} assertions hold", evaluated.size())) + "\n";
-    std::string out = paint(red, failures_line(failed, evaluated.size(), paint)) + "\n";
-    for (const AssertionResult* a : failed) {
+        if (a.failed()) failures.push_back(&a);
+    if (failures.empty() && evaluated.size() == 1) return paint(green, "the one assertion holds") + "\n";
+    if (failures.empty()) return paint(green, fmt::format("all {} assertions hold", evaluated.size())) + "\n";
+    std::string out = paint(red, failures_line(failures, evaluated.size(), paint)) + "\n";
+    for (const AssertionResult* a : failures) {
         const std::string values = a->reference_good
             ? fmt::format(": measured {}, must be {} {}", compact(a->measured), a->op, compact(a->bound))
             : ": the reference is not good enough";

@@ -41,9 +41,9 @@ SurfaceSetup surface_at(const ShadingPoints& point) {
 class AtPoint : public InProcessAdapter {
 public:
     AtPoint(std::string name, Point point, bool limited)
-        : name_(std::move(name)), point_(std::move(point)), surface_(surface_at(*point_)), limited_(limited) {}
+        : name_(std::move(name)), point_(std::move(point)), surface_(surface_at(*point_)), is_limited_(limited) {}
     std::string name() const override { return name_; }
-    bool limited() const override { return limited_; }
+    bool limited() const override { return is_limited_; }
     bool has_f() const override { return true; }
     void f(std::span<const Pair> pairs, std::span<double> out) const override {
         for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = brdf_value(surface_, pairs[i].wo, pairs[i].wi);
@@ -77,15 +77,15 @@ protected:
             wi.clear();
             for (const Pair& pair : pairs.subspan(first, rows)) {
                 const Vec3<float> wo = as<float>(pair.wo);
-                const bool same =
+                const bool is_same =
                     !runs.empty() && runs.back().wo.x == wo.x && runs.back().wo.y == wo.y && runs.back().wo.z == wo.z;
-                if (!same) runs.push_back({0, wo, 0});
+                if (!is_same) runs.push_back({0, wo, 0});
                 ++runs.back().rows;
                 wi.push_back(as<float>(pair.wi));
             }
             work(PointRows{points(), runs}, std::span<const Vec3<float>>(wi), first);
         }
-        if (limited_) count(pairs.size());
+        if (is_limited_) count(pairs.size());
     }
     void density_of(const Technique& technique, std::span<const Pair> pairs, std::span<double> out) const {
         in_batches(pairs, [&](const PointRows& rows, std::span<const Vec3<float>> wi, std::size_t first) {
@@ -95,25 +95,25 @@ protected:
     void draw_with(const Technique& technique, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const {
         const auto count_of = static_cast<std::size_t>(technique.numbers());
         std::vector<double> numbers;
-        std::vector<PointDraw> drawn;
+        std::vector<PointDraw> draws;
         for (std::size_t first = 0; first < u.size(); first += most_rows) {
             const std::size_t rows = std::min(most_rows, u.size() - first);
             numbers.clear();
-            drawn.assign(rows, {});
+            draws.assign(rows, {});
             for (const PrimarySample& row : u.subspan(first, rows))
                 for (std::size_t k = 0; k < count_of; ++k) numbers.push_back(row[static_cast<int>(k)]);
             const PointRun run{0, as<float>(wo), rows};
-            technique.draw({points(), {&run, 1}}, numbers, drawn);
-            for (std::size_t i = 0; i < rows; ++i) out[first + i] = {widen(drawn[i].wi), drawn[i].pdf};
+            technique.draw({points(), {&run, 1}}, numbers, draws);
+            for (std::size_t i = 0; i < rows; ++i) out[first + i] = {widen(draws[i].wi), draws[i].pdf};
         }
-        if (limited_) count(u.size());
+        if (is_limited_) count(u.size());
     }
 
 private:
     std::string name_;
     Point point_;
     SurfaceSetup surface_;
-    bool limited_;
+    bool is_limited_;
 };
 
 /// A sampler with one density; one that cannot evaluate it has the weight f cos / p of its draws.
@@ -154,12 +154,12 @@ public:
         std::vector<std::vector<double>> p(parts, std::vector<double>(pairs.size()));
         for (std::size_t k = 0; k < parts; ++k) density_of(*combination_->parts()[k], pairs, p[k]);
         if (combination_->has_weight_function()) return weights_of_function(t, pairs, p, out);
-        std::vector<double> here(parts);
+        std::vector<double> densities(parts);
         for (std::size_t i = 0; i < pairs.size(); ++i) {
-            for (std::size_t k = 0; k < parts; ++k) here[k] = p[k][i];
+            for (std::size_t k = 0; k < parts; ++k) densities[k] = p[k][i];
             FormulaInputs in = formula_inputs(points(), {0, as<float>(pairs[i].wo), 1});
             in.cos_i = pairs[i].wi.z;
-            out[i] = combination_->mis_weight(static_cast<std::size_t>(t), in, here);
+            out[i] = combination_->mis_weight(static_cast<std::size_t>(t), in, densities);
         }
     }
 
@@ -167,12 +167,13 @@ private:
     void weights_of_function(
         int t, std::span<const Pair> pairs, const std::vector<std::vector<double>>& p, std::span<double> out) const {
         in_batches(pairs, [&](const PointRows& rows, std::span<const Vec3<float>> wi, std::size_t first) {
-            std::vector<std::vector<double>> here;
+            std::vector<std::vector<double>> batch_densities;
             for (const std::vector<double>& densities : p)
-                here.emplace_back(densities.begin() + static_cast<std::ptrdiff_t>(first),
+                batch_densities.emplace_back(densities.begin() + static_cast<std::ptrdiff_t>(first),
                     densities.begin() + static_cast<std::ptrdiff_t>(first + wi.size()));
-            const std::vector<std::size_t> drawn_by(wi.size(), static_cast<std::size_t>(t));
-            std::ranges::copy(combination_->mis_weights(rows, drawn_by, wi, here), out.begin() + std::ptrdiff_t(first));
+            const std::vector<std::size_t> techniques(wi.size(), static_cast<std::size_t>(t));
+            std::ranges::copy(
+                combination_->mis_weights(rows, techniques, wi, batch_densities), out.begin() + std::ptrdiff_t(first));
         });
     }
 
@@ -189,19 +190,20 @@ public:
     Traits traits() const override { return {.has_pdf = false}; }
     void pdf(int, std::span<const Pair>, std::span<double> out) const override { std::ranges::fill(out, 0); }
     void sample(int, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
-        std::vector<WeightedDirection> drawn;
+        std::vector<WeightedDirection> weighted_draws;
         const std::size_t rows_a_batch = 512;
         for (std::size_t first = 0; first < u.size(); first += rows_a_batch) {
             const std::size_t rows = std::min(rows_a_batch, u.size() - first);
-            drawn.assign(rows, {});
+            weighted_draws.assign(rows, {});
             const PointRun run{0, as<float>(wo), rows};
             combination_->sample(
                 {points(), {&run, 1}},
                 [&](std::size_t, std::size_t row, std::uint32_t block) { return hashed(u[first + row], block); },
-                drawn);
+                weighted_draws);
             const std::span<Draw> draws = out.subspan(first, rows);
-            for (std::size_t i = 0; i < rows; ++i) draws[i] = {widen(drawn[i].drawn.wi), double(drawn[i].drawn.pdf.v)};
-            set_weights(wo, draws, [&](std::size_t i) { return double(drawn[i].weight); });
+            for (std::size_t i = 0; i < rows; ++i)
+                draws[i] = {widen(weighted_draws[i].draw.wi), double(weighted_draws[i].draw.pdf.v)};
+            set_weights(wo, draws, [&](std::size_t i) { return double(weighted_draws[i].weight); });
         }
         if (limited()) count(u.size() * static_cast<std::size_t>(*combination_->plan().candidates));
     }
@@ -222,12 +224,13 @@ CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
     CaseLighting out;
     out.fill = luminance(scene.fill());
     const std::vector<SceneLight> lights = lights_of(points);
-    std::vector<LightAtPoint> seen;
-    add_lights_at(points, 0, seen);
+    std::vector<LightAtPoint> local_lights;
+    add_lights_at(points, 0, local_lights);
     for (std::size_t k = 0; k < lights.size(); ++k) {
-        if (!seen[k].shines) continue;
+        if (!local_lights[k].shines) continue;
         const double radiance = luminance(lights[k].radiance);
-        const Vec3d c = seen[k].center, n = seen[k].normal, u = seen[k].edge_u, v = seen[k].edge_v;
+        const Vec3d c = local_lights[k].center, n = local_lights[k].normal, u = local_lights[k].edge_u,
+                    v = local_lights[k].edge_v;
         if (dot(u, u) > 0) {
             out.area_lights.push_back({radiance, lights::Rectangle{c - u - v, 2.0 * u, 2.0 * v, true}});
         } else if (dot(n, n) > 0) {  // a disk; a side that shines faces the point
@@ -250,25 +253,26 @@ CaseLighting lighting_at(const Scene& scene, const ShadingPoints& points) {
 
 class Cases {
 public:
-    Cases(const Experiment& experiment, std::string sampler, const ExternalSamplers& outside, Grid wo, double seconds)
+    Cases(const Experiment& experiment, std::string sampler, const ExternalSamplers& external_samplers, Grid wo,
+        double seconds)
         : scene_(experiment),
           experiment_(experiment),
           sampler_(std::move(sampler)),
-          outside_(outside),
+          external_samplers_(external_samplers),
           wo_(std::move(wo)),
           seconds_(seconds),
           shapes_(shape_map(scene_)),
-          limited_(std::ranges::any_of(with_arms_of(experiment, {sampler_}).arms,
+          is_limited_(std::ranges::any_of(with_arms_of(experiment, {sampler_}).arms,
               [](const ArmPlan& arm) { return arm.is_external() || arm.combination.weights_python; })) {
         count_in_view(experiment, shapes_);
     }
 
     std::vector<CheckCase> at_pixels(int count) {
-        const std::vector<std::uint32_t> seen = geometry_pixels();
-        for (int k = 0; k < count && static_cast<std::size_t>(k) < seen.size(); ++k) {
-            const std::uint64_t count_seen = seen.size(),
-                                many = std::min<std::uint64_t>(count_seen, std::uint64_t(count));
-            const Point point = point_of(seen[(2 * std::uint64_t(k) + 1) * count_seen / (2 * many)]);
+        const std::vector<std::uint32_t> pixels = geometry_pixels();
+        for (int k = 0; k < count && static_cast<std::size_t>(k) < pixels.size(); ++k) {
+            const std::uint64_t pixel_count = pixels.size(),
+                                case_count = std::min<std::uint64_t>(pixel_count, std::uint64_t(count));
+            const Point point = point_of(pixels[(2 * std::uint64_t(k) + 1) * pixel_count / (2 * case_count)]);
             for (const auto& [theta, azimuth] : wo_) add(point, tilt(theta, azimuth), theta, azimuth);
             if (!wo_.empty()) continue;
             const Vec3d wo{double(point->wox[0]), double(point->woy[0]), double(point->woz[0])};
@@ -302,10 +306,10 @@ private:
 
     /// The middle one of the pixels of each shape in view, in the order of the scene's shapes.
     std::vector<std::uint32_t> middle_of_each_shape() const {
-        std::map<int, std::vector<std::uint32_t>> of_shape;
-        for (const std::uint32_t pixel : geometry_pixels()) of_shape[shapes_.shape[pixel]].push_back(pixel);
+        std::map<int, std::vector<std::uint32_t>> pixels_by_shape;
+        for (const std::uint32_t pixel : geometry_pixels()) pixels_by_shape[shapes_.shape[pixel]].push_back(pixel);
         std::vector<std::uint32_t> out;
-        for (const auto& [shape, pixels] : of_shape) out.push_back(pixels[pixels.size() / 2]);
+        for (const auto& [shape, pixels] : pixels_by_shape) out.push_back(pixels[pixels.size() / 2]);
         return out;
     }
 
@@ -325,9 +329,9 @@ private:
         t.brdf = experiment_.surface_name(point->shape[0]);
         t.lighting = fmt::format("pixel {} {}", pixel % width, pixel / width);
         t.wo = wo;
-        const auto rounded = [](double v) { return std::round(v * 1e4) / 1e4; };
-        t.theta_deg = rounded(theta);
-        t.azimuth_deg = theta > 0 ? rounded(azimuth) : 0;
+        const auto round_angle = [](double v) { return std::round(v * 1e4) / 1e4; };
+        t.theta_deg = round_angle(theta);
+        t.azimuth_deg = theta > 0 ? round_angle(azimuth) : 0;
         if (lobe && lobe->parameter == LobeParameter::s) t.parameters.emplace_back("s", double(point->s[0]));
         if (lobe && lobe->parameter == LobeParameter::alpha)
             t.parameters.emplace_back("alpha", double(point->alpha[0]));
@@ -352,18 +356,18 @@ private:
     std::shared_ptr<const SamplerAdapter> combined_at(
         const Point& point, const std::shared_ptr<const Combination>& combination) const {
         if (combination->plan().kind == CombinationKind::ris)
-            return std::make_shared<Resampled>(sampler_, point, limited_, combination);
+            return std::make_shared<Resampled>(sampler_, point, is_limited_, combination);
         if (const auto technique = combination->technique())
-            return std::make_shared<OneTechnique>(sampler_, point, limited_, technique);
-        return std::make_shared<WeightedTechniques>(sampler_, point, limited_, combination);
+            return std::make_shared<OneTechnique>(sampler_, point, is_limited_, technique);
+        return std::make_shared<WeightedTechniques>(sampler_, point, is_limited_, combination);
     }
 
     std::shared_ptr<const SamplerAdapter> adapter_at(const Point& point) const {
         const ArmPlan* arm = experiment_.find_arm(sampler_);
-        if (const auto found = outside_.find(sampler_); found != outside_.end()) {
-            if (const auto combination = std::dynamic_pointer_cast<const Combination>(found->second))
+        if (const auto entry = external_samplers_.find(sampler_); entry != external_samplers_.end()) {
+            if (const auto combination = std::dynamic_pointer_cast<const Combination>(entry->second))
                 return limited_in_time(combined_at(point, combination), seconds_);
-            return std::make_shared<OneTechnique>(sampler_, point, limited_, external_technique(found->second));
+            return std::make_shared<OneTechnique>(sampler_, point, is_limited_, external_technique(entry->second));
         }
         const std::string name = arm ? arm->sampler : sampler_;
         if (name == "mis-balance" || name == "mis-power") {
@@ -384,33 +388,33 @@ private:
     Scene scene_;
     const Experiment& experiment_;
     std::string sampler_;
-    const ExternalSamplers& outside_;
+    const ExternalSamplers& external_samplers_;
     Grid wo_;  // empty: that of the pixel, or the grid
     double seconds_;
     ShapeMap shapes_;
-    bool limited_;  // a part of the sampler is a program, a library or Python
+    bool is_limited_;  // a part of the sampler is a program, a library or Python
     std::vector<CheckCase> cases_, peers_;
     mutable std::shared_ptr<const Combination> built_in_;
 };
 
 }  // namespace
 
-Experiment with_arms_of(Experiment experiment, std::vector<std::string> needed) {
-    for (std::size_t i = 0; i < needed.size(); ++i) {
-        const ArmPlan* arm = experiment.find_arm(needed[i]);
+Experiment with_arms_of(Experiment experiment, std::vector<std::string> names) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const ArmPlan* arm = experiment.find_arm(names[i]);
         if (!arm) continue;
         std::vector<std::string> parts = arm->combination.of;
         if (arm->combination.target) parts.push_back(*arm->combination.target);
         for (std::string& part : parts)
-            if (std::ranges::find(needed, part) == needed.end()) needed.push_back(std::move(part));
+            if (std::ranges::find(names, part) == names.end()) names.push_back(std::move(part));
     }
     std::erase_if(
-        experiment.arms, [&](const ArmPlan& arm) { return std::ranges::find(needed, arm.name) == needed.end(); });
+        experiment.arms, [&](const ArmPlan& arm) { return std::ranges::find(names, arm.name) == names.end(); });
     return experiment;
 }
 
 std::vector<CheckCase> arm_cases(const Experiment& experiment, const std::string& sampler,
-    const ExternalSamplers& outside, const ArmCasesPlan& plan) {
+    const ExternalSamplers& external_samplers, const ArmCasesPlan& plan) {
     const std::vector<std::string> built_in = sampler_names();
     if (!experiment.find_arm(sampler) && std::ranges::find(built_in, sampler) == built_in.end()) {
         std::vector<std::string> valid;
@@ -421,7 +425,7 @@ std::vector<CheckCase> arm_cases(const Experiment& experiment, const std::string
             fmt::format("no arm or sampler '{}' in {}: expected one of {}{}", printable(sampler, 64), experiment.file,
                 fmt::join(valid, ", "), did_you_mean(sampler, valid)));
     }
-    Cases cases(experiment, sampler, outside, plan.wo, plan.seconds);
+    Cases cases(experiment, sampler, external_samplers, plan.wo, plan.seconds);
     return plan.pixels > 0 ? cases.at_pixels(plan.pixels) : cases.on_grid(plan.full);
 }
 

@@ -23,9 +23,9 @@ struct ArmCasesPlan {
 /// Returns the experiment with these arms and the arms that they combine alone.
 Experiment with_arms_of(Experiment experiment, std::vector<std::string> names);
 
-/// `sampler`: an arm of the experiment, or a built-in sampler. `outside`: what open_external() returned for it; it must
-/// live as long as the cases. Throws InputError if there is no such arm, or nothing is in view.
+/// `sampler`: an arm of the experiment, or a built-in sampler. `external_samplers`: what open_external() returned for
+/// it; it must live as long as the cases. Throws InputError if there is no such arm, or nothing is in view.
 std::vector<CheckCase> arm_cases(const Experiment& experiment, const std::string& sampler,
-    const ExternalSamplers& outside, const ArmCasesPlan& plan);
+    const ExternalSamplers& external_samplers, const ArmCasesPlan& plan);
 
 }  // namespace crescent

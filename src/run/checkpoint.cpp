@@ -30,23 +30,23 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string mark_of(const std::string& path) {
-    struct stat about{};
-    if (stat(path.c_str(), &about) != 0) return "";
+    struct stat status{};
+    if (stat(path.c_str(), &status) != 0) return "";
 #ifdef __APPLE__
-    const timespec& written = about.st_mtimespec;
+    const timespec& write_time = status.st_mtimespec;
 #else
-    const timespec& written = about.st_mtim;
+    const timespec& write_time = status.st_mtim;
 #endif
-    return fmt::format(
-        "{:x}-{:x}-{:x}-{:x}-{:x}", about.st_dev, about.st_ino, about.st_size, written.tv_sec, written.tv_nsec);
+    return fmt::format("{:x}-{:x}-{:x}-{:x}-{:x}", status.st_dev, status.st_ino, status.st_size, write_time.tv_sec,
+        write_time.tv_nsec);
 }
 
 /// Identifies the files of the program and of the library with this code, with their times: what another build kept is
 /// not used.
 std::string build_mark() {
-    Dl_info about{};
-    const bool found = dladdr(reinterpret_cast<const void*>(&mark_of), &about) != 0;
-    return mark_of(program_file()) + " " + mark_of(found ? about.dli_fname : "");
+    Dl_info library{};
+    const bool is_found = dladdr(reinterpret_cast<const void*>(&mark_of), &library) != 0;
+    return mark_of(program_file()) + " " + mark_of(is_found ? library.dli_fname : "");
 }
 
 std::string key_of(const Experiment& experiment, const std::string& work) {
@@ -61,10 +61,10 @@ bool append(const std::string& path, const std::string& items) {
     constexpr int flags = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
     const int file = ::open(path.c_str(), flags, 0666);
     if (file < 0) return false;
-    struct stat about{};
-    const bool regular = ::fstat(file, &about) == 0 && S_ISREG(about.st_mode);
-    const ssize_t n = regular ? ::write(file, items.data(), items.size()) : 0;
-    const int error = !regular ? EINVAL : n < 0 ? errno : n == static_cast<ssize_t>(items.size()) ? 0 : ENOSPC;
+    struct stat status{};
+    const bool is_regular = ::fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+    const ssize_t n = is_regular ? ::write(file, items.data(), items.size()) : 0;
+    const int error = !is_regular ? EINVAL : n < 0 ? errno : n == static_cast<ssize_t>(items.size()) ? 0 : ENOSPC;
     ::close(file);
     errno = error;
     return error == 0;
@@ -72,10 +72,10 @@ bool append(const std::string& path, const std::string& items) {
 
 /// Returns the bytes of a regular file; empty if there is none, or if it is larger than a checkpoint.
 std::optional<std::string> bytes_of(const std::string& path) {
-    std::error_code unknown;
-    if (!fs::is_regular_file(fs::symlink_status(path, unknown))) return {};
-    const std::uintmax_t size = fs::file_size(path, unknown);
-    if (unknown || size > most_bytes) return {};
+    std::error_code error;
+    if (!fs::is_regular_file(fs::symlink_status(path, error))) return {};
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error || size > most_bytes) return {};
     std::string bytes(size, '\0');
     std::ifstream in(path, std::ios::binary);
     in.read(bytes.data(), static_cast<std::streamsize>(size));
@@ -97,8 +97,8 @@ Checkpoint::Checkpoint(const Experiment& experiment, const std::string& work, co
         throw OutputError(
             fmt::format("cannot keep anything in {}: it is a link; expected a folder of crescent's own", folder_));
     read(experiment);
-    written_ = metrics_.size();
-    if (written_ > 0) monitor_.log("resuming from the checkpoint " + file_);
+    stored_count_ = metrics_.size();
+    if (stored_count_ > 0) monitor_.log("resuming from the checkpoint " + file_);
 }
 
 void Checkpoint::read(const Experiment& experiment) {
@@ -114,10 +114,10 @@ void Checkpoint::read(const Experiment& experiment) {
         fs::remove(file_, ignored);
         return;
     }
-    begun_ = true;
+    has_key_ = true;
     metrics_ = std::move(content.metrics);
     fs::resize_file(file_, content.bytes, ignored);
-    if (ignored) disabled_ = true;
+    if (ignored) is_disabled_ = true;
 }
 
 Checkpoint::~Checkpoint() {
@@ -138,20 +138,20 @@ std::vector<RunMetrics> Checkpoint::metrics(const Job& job) const {
 
 void Checkpoint::add(const std::vector<RunMetrics>& metrics) {
     metrics_.insert(metrics_.end(), metrics.begin(), metrics.end());
-    if (disabled_ || start_.seconds() < checkpoint_after_s_) return;
-    const std::vector<RunMetrics> fresh(metrics_.begin() + static_cast<std::ptrdiff_t>(written_), metrics_.end());
-    const std::string items = (begun_ ? "" : key_item(key_)) + metrics_item(fresh);
+    if (is_disabled_ || start_.seconds() < checkpoint_after_s_) return;
+    const std::vector<RunMetrics> fresh(metrics_.begin() + static_cast<std::ptrdiff_t>(stored_count_), metrics_.end());
+    const std::string items = (has_key_ ? "" : key_item(key_)) + metrics_item(fresh);
     std::error_code ignored;  // append() reports the error
     fs::create_directories(folder_, ignored);
     if (append(file_, items)) {
-        begun_ = true;
-        written_ = metrics_.size();
+        has_key_ = true;
+        stored_count_ = metrics_.size();
         return;
     }
     monitor_.warn(fmt::format("cannot write the checkpoint {}: {}; if this run is stopped, it cannot be resumed", file_,
         std::strerror(errno)));
     fs::remove(file_, ignored);
-    disabled_ = true;
+    is_disabled_ = true;
 }
 
 void Checkpoint::discard() {

@@ -39,9 +39,9 @@ private:
     double checkpoint_after_s_;
     ProgressMonitor& monitor_;
     Stopwatch start_;
-    bool begun_ = false, disabled_ = false;  // the file has the key; it cannot be written
+    bool has_key_ = false, is_disabled_ = false;  // the file has the key; it cannot be written
     std::vector<RunMetrics> metrics_;
-    std::size_t written_ = 0;  // of metrics_
+    std::size_t stored_count_ = 0;  // of metrics_
 };
 
 }  // namespace crescent

@@ -38,28 +38,28 @@ private:
 /// Takes values from a body; after its end every value is invalid.
 class Reader {
 public:
-    explicit Reader(std::string_view body) : rest_(body) {}
+    explicit Reader(std::string_view body) : remainder_(body) {}
 
     template <class T> void operator()(T& value) {
-        valid = valid && rest_.size() >= sizeof value;
-        if (!valid) return;
-        std::memcpy(&value, rest_.data(), sizeof value);
-        rest_.remove_prefix(sizeof value);
+        is_valid = is_valid && remainder_.size() >= sizeof value;
+        if (!is_valid) return;
+        std::memcpy(&value, remainder_.data(), sizeof value);
+        remainder_.remove_prefix(sizeof value);
     }
     void operator()(std::string& text) {
         std::uint64_t size = 0;
         (*this)(size);
-        valid = valid && size <= rest_.size();
-        if (!valid) return;
-        text = rest_.substr(0, size);
-        rest_.remove_prefix(size);
+        is_valid = is_valid && size <= remainder_.size();
+        if (!is_valid) return;
+        text = remainder_.substr(0, size);
+        remainder_.remove_prefix(size);
     }
-    bool complete() const { return valid && rest_.empty(); }
+    bool complete() const { return is_valid && remainder_.empty(); }
 
-    bool valid = true;
+    bool is_valid = true;
 
 private:
-    std::string_view rest_;
+    std::string_view remainder_;
 };
 
 #define CRESCENT_FIELD(name, Type) io(values.name);
@@ -98,15 +98,15 @@ std::optional<std::string_view> take_body(std::string_view& bytes) {
 /// Appends the metrics of a body; returns false if it is not made of metrics of these regions.
 bool add_metrics(std::string_view body, const Experiment& experiment, std::vector<RunMetrics>& out) {
     Reader in(body);
-    while (in.valid && !in.complete()) {
+    while (in.is_valid && !in.complete()) {
         RunMetrics run;
         run.regions.resize(experiment.regions.size());
         transfer(in, run);
         for (std::size_t i = 0; i < run.regions.size(); ++i)
-            in.valid = in.valid && run.regions[i].region == experiment.regions[i].name;
-        if (in.valid) out.push_back(std::move(run));
+            in.is_valid = in.is_valid && run.regions[i].region == experiment.regions[i].name;
+        if (in.is_valid) out.push_back(std::move(run));
     }
-    return in.valid;
+    return in.is_valid;
 }
 
 }  // namespace
@@ -129,14 +129,14 @@ CheckpointContent read_items(std::string_view bytes, std::string_view key, const
     if (!bytes.starts_with(first)) return out;
     out.has_key = true;
     out.bytes = first.size();
-    std::string_view rest = bytes.substr(first.size());
-    while (const std::optional<std::string_view> body = take_body(rest)) {
-        const std::size_t before = out.metrics.size();
+    std::string_view remainder = bytes.substr(first.size());
+    while (const std::optional<std::string_view> body = take_body(remainder)) {
+        const std::size_t count = out.metrics.size();
         if (!add_metrics(*body, experiment, out.metrics)) {
-            out.metrics.resize(before);
+            out.metrics.resize(count);
             break;
         }
-        out.bytes = bytes.size() - rest.size();
+        out.bytes = bytes.size() - remainder.size();
     }
     return out;
 }

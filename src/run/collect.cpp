@@ -129,8 +129,8 @@ void add_view(Prepared& prepared, Measured& out) {
 }
 
 /// Adds the device of each arm that names one.
-void add_devices(const ExternalSamplers& outside, Provenance& to) {
-    for (const auto& [arm, sampler] : outside)
+void add_devices(const ExternalSamplers& external_samplers, Provenance& to) {
+    for (const auto& [arm, sampler] : external_samplers)
         if (const EvaluationDevice device = sampler->declaration().device; device.declared())
             to.backend_details.emplace_back("device of " + arm, device.text());
 }
@@ -138,8 +138,8 @@ void add_devices(const ExternalSamplers& outside, Provenance& to) {
 }  // namespace
 
 const Film* Measured::film(const RunKey& key) const {
-    const auto found = std::ranges::find(films, key, &std::pair<RunKey, Film>::first);
-    return found == films.end() ? nullptr : &found->second;
+    const auto match = std::ranges::find(films, key, &std::pair<RunKey, Film>::first);
+    return match == films.end() ? nullptr : &match->second;
 }
 
 const ReferenceFilm* Measured::reference(double s) const { return reference_of(experiment, *this, s); }
@@ -178,29 +178,29 @@ Provenance provenance_of(const RunPlan& plan, const Backend& backend, const std:
 
 Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> results, const Engine& engine,
     ProgressMonitor& monitor, const CollectOptions& options) {
-    const Engine with = settled(engine);
+    const Engine settled_engine = settled(engine);
     Measured out;
     out.experiment = plan.experiment;
-    out.timing.threads = with.threads;
-    out.timing.isa = with.isa;
+    out.timing.threads = settled_engine.threads;
+    out.timing.isa = settled_engine.isa;
     out.stopped = prepared.stopped;
     sort_results(plan, results);
     take_results(std::move(results), out);
     prepared.views.clear();  // no more films: their points are given up
     const auto stage = [&](const char* name, const auto& work) {
         const Stopwatch start;
-        out.stopped = out.stopped || !unless_stopped(with.threads, monitor, work);
+        out.stopped = out.stopped || !unless_stopped(settled_engine.threads, monitor, work);
         out.timing.stages.emplace_back(name, start.seconds());
     };
     if (options.studies) {
         begin_studies(plan, prepared, monitor);
         stage("tails, furnaces and article checks", [&] {  // these do not depend on each other
-            side_by_side([&] { add_tails(plan, prepared, with.isa, monitor, out.metrics); },
+            side_by_side([&] { add_tails(plan, prepared, settled_engine.isa, monitor, out.metrics); },
                 [&] {
-                    out.evidence = measure_evidence(plan.whole, with.isa, monitor);
+                    out.evidence = measure_evidence(plan.whole, settled_engine.isa, monitor);
                     monitor.advance(1);
                     out.metrics.furnaces =
-                        furnaces(plan.whole, figures_of(out.experiment), with.isa, monitor, prepared.outside);
+                        furnaces(plan.whole, figures_of(out.experiment), settled_engine.isa, monitor, prepared.outside);
                     monitor.advance(static_cast<double>(plan.whole.furnaces.size()));
                 });
         });
@@ -215,9 +215,9 @@ Measured collect(const RunPlan& plan, Prepared prepared, std::vector<JobResult> 
     });
     if (!plan.references)
         for (AssertionResult& assertion : out.metrics.assertions) assertion.skipped = "no reference was computed";
-    out.provenance = provenance_of(plan, *with.backend, options.command);
+    out.provenance = provenance_of(plan, *settled_engine.backend, options.command);
     add_devices(out.outside, out.provenance);
-    for (AssertionResult& a : with.backend->assertions()) out.metrics.assertions.push_back(std::move(a));
+    for (AssertionResult& a : settled_engine.backend->assertions()) out.metrics.assertions.push_back(std::move(a));
     return out;
 }
 

@@ -48,7 +48,7 @@ std::optional<Tail> region_tail(
     const Scene& scene, const Job& job, const AreaPixels& pixels, const std::string& isa, ProgressMonitor& monitor);
 
 /// Computes what follows from the metrics of all seeds: bands, ladders, and the assertions that need no plate.
-void add_spreads(Measured& measured);
+void add_spreads(Measured& result);
 
 /// Returns the provenance of a plan's outputs: its experiment, seeds, version, back end and command.
 Provenance provenance_of(const RunPlan& plan, const Backend& backend, const std::string& command);
@@ -65,6 +65,6 @@ Measured join(const std::vector<std::string>& parts, const std::string& command)
 Measured join_texts(const std::vector<std::string>& texts, const std::string& command);
 
 /// Writes metrics.json, metrics.csv and junit.xml, all at once. Throws OutputError.
-void write_metrics(const Measured& measured, const std::string& folder, ProgressMonitor& monitor);
+void write_metrics(const Measured& result, const std::string& folder, ProgressMonitor& monitor);
 
 }  // namespace crescent

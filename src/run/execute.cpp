@@ -59,9 +59,9 @@ Flips flips_of(const RunPlan& plan, const Prepared& prepared, const Job& job, co
     const Experiment& experiment = plan.experiment;
     const ArmPlan* arm = experiment.find_arm(job.arm);
     ensure(arm != nullptr, "a job is of an arm of the experiment");
-    const auto found = std::ranges::find(films, experiment.n_of(*arm), &Film::n);
+    const auto match = std::ranges::find(films, experiment.n_of(*arm), &Film::n);
     Flips out;
-    out.film = found == films.end() ? films.size() - 1 : static_cast<std::size_t>(found - films.begin());
+    out.film = match == films.end() ? films.size() - 1 : static_cast<std::size_t>(match - films.begin());
     const FlipImage test[] = {flip_image(films[out.film])};
     std::vector<AreaPixels> areas;
     for (const Region& region : experiment.regions) areas.emplace_back(region.area(), prepared.shapes);
@@ -120,19 +120,19 @@ void finish_points(const RunPlan& plan, Prepared& prepared, ProgressMonitor& mon
 }
 
 /// Computes the references that the experiment requests.
-void compute_references(const RunPlan& plan, Prepared& prepared, const Engine& with, ProgressMonitor& monitor) {
+void compute_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor) {
     const auto pixels = static_cast<double>(prepared.shapes.shape.size());
-    const ReferencePlan& asked = plan.experiment.reference;
-    if (asked.kind == ReferenceKind::paired) {
+    const ReferencePlan& reference = plan.experiment.reference;
+    if (reference.kind == ReferenceKind::paired) {
         monitor.begin("paired reference", pixels);
         prepared.paired = paired_reference(prepared.views, paired_plan(plan.whole), monitor);
         return;
     }
     monitor.begin("reference by quadrature", pixels);
     prepared.quadrature = quadrature_reference(prepared.scene, plan.exponents, monitor);
-    if (asked.kind == ReferenceKind::quadrature && !asked.monte_carlo) return;
+    if (reference.kind == ReferenceKind::quadrature && !reference.monte_carlo) return;
     monitor.begin("the article's reference", pixels);
-    prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.whole, with.isa, monitor);
+    prepared.monte_carlo = monte_carlo_reference(prepared.views, plan.whole, engine.isa, monitor);
 }
 
 }  // namespace
@@ -165,7 +165,7 @@ namespace {
 void check_regions(const Experiment& experiment, const ShapeMap& shapes) {
     for (const Region& region : experiment.regions)
         if (AreaPixels(region.area(), shapes).count() == 0)
-            throw InputError(region.at,
+            throw InputError(region.location,
                 fmt::format("regions.{}: the camera sees '{}' in no pixel of the {}", region.name, region.object(),
                     region.has_box ? "box" : "image"));
 }
@@ -197,9 +197,9 @@ void log_warnings(const RunPlan& plan, const Prepared& prepared, ProgressMonitor
 
 void add_references(const RunPlan& plan, Prepared& prepared, const Engine& engine, ProgressMonitor& monitor) {
     if (!plan.references) return;
-    const Engine with = settled(engine);
-    prepared.stopped = !unless_stopped(with.threads, monitor, [&] {
-        compute_references(plan, prepared, with, monitor);
+    const Engine settled_engine = settled(engine);
+    prepared.stopped = !unless_stopped(settled_engine.threads, monitor, [&] {
+        compute_references(plan, prepared, settled_engine, monitor);
         prepared.flip_exposures = exposures_of(plan, prepared);
         finish_points(plan, prepared, monitor);
     });
@@ -219,11 +219,11 @@ Job with_sampler(Job job, const Prepared& prepared) {
 
 JobResult execute(const RunPlan& plan, const Prepared& prepared, const Job& job, const Engine& engine,
     ProgressMonitor& monitor, bool keep_films, Checkpoint* checkpoint) {
-    const Engine with = settled(engine);
+    const Engine settled_engine = settled(engine);
     JobResult out;
     out.job = with_sampler(job, prepared);
-    out.stopped = !unless_stopped(
-        with.threads, monitor, [&] { compute(plan, prepared, with, monitor, keep_films, checkpoint, out); });
+    out.stopped = !unless_stopped(settled_engine.threads, monitor,
+        [&] { compute(plan, prepared, settled_engine, monitor, keep_films, checkpoint, out); });
     return out;
 }
 

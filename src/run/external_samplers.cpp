@@ -60,15 +60,15 @@ std::shared_ptr<const SamplerAdapter> open(const ArmPlan& arm, const Experiment&
 
 }  // namespace
 
-ExternalSamplers open_external(const Experiment& experiment, double timeout_s, ExternalSamplers given) {
+ExternalSamplers open_external(const Experiment& experiment, double timeout_s, ExternalSamplers samplers) {
     PipeLimits limits;
     limits.total_seconds = std::numeric_limits<double>::infinity();
     limits.limit_answers(timeout_s);
     for (const ArmPlan& arm : experiment.arms)
-        if (arm.is_external() && !given.contains(arm.name))
-            given[arm.name] = named_arm(arm.name, open(arm, experiment, limits));
-    add_combinations(experiment, given);
-    return given;
+        if (arm.is_external() && !samplers.contains(arm.name))
+            samplers[arm.name] = named_arm(arm.name, open(arm, experiment, limits));
+    add_combinations(experiment, samplers);
+    return samplers;
 }
 
 bool may_change(const Experiment& experiment) {

@@ -36,10 +36,10 @@ Part part_of(const std::string& text, const std::string& path) {
     return {path, std::move(json), std::move(file)};
 }
 
-Part read_part(const std::string& given) {
+Part read_part(const std::string& argument) {
     std::error_code ignored;
-    const bool folder = std::filesystem::is_directory(given, ignored);
-    const std::string path = folder ? (std::filesystem::path(given) / "metrics.json").string() : given;
+    const bool is_folder = std::filesystem::is_directory(argument, ignored);
+    const std::string path = is_folder ? (std::filesystem::path(argument) / "metrics.json").string() : argument;
     return part_of(read_input(path, most_bytes_of_metrics, "the metrics.json of a run, or the folder of one,"), path);
 }
 
@@ -59,14 +59,14 @@ std::map<std::string, std::string> values_in(const std::string& text) {
 }
 
 /// Returns where two experiments differ: "; ball.s is 32 there and 64 here".
-std::string difference(const std::string& given, const std::string& here) {
-    const auto a = values_in(given), b = values_in(here);
+std::string difference(const std::string& first, const std::string& second) {
+    const auto a = values_in(first), b = values_in(second);
     std::set<std::string> keys;
     for (const auto& values : {a, b})
         for (const auto& [key, value] : values) keys.insert(key);
     const auto message = [](const auto& in, const std::string& key) {
-        const auto found = in.find(key);
-        return found == in.end() ? "not given" : found->second.substr(0, 60);
+        const auto entry = in.find(key);
+        return entry == in.end() ? "not given" : entry->second.substr(0, 60);
     };
     for (const std::string& key : keys)
         if (key != "seeds" && message(a, key) != message(b, key))
@@ -74,8 +74,8 @@ std::string difference(const std::string& given, const std::string& here) {
     return "; the published figures differ";
 }
 
-[[noreturn]] void refuse(const Part& first, const Part& part, const std::string& why) {
-    throw InputError({part.name, 0, 0}, fmt::format("cannot be joined with {}: {}", first.name, why));
+[[noreturn]] void refuse(const Part& first, const Part& part, const std::string& reason) {
+    throw InputError({part.name, 0, 0}, fmt::format("cannot be joined with {}: {}", first.name, reason));
 }
 
 void check_same(const Part& first, const Part& part, const std::string& what, const Json& a, const Json& b) {
@@ -133,26 +133,26 @@ public:
                 entry.erase("tail");
                 region.tail.reset();
             }
-            const auto [known, is_new] =
+            const auto [match, is_new] =
                 text_.try_emplace({run.key.arm, run.key.n, run.key.s, run.key.seed}, std::pair(row.dump(), part.name));
-            if (!is_new && known->second.first != row.dump())
+            if (!is_new && match->second.first != row.dump())
                 throw InputError({part.name, 0, 0},
                     fmt::format("cannot be joined with {}: {} at seed {} differs; expected the same numbers, bit for "
                                 "bit",
-                        known->second.second, to_string(run.key), run.key.seed));
+                        match->second.second, to_string(run.key), run.key.seed));
             if (is_new) by_seed_[run.key.seed].push_back(std::move(run));
         }
     }
 
     const std::vector<RunMetrics>* of(std::uint32_t seed) const {
-        const auto found = by_seed_.find(seed);
-        return found == by_seed_.end() ? nullptr : &found->second;
+        const auto entry = by_seed_.find(seed);
+        return entry == by_seed_.end() ? nullptr : &entry->second;
     }
 
     void give_tails(RunMetrics& run) const {
         for (RegionMetrics& region : run.regions)
-            if (const auto found = tails_.find({run.key.arm, run.key.s, region.region}); found != tails_.end())
-                region.tail = found->second.tail;
+            if (const auto tail = tails_.find({run.key.arm, run.key.s, region.region}); tail != tails_.end())
+                region.tail = tail->second.tail;
     }
 
 private:
@@ -163,9 +163,9 @@ private:
 
     void add_tail(const Part& part, const RunMetrics& run, const RegionMetrics& region, const Json& entry) {
         const std::string text = entry.at("tail").dump();
-        const auto [known, is_new] =
+        const auto [match, is_new] =
             tails_.try_emplace({run.key.arm, run.key.s, region.region}, KnownTail{region.tail, text});
-        if (!is_new && known->second.text != text)
+        if (!is_new && match->second.text != text)
             throw InputError({part.name, 0, 0},
                 fmt::format("cannot be joined: the tail of {} in {} differs from that of a part before; expected the "
                             "same, bit for bit",
@@ -183,9 +183,9 @@ std::vector<AssertionResult> backend_claims(const std::vector<Part>& parts) {
     for (const Part& part : parts) {
         const auto& results = part.file.metrics.assertions;
         for (std::size_t k = part.file.experiment.assertions.size(); k < results.size(); ++k) {
-            const auto same = std::ranges::find(out, results[k].name, &AssertionResult::name);
-            if (same == out.end()) out.push_back(results[k]);
-            else if (results[k].failed()) *same = results[k];
+            const auto match = std::ranges::find(out, results[k].name, &AssertionResult::name);
+            if (match == out.end()) out.push_back(results[k]);
+            else if (results[k].failed()) *match = results[k];
         }
     }
     return out;
@@ -201,8 +201,8 @@ Measured join_parts(const std::vector<Part>& parts, const Rows& rows, const std:
     out.provenance.command = command;
     out.provenance.seeds.clear();
     out.provenance.places.clear();
-    Experiment whole = parse(out.provenance.experiment_text, "experiment");
-    out.metrics.series = seeds_of(whole);
+    Experiment experiment = parse(out.provenance.experiment_text, "experiment");
+    out.metrics.series = seeds_of(experiment);
     for (std::size_t k = 0; k < out.metrics.series.size(); ++k) {
         const std::vector<RunMetrics>* runs = rows.of(out.metrics.series[k]);
         if (!runs) continue;
@@ -238,10 +238,10 @@ Measured join_parts(const std::vector<Part>& parts, const Rows& rows, const std:
 
 }  // namespace
 
-Measured join(const std::vector<std::string>& given, const std::string& command) {
+Measured join(const std::vector<std::string>& paths, const std::string& command) {
     std::vector<Part> parts;
     Rows rows;
-    for (const std::string& path : given) {
+    for (const std::string& path : paths) {
         parts.push_back(read_part(path));
         check_alike(parts.front(), parts.back());
         rows.add(parts.back());

@@ -19,20 +19,20 @@ bool has_given_weights(const ArmPlan& arm) {
 
 }  // namespace
 
-std::vector<std::string> mis_warnings(const Experiment& experiment, const ExternalSamplers& outside) {
+std::vector<std::string> mis_warnings(const Experiment& experiment, const ExternalSamplers& external_samplers) {
     std::vector<std::string> out;
     for (const ArmPlan& arm : experiment.arms) {
         if (!has_given_weights(arm)) continue;
-        double directions = 0, lost = 0, least = 1;
+        double directions = 0, lost_directions = 0, least_sum = 1;
         int sampler = 0;
-        for (const CheckCase& c : arm_cases(experiment, arm.name, outside, {.pixels = pixels})) {
+        for (const CheckCase& c : arm_cases(experiment, arm.name, external_samplers, {.pixels = pixels})) {
             if (c.baseline) continue;
             const check::StreamKey key{1, 0, 0, 1, check::Purpose::light, 0};
             const std::optional<check::SmallFault> fault = check::mis_weights(*c.adapter, c.wo, key);
             if (!fault || !(fault->first.expected > 0)) continue;
-            directions += fault->of;
-            lost += fault->times;
-            least = std::min(least, 1 + fault->size);
+            directions += fault->trials;
+            lost_directions += fault->times;
+            least_sum = std::min(least_sum, 1 + fault->size);
             sampler = static_cast<int>(fault->first.expected);
         }
         if (sampler == 0) continue;
@@ -40,7 +40,8 @@ std::vector<std::string> mis_warnings(const Experiment& experiment, const Extern
             "{}: '{}' has MIS weight where its density is 0: at {:.3g} % of the directions the weights of the "
             "samplers that draw there sum to less than 1, down to {:.3g}. The image is too dark; a weight must be 0 "
             "where p is 0.",
-            arm.name, arm.combination.of[static_cast<std::size_t>(sampler) - 1], 100 * lost / directions, least));
+            arm.name, arm.combination.of[static_cast<std::size_t>(sampler) - 1], 100 * lost_directions / directions,
+            least_sum));
     }
     return out;
 }

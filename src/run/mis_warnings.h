@@ -12,6 +12,6 @@ namespace crescent {
 
 /// A line for each such arm. Only weights that the experiment gives are tested, at a few pixels; those of the balance
 /// and the power heuristic are 0 where the density is.
-std::vector<std::string> mis_warnings(const Experiment& experiment, const ExternalSamplers& outside);
+std::vector<std::string> mis_warnings(const Experiment& experiment, const ExternalSamplers& external_samplers);
 
 }  // namespace crescent

@@ -66,7 +66,7 @@ RunPlan plan(const Experiment& experiment, SeedRange range) {
 namespace {
 
 // Code, fonts, plates and the report: 20 to 35 MB on the experiments of this repository.
-constexpr double for_itself = 34e6;
+constexpr double base_bytes = 34e6;
 constexpr double of_shape_map = 2;               // bytes per pixel
 constexpr double of_shapes = 4;                  // the same, of Scene::remember_primaries without whole hits
 constexpr double of_luminance = sizeof(double);  // the same, while FLIP looks for its exposures
@@ -75,16 +75,17 @@ double pixels_of(const Experiment& experiment) {
     return static_cast<double>(experiment.image.width) * experiment.image.height;
 }
 
-double pixels_that_fit(double pixels, double needed, double available) {
-    const double each = (needed - for_itself) / pixels;
-    return std::max(0.0, (0.9 * available - for_itself) / each);
+double pixels_that_fit(double pixels, double needed_bytes, double available_bytes) {
+    const double bytes_per_pixel = (needed_bytes - base_bytes) / pixels;
+    return std::max(0.0, (0.9 * available_bytes - base_bytes) / bytes_per_pixel);
 }
 
 /// Bytes per pixel of everything that lives from the references on.
 double of_references(const Experiment& experiment, std::size_t exponents) {
-    const ReferencePlan& asked = experiment.reference;
-    const bool two = asked.kind != ReferenceKind::paired && (asked.monte_carlo || asked.kind == ReferenceKind::note);
-    return (two ? 2.0 : 1.0) * 4.0 * static_cast<double>(ReferenceFilm().planes().size() * exponents);
+    const ReferencePlan& reference = experiment.reference;
+    const bool has_two =
+        reference.kind != ReferenceKind::paired && (reference.monte_carlo || reference.kind == ReferenceKind::note);
+    return (has_two ? 2.0 : 1.0) * 4.0 * static_cast<double>(ReferenceFilm().planes().size() * exponents);
 }
 
 /// Of the sky's distribution and of the triangles that emit; their files are in memory already.
@@ -105,23 +106,23 @@ double of_emitters(const Experiment& experiment) {
 }  // namespace
 
 std::uint64_t memory_needed(const Experiment& experiment, std::uint64_t points) {
-    double sample_counts = 0, largest = 0;
+    double sample_counts = 0, largest_count = 0;
     std::set<double> exponents;
     for (const Job& job : jobs_of(experiment, experiment.seed)) {
         sample_counts += static_cast<double>(job.n.size());
-        largest = std::max(largest, static_cast<double>(job.n.size()));
+        largest_count = std::max(largest_count, static_cast<double>(job.n.size()));
         exponents.insert(job.s);
     }
-    const double pixels = pixels_of(experiment), again = experiment.seeds > 1 ? largest : 0;
+    const double pixels = pixels_of(experiment), working_count = experiment.seeds > 1 ? largest_count : 0;
     const double film = 4.0 * static_cast<double>(Film().planes().size());
-    const bool whole_hits = pixels <= static_cast<double>(Scene::whole_hits);
-    const double always = of_references(experiment, exponents.size()) + of_shape_map;
-    const double films = always + of_shapes + film * (sample_counts + again) + of_luminance;
-    const double at_references = pixels * (always + (whole_hits ? sizeof(Hit) : of_shapes));
+    const bool keeps_hits = pixels <= static_cast<double>(Scene::whole_hits);
+    const double constant_bytes = of_references(experiment, exponents.size()) + of_shape_map;
+    const double films = constant_bytes + of_shapes + film * (sample_counts + working_count) + of_luminance;
+    const double reference_peak = pixels * (constant_bytes + (keeps_hits ? sizeof(Hit) : of_shapes));
     // Without kept points each job makes them of the hits, which then live as long as the films.
-    const double at_films = pixels * (films + (whole_hits && points == 0 ? sizeof(Hit) : 0));
+    const double film_peak = pixels * (films + (keeps_hits && points == 0 ? sizeof(Hit) : 0));
     return static_cast<std::uint64_t>(
-        for_itself + static_cast<double>(points) + std::max(at_references, at_films) + of_emitters(experiment));
+        base_bytes + static_cast<double>(points) + std::max(reference_peak, film_peak) + of_emitters(experiment));
 }
 
 bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t available) {
@@ -129,17 +130,17 @@ bool can_keep_points(const RunPlan& plan, const Scene& scene, std::uint64_t avai
 }
 
 std::string why_too_large(const Experiment& experiment, std::uint64_t available) {
-    const auto needed = static_cast<double>(memory_needed(experiment)), bytes = static_cast<double>(available);
-    if (needed <= bytes) return "";
+    const auto needed_bytes = static_cast<double>(memory_needed(experiment)), bytes = static_cast<double>(available);
+    if (needed_bytes <= bytes) return "";
     const double pixels = pixels_of(experiment);
-    const double scale = std::sqrt(pixels_that_fit(pixels, needed, bytes) / pixels);
+    const double scale = std::sqrt(pixels_that_fit(pixels, needed_bytes, bytes) / pixels);
     const int width = static_cast<int>(experiment.image.width * scale),
               height = static_cast<int>(experiment.image.height * scale);
     std::string message = fmt::format(
         "this run needs about {:.2g} GB of memory, and {:.2g} GB are available: every sample count of every arm is "
         "held at {} "
         "x {} pixels",
-        needed / 1e9, bytes / 1e9, experiment.image.width, experiment.image.height);
+        needed_bytes / 1e9, bytes / 1e9, experiment.image.width, experiment.image.height);
     if (width > 0 && height > 0)
         message += fmt::format(
             "; expected fewer sample counts, or a smaller image, such as --set image.width={} --set image.height={} "
@@ -150,7 +151,8 @@ std::string why_too_large(const Experiment& experiment, std::uint64_t available)
 }
 
 void check_memory(const Experiment& experiment) {
-    if (const std::string why = why_too_large(experiment, available_memory()); !why.empty()) throw OutputError(why);
+    if (const std::string reason = why_too_large(experiment, available_memory()); !reason.empty())
+        throw OutputError(reason);
 }
 
 }  // namespace crescent

@@ -67,7 +67,7 @@ TEST(RunSteps, EndTheirStagesAtTheirTotals) {
     EXPECT_EQ(stages.all[1].what, "seed 1 of 2");
     EXPECT_THAT(
         stages.all[3].what, ::testing::MatchesRegex("tails, furnaces, article checks: [0-9]+ % of all samples"));
-    for (const PolledMonitor::State& stage : stages.all) EXPECT_DOUBLE_EQ(stage.done, stage.total) << stage.what;
+    for (const PolledMonitor::State& stage : stages.all) EXPECT_DOUBLE_EQ(stage.progress, stage.total) << stage.what;
     ASSERT_EQ(measured.timing.stages.size(), 4u);
     EXPECT_EQ(measured.timing.stages[0].first, "references");
 }
@@ -112,7 +112,7 @@ TEST(RunSteps, AnswerAStopWithoutAnException) {
     Prepared prepared = prepare(plan, {}, monitor);
     EXPECT_FALSE(prepared.stopped);
     EXPECT_EQ(monitor.state().what, "reference by quadrature");
-    EXPECT_EQ(monitor.state().done, monitor.state().total);
+    EXPECT_EQ(monitor.state().progress, monitor.state().total);
     JobResult first = execute(plan, prepared, plan.jobs[0], {}, monitor);
     EXPECT_FALSE(first.stopped);
     monitor.stop = true;

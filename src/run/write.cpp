@@ -105,12 +105,12 @@ OutputParts output_parts(const std::string& words) {
     for (std::size_t begin = 0; begin <= words.size();) {
         const std::size_t end = std::min(words.find(',', begin), words.size());
         const std::string word = words.substr(begin, end - begin);
-        const auto found = std::ranges::find(names, word);
-        if (found == names.end())
+        const auto match = std::ranges::find(names, word);
+        if (match == names.end())
             throw InputError({"--only " + words, 0, 0},
                 fmt::format("expected metrics, films, plates or report, several with commas between, not '{}'{}", word,
                     did_you_mean(word, names)));
-        *parts[found - names.begin()].second = true;
+        *parts[match - names.begin()].second = true;
         begin = end + 1;
     }
     return out;
@@ -176,10 +176,10 @@ void write(Measured& m, Staging& staging, ProgressMonitor& monitor, const Output
 
 bool write(Measured& m, const std::string& folder, ProgressMonitor& monitor, const OutputParts& parts, int threads) {
     Staging staging(folder);
-    const bool done =
+    const bool is_complete =
         unless_stopped(threads > 0 ? threads : usable_threads(), monitor, [&] { write(m, staging, monitor, parts); });
-    if (done) staging.commit(monitor);
-    return done;
+    if (is_complete) staging.commit(monitor);
+    return is_complete;
 }
 
 // ---- The steps of a run without its jobs: what the camera sees, the reference, one plate.
@@ -203,16 +203,16 @@ Experiment without_arms(Experiment e) {
 
 std::vector<unsigned char> preview(const Experiment& experiment, const Engine& engine, ProgressMonitor& monitor) {
     check_font(experiment);
-    RunPlan seen = plan(without_arms(experiment));
-    seen.exponents = {experiment.s()};
-    const Engine with = settled(engine);
-    const Prepared prepared = prepare(seen, with, monitor);
+    RunPlan preview_plan = plan(without_arms(experiment));
+    preview_plan.exponents = {experiment.s()};
+    const Engine settled_engine = settled(engine);
+    const Prepared prepared = prepare(preview_plan, settled_engine, monitor);
     monitor.check();
-    const Metrics none;
-    const PlateInputs in{seen.experiment, none, prepared.shapes, [](const RunKey&) { return nullptr; },
-        [&](double s) { return reference_of(seen.experiment, prepared, s); }, with.backend->name(),
+    const Metrics empty_metrics;
+    const PlateInputs in{preview_plan.experiment, empty_metrics, prepared.shapes, [](const RunKey&) { return nullptr; },
+        [&](double s) { return reference_of(preview_plan.experiment, prepared, s); }, settled_engine.backend->name(),
         experiment.theme.value_or(Theme::dark)};
-    const Provenance p = provenance_of(seen, *with.backend, "");
+    const Provenance p = provenance_of(preview_plan, *settled_engine.backend, "");
     return encode_png(draw_preview(in), {{"crescent", p.version + " " + p.commit}, {"plate", "preview"}});
 }
 

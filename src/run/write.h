@@ -23,20 +23,20 @@ std::vector<std::string> outputs_of(const RunPlan& plan, const OutputParts& part
 
 /// Draws every plate of the experiment, on as many threads as on_threads() allows. Throws OutputError if the font is
 /// missing, Interrupted if the monitor requests it.
-Plates draw_plates(const Measured& measured, const ProgressMonitor& monitor);
+Plates draw_plates(const Measured& result, const ProgressMonitor& monitor);
 
 /// Returns the attributes of a run for the header of a film or a picture: (name, text).
-Attributes attributes_of(const Measured& measured);
+Attributes attributes_of(const Measured& result);
 
 /// Checks the assertions again, including those on plates, and writes `parts` and timing.json under `folder`, whose
 /// earlier outputs are removed. Returns false if the monitor stopped it; the folder is unchanged in this case.
-bool write(Measured& measured, const std::string& folder, ProgressMonitor& monitor, const OutputParts& parts = {},
+bool write(Measured& result, const std::string& folder, ProgressMonitor& monitor, const OutputParts& parts = {},
     int threads = 0);
 /// The same into a stage, which the caller commits; may throw Interrupted.
-void write(Measured& measured, Staging& staging, ProgressMonitor& monitor, const OutputParts& parts);
+void write(Measured& result, Staging& staging, ProgressMonitor& monitor, const OutputParts& parts);
 
 /// Returns the inputs of the reports.
-ReportInputs report_inputs(const Measured& measured);
+ReportInputs report_inputs(const Measured& result);
 
 // ---- A preview of an experiment, before any arm is run: its reference with the boxes that it names.
 

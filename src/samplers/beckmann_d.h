@@ -24,9 +24,9 @@ template <class F> struct BeckmannD {
     /// n.m is smallest for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2. If exp(-tan^2 /
     /// alpha^2) is less than the smallest double there, p is 0 where Lambert is not.
     static ExpectedBehaviour theory(const CasePoint& point) {
-        const double least = math::cos((point.theta_deg + 90) * pi / 360);
+        const double smallest_cos = math::cos((point.theta_deg + 90) * pi / 360);
         ExpectedBehaviour t{.bounded = point.rho_d == 0};
-        if (point.rho_d > 0 && (1 / sqr(least) - 1) / sqr(point.alpha) > 700)
+        if (point.rho_d > 0 && (1 / sqr(smallest_cos) - 1) / sqr(point.alpha) > 700)
             t.underflows =
                 "exp(-tan^2/alpha^2) is less than the smallest number there is where Lambert is not 0: p is 0 in "
                 "the arm's own arithmetic";

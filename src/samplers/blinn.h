@@ -24,8 +24,8 @@ template <class F> struct Blinn {
         .gl = {2e-5, "p has 1/(wo.m), and the mirrored wi doubles m's error"}};
     /// n.h is smallest for wi in the surface on w_o's side: the cosine of (theta + 90 deg) / 2.
     static ExpectedBehaviour theory(const CasePoint& point) {
-        const double least = math::cos((point.theta_deg + 90) * pi / 360);
-        return {.bounded = point.rho_d == 0, .underflows = power_underflows(point, least)};
+        const double smallest_cos = math::cos((point.theta_deg + 90) * pi / 360);
+        return {.bounded = point.rho_d == 0, .underflows = power_underflows(point, smallest_cos)};
     }
     F s, inverse, scale;
     explicit Blinn(const ShadingPoint<F>& shading_point)

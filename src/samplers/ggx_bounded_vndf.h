@@ -32,9 +32,9 @@ template <class F> struct GgxBoundedVndf {
         const F one = number<F>(1);
         const Vec3<F> stretched = stretched_by(ggx.alpha, wo);
         const Bound bound = bound_at(wo);
-        const F height = one + bound.k * stretched.z;                    // of the cap
-        const F drop = u.x * height;                                     // 1 - z on it
-        const F rise = (one - u.x) * height + bound.rest * stretched.z;  // z + stretched.z
+        const F height = one + bound.k * stretched.z;                           // of the cap
+        const F drop = u.x * height;                                            // 1 - z on it
+        const F rise = (one - u.x) * height + bound.one_minus_k * stretched.z;  // z + stretched.z
         const F sin = sqrt(larger(drop * (number<F>(2) - drop), number<F>(0)));
         const Vec3<F> m = normal_from_cap(ggx.alpha, stretched, sin, sincos_turns(u.y), rise);
         const Vec3<F> wi = mirror_about(wo, m);
@@ -44,17 +44,17 @@ template <class F> struct GgxBoundedVndf {
 
 private:
     struct Bound {
-        F k, rest;  // rest: 1 - k, without cancellation for a small alpha
+        F k, one_minus_k;  // without cancellation for a small alpha
     };
     Bound bound_at(Vec3<F> wo) const {
         const F a2 = sqr(ggx.alpha), s2 = sqr(number<F>(1) + sqrt(wo.x * wo.x + wo.y * wo.y)), z2 = sqr(wo.z);
-        const F below = number<F>(1) / (s2 + a2 * z2);
-        return {(number<F>(1) - a2) * s2 * below, a2 * (z2 + s2) * below};
+        const F inverse = number<F>(1) / (s2 + a2 * z2);
+        return {(number<F>(1) - a2) * s2 * inverse, a2 * (z2 + s2) * inverse};
     }
     PerSr<F> density(Vec3<F> wo, Vec3<F> wi, Vec3<F> m) const {
         const F t = sqrt(sqr(ggx.alpha) * (wo.x * wo.x + wo.y * wo.y) + sqr(wo.z));
-        const F below = number<F>(2) * (bound_at(wo).k * wo.z + t);
-        return above(wo, wi, ggx.D(m) / larger(below, number<F>(1e-12)));
+        const F denominator = number<F>(2) * (bound_at(wo).k * wo.z + t);
+        return above(wo, wi, ggx.D(m) / larger(denominator, number<F>(1e-12)));
     }
 };
 

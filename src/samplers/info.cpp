@@ -20,9 +20,10 @@ template <template <class> class A> constexpr SamplerInfo info_of() {
 
 }  // namespace
 
-std::string power_underflows(const CasePoint& point, double least) {
-    const bool so = point.rho_d > 0 && point.s * math::log(least) < -1074 * math::log(2.0) + math::log(point.s + 1);
-    return so
+std::string power_underflows(const CasePoint& point, double smallest_cos) {
+    const bool underflows =
+        point.rho_d > 0 && point.s * math::log(smallest_cos) < -1074 * math::log(2.0) + math::log(point.s + 1);
+    return underflows
         ? "the lobe's power is less than the smallest number there is where Lambert is not 0: p is 0 in the arm's "
           "own arithmetic"
         : "";

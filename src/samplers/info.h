@@ -43,9 +43,9 @@ struct ExpectedBehaviour {
     std::string why{};
 };
 
-/// Returns why p of a cosine power s is 0 in double where Lambert is not, because the power of the cosine `least` is
-/// less than 2^-1074; "" if it is not.
-std::string power_underflows(const CasePoint& point, double least);
+/// Returns why p of a cosine power s is 0 in double where Lambert is not, because the power of the cosine
+/// `smallest_cos` is less than 2^-1074; "" if it is not.
+std::string power_underflows(const CasePoint& point, double smallest_cos);
 
 /// The light that a sampler finds.
 struct Reaches {

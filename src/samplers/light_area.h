@@ -37,12 +37,12 @@ template <class F> struct LightArea {
         Aim() = default;
         explicit Aim(const LocalDisk<F>& d) {
             const Frame<F> frame = frame_about(d.normal);
-            const auto lit = d.faces();
+            const auto is_lit = d.faces();
             center = d.to_center;
             t = frame.t * d.radius;
             b = frame.b * d.radius;
             scale = select(
-                lit, number<F>(1 / pi) / (sqr(d.radius) * select(lit, abs(d.along), number<F>(1))), number<F>(0));
+                is_lit, number<F>(1 / pi) / (sqr(d.radius) * select(is_lit, abs(d.along), number<F>(1))), number<F>(0));
         }
     };
     Aim first;  // most scenes have only one
@@ -58,36 +58,37 @@ template <class F> struct LightArea {
     [[gnu::always_inline]] DrawnToDisk<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
         const F zero = number<F>(0), one = number<F>(1);
         if (count == 1 && other_count == 0) {
-            const Drawn<F> drawn = on_disk(first, u);
-            return {drawn, zero, drawn.pdf.v > zero};
+            const Drawn<F> draw = on_disk(first, u);
+            return {draw, zero, draw.pdf.v > zero};
         }
-        Drawn<F> drawn = {{zero, zero, one}, {zero}};
-        F below = zero, chosen_light = zero;
+        Drawn<F> draw = {{zero, zero, one}, {zero}};
+        F start = zero, chosen_light = zero;
         for (int k = 0; k < count;
-            ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
-            const F above = k + 1 < count + other_count ? below + disks[k].power : one;
-            const auto chosen = (u.x >= below) & (u.x < above);
-            const Drawn<F> one_disk = on_disk(Aim(disks[k]), {(u.x - below) / (above - below), u.y});
-            drawn.wi = {select(chosen, one_disk.wi.x, drawn.wi.x), select(chosen, one_disk.wi.y, drawn.wi.y),
-                select(chosen, one_disk.wi.z, drawn.wi.z)};
-            drawn.pdf.v = select(chosen, (above - below) * one_disk.pdf.v, drawn.pdf.v);
-            chosen_light = select(chosen, number<F>(k), chosen_light);
-            below = above;
+            ++k) {  // u.x in [start, start + power) chooses disk k and is stretched back to [0,1)
+            const F end = k + 1 < count + other_count ? start + disks[k].power : one;
+            const auto is_chosen = (u.x >= start) & (u.x < end);
+            const Drawn<F> one_disk = on_disk(Aim(disks[k]), {(u.x - start) / (end - start), u.y});
+            draw.wi = {select(is_chosen, one_disk.wi.x, draw.wi.x), select(is_chosen, one_disk.wi.y, draw.wi.y),
+                select(is_chosen, one_disk.wi.z, draw.wi.z)};
+            draw.pdf.v = select(is_chosen, (end - start) * one_disk.pdf.v, draw.pdf.v);
+            chosen_light = select(is_chosen, number<F>(k), chosen_light);
+            start = end;
         }
         for (int k = 0; k < other_count; ++k) {
-            const F above = k + 1 < other_count ? below + others[k].power : one;
-            const auto chosen = (u.x >= below) & (u.x < above);
-            const Aimed<F> aimed = on_other(others[k], {(u.x - below) / larger(above - below, number<F>(1e-30)), u.y});
-            drawn.wi = {select(chosen, aimed.wi.x, drawn.wi.x), select(chosen, aimed.wi.y, drawn.wi.y),
-                select(chosen, aimed.wi.z, drawn.wi.z)};
-            drawn.pdf.v = select(chosen, (above - below) * aimed.pdf, drawn.pdf.v);
-            chosen_light = select(chosen, number<F>(count + k), chosen_light);
-            below = above;
+            const F end = k + 1 < other_count ? start + others[k].power : one;
+            const auto is_chosen = (u.x >= start) & (u.x < end);
+            const Aimed<F> light_draw =
+                on_other(others[k], {(u.x - start) / larger(end - start, number<F>(1e-30)), u.y});
+            draw.wi = {select(is_chosen, light_draw.wi.x, draw.wi.x), select(is_chosen, light_draw.wi.y, draw.wi.y),
+                select(is_chosen, light_draw.wi.z, draw.wi.z)};
+            draw.pdf.v = select(is_chosen, (end - start) * light_draw.pdf, draw.pdf.v);
+            chosen_light = select(is_chosen, number<F>(count + k), chosen_light);
+            start = end;
         }
-        const auto some = drawn.pdf.v > zero;
+        const auto meets_light = draw.pdf.v > zero;
         // Disks may lie one behind another: every one that wi meets could have drawn it.
-        drawn.pdf.v = select(some, drawn.pdf.v + density_of_others(drawn.wi, chosen_light), zero);
-        return {drawn, chosen_light, some};
+        draw.pdf.v = select(meets_light, draw.pdf.v + density_of_others(draw.wi, chosen_light), zero);
+        return {draw, chosen_light, meets_light};
     }
 
     [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const {
@@ -103,10 +104,10 @@ private:
             const LocalDisk<F>& d = disks[k];
             const F c = d.along, v = dot(wi, d.normal);
             const Vec3<F> offset = wi * c - d.to_center * v;
-            const auto met = (dot(offset, offset) <= sqr(d.radius) * (v * v)) & d.faces() & (c * v > number<F>(0)) &
+            const auto meets = (dot(offset, offset) <= sqr(d.radius) * (v * v)) & d.faces() & (c * v > number<F>(0)) &
                 !(but == number<F>(k));
-            const F t = c / select(met, v, number<F>(1));
-            sum = sum + select(met, d.power * density(d, sqr(t), abs(v)).v, number<F>(0));
+            const F t = c / select(meets, v, number<F>(1));
+            sum = sum + select(meets, d.power * density(d, sqr(t), abs(v)).v, number<F>(0));
         }
         for (int k = 0; k < other_count; ++k) {
             const F one_light = density_of(others[k], wi);

@@ -38,9 +38,9 @@ template <class F> struct LightSolidAngle {
 
     struct Cap {
         Vec3<F> axis;
-        F height;        // 1 - cos b
-        F density;       // 1/sr; 0 if x is behind a one-sided disk
-        Vec3<F> y, off;  // where the axis meets the disk's plane, from x and from the disk's centre
+        F height;           // 1 - cos b
+        F density;          // 1/sr; 0 if x is behind a one-sided disk
+        Vec3<F> y, offset;  // where the axis meets the disk's plane, from x and from the disk's centre
     };
     Cap first;  // most scenes have only one
 
@@ -55,35 +55,35 @@ template <class F> struct LightSolidAngle {
     DrawnToDisk<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
         const F zero = number<F>(0), one = number<F>(1);
         if (count == 1 && other_count == 0) return towards(0, first, u);
-        DrawnToDisk<F> drawn = {{{zero, zero, one}, {zero}}, zero, zero > zero};
-        F below = zero;
+        DrawnToDisk<F> draw = {{{zero, zero, one}, {zero}}, zero, zero > zero};
+        F start = zero;
         for (int k = 0; k < count;
-            ++k) {  // u.x in [below, below + power) chooses disk k and is stretched back to [0,1)
-            const F above = k + 1 < count + other_count ? below + disks[k].power : one;
-            const auto chosen = (u.x >= below) & (u.x < above);
+            ++k) {  // u.x in [start, start + power) chooses disk k and is stretched back to [0,1)
+            const F end = k + 1 < count + other_count ? start + disks[k].power : one;
+            const auto is_chosen = (u.x >= start) & (u.x < end);
             const DrawnToDisk<F> w =
-                towards(k, cap_of(disks[k]), {(u.x - below) / larger(above - below, number<F>(1e-30)), u.y});
-            drawn.wi = {select(chosen, w.wi.x, drawn.wi.x), select(chosen, w.wi.y, drawn.wi.y),
-                select(chosen, w.wi.z, drawn.wi.z)};
-            drawn.pdf.v = select(chosen, (above - below) * w.pdf.v, drawn.pdf.v);
-            drawn.disk = select(chosen, w.disk, drawn.disk);
-            drawn.met = (chosen & w.met) | (drawn.met & !chosen);
-            below = above;
+                towards(k, cap_of(disks[k]), {(u.x - start) / larger(end - start, number<F>(1e-30)), u.y});
+            draw.wi = {select(is_chosen, w.wi.x, draw.wi.x), select(is_chosen, w.wi.y, draw.wi.y),
+                select(is_chosen, w.wi.z, draw.wi.z)};
+            draw.pdf.v = select(is_chosen, (end - start) * w.pdf.v, draw.pdf.v);
+            draw.disk = select(is_chosen, w.disk, draw.disk);
+            draw.meets_light = (is_chosen & w.meets_light) | (draw.meets_light & !is_chosen);
+            start = end;
         }
         for (int k = 0; k < other_count; ++k) {
-            const F above = k + 1 < other_count ? below + others[k].power : one;
-            const auto chosen = (u.x >= below) & (u.x < above);
-            const Aimed<F> w = on_other(others[k], {(u.x - below) / larger(above - below, number<F>(1e-30)), u.y});
-            drawn.wi = {select(chosen, w.wi.x, drawn.wi.x), select(chosen, w.wi.y, drawn.wi.y),
-                select(chosen, w.wi.z, drawn.wi.z)};
-            drawn.pdf.v = select(chosen, (above - below) * w.pdf, drawn.pdf.v);
-            drawn.disk = select(chosen, number<F>(count + k), drawn.disk);
-            drawn.met = (chosen & (w.pdf > zero)) | (drawn.met & !chosen);
-            below = above;
+            const F end = k + 1 < other_count ? start + others[k].power : one;
+            const auto is_chosen = (u.x >= start) & (u.x < end);
+            const Aimed<F> w = on_other(others[k], {(u.x - start) / larger(end - start, number<F>(1e-30)), u.y});
+            draw.wi = {select(is_chosen, w.wi.x, draw.wi.x), select(is_chosen, w.wi.y, draw.wi.y),
+                select(is_chosen, w.wi.z, draw.wi.z)};
+            draw.pdf.v = select(is_chosen, (end - start) * w.pdf, draw.pdf.v);
+            draw.disk = select(is_chosen, number<F>(count + k), draw.disk);
+            draw.meets_light = (is_chosen & (w.pdf > zero)) | (draw.meets_light & !is_chosen);
+            start = end;
         }
         // Caps may overlap: every one that contains wi could have drawn it.
-        drawn.pdf.v = select(drawn.pdf.v > zero, drawn.pdf.v + density_of_others(drawn.wi, drawn.disk), zero);
-        return drawn;
+        draw.pdf.v = select(draw.pdf.v > zero, draw.pdf.v + density_of_others(draw.wi, draw.disk), zero);
+        return draw;
     }
 
     PerSr<F> pdf(Vec3<F> /*wo*/, Vec3<F> wi) const { return {density_of_others(wi, number<F>(-1))}; }
@@ -91,20 +91,20 @@ template <class F> struct LightSolidAngle {
 private:
     /// Returns the density with which the caps except one draw wi.
     F density_of_others(Vec3<F> wi, F but) const {
-        F sum = number<F>(0), below = number<F>(0);
+        F sum = number<F>(0), start = number<F>(0);
         for (int k = 0; k < count; ++k) {
-            const F share = k + 1 < count + other_count ? disks[k].power : number<F>(1) - below;
+            const F share = k + 1 < count + other_count ? disks[k].power : number<F>(1) - start;
             const Cap cap = count == 1 ? first : cap_of(disks[k]);
             const Vec3<F> offset = wi - cap.axis;
-            const auto held = (number<F>(0.5) * dot(offset, offset) <= cap.height) & !(but == number<F>(k));
-            sum = sum + select(held, share * cap.density, number<F>(0));
-            below = below + share;
+            const auto is_inside = (number<F>(0.5) * dot(offset, offset) <= cap.height) & !(but == number<F>(k));
+            sum = sum + select(is_inside, share * cap.density, number<F>(0));
+            start = start + share;
         }
         for (int k = 0; k < other_count; ++k) {
-            const F share = k + 1 < other_count ? others[k].power : number<F>(1) - below;
+            const F share = k + 1 < other_count ? others[k].power : number<F>(1) - start;
             const F one_light = density_of(others[k], wi);
             sum = sum + select(but == number<F>(count + k), number<F>(0), share * one_light);
-            below = below + share;
+            start = start + share;
         }
         return sum;
     }
@@ -122,8 +122,9 @@ private:
 
     static Cap cap_of(const LocalDisk<F>& d) {
         const F zero = number<F>(0), one = number<F>(1), tiny = number<F>(1e-30);
-        const Vec3<F> across = d.to_center - d.normal * d.along;  // from x's foot in the disk's plane to the centre
-        const Vec3<F> t = across * (d.radius / sqrt(larger(dot(across, across), tiny)));
+        const Vec3<F> centre_offset =
+            d.to_center - d.normal * d.along;  // from x's foot in the disk's plane to the centre
+        const Vec3<F> t = centre_offset * (d.radius / sqrt(larger(dot(centre_offset, centre_offset), tiny)));
         const Vec3<F> near = d.to_center - t, far = d.to_center + t;
         const F sum = sqrt(dot(near, near)) + sqrt(dot(far, far));
         const F q = number<F>(-4) * dot(d.to_center, t) / larger(sqr(sum), tiny);
@@ -143,9 +144,9 @@ private:
         const Vec3<F> e = frame_about(cap.axis).to_world({sin * phi.cos, sin * phi.sin, -drop});
         const Vec3<F> wi = cap.axis + e;
         const F v = dot(wi, d.normal);
-        const Vec3<F> miss = e * d.along - cap.y * dot(e, d.normal) + cap.off * v;
-        const MaskOf<F> met = (dot(miss, miss) <= sqr(d.radius) * (v * v)) & (d.along * v > number<F>(0));
-        return {{wi, {cap.density}}, number<F>(k), met};
+        const Vec3<F> miss = e * d.along - cap.y * dot(e, d.normal) + cap.offset * v;
+        const MaskOf<F> meets_light = (dot(miss, miss) <= sqr(d.radius) * (v * v)) & (d.along * v > number<F>(0));
+        return {{wi, {cap.density}}, number<F>(k), meets_light};
     }
 };
 

@@ -27,12 +27,12 @@ template <class F> struct LightTriangle {
         .check_cases = check_cases};
     static ExpectedBehaviour theory(const CasePoint& point) { return theory_of_light_arm(point); }
 
-    const Surroundings* around;
+    const Surroundings* surroundings;
     Vec3<F> position;
     Frame<F> frame;
 
     explicit LightTriangle(const ShadingPoint<F>& shading_point)
-        : around(shading_point.around), position(shading_point.position), frame(shading_point.frame) {}
+        : surroundings(shading_point.around), position(shading_point.position), frame(shading_point.frame) {}
 
     DrawnToTriangle<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const { return drawn_by(u, true); }
     /// Without the densities of the other triangles that the direction meets.
@@ -41,11 +41,11 @@ template <class F> struct LightTriangle {
     [[gnu::noinline]] PerSr<F> whole_pdf(Vec2<F> u, MaskOf<F> where) const {
         using Scalar = typename LaneArray<F>::Scalar;
         const LaneArray<F> ux(u.x), uy(u.y), px(position.x), py(position.y), pz(position.z),
-            on(select(where, number<F>(1), number<F>(0)));
+            flags(select(where, number<F>(1), number<F>(0)));
         LaneArray<F> p(number<F>(0));
-        for (std::size_t l = 0; around && l < Lanes<F>::count; ++l)
-            if (on.at[l] > 0)
-                p.at[l] = static_cast<Scalar>(sample_triangles(*around,
+        for (std::size_t l = 0; surroundings && l < Lanes<F>::count; ++l)
+            if (flags.at[l] > 0)
+                p.at[l] = static_cast<Scalar>(sample_triangles(*surroundings,
                     {double(px.at[l]), double(py.at[l]), double(pz.at[l])}, double(ux.at[l]), double(uy.at[l]), true)
                         .pdf);
         return {p.pack()};
@@ -56,39 +56,40 @@ template <class F> struct LightTriangle {
         return pdf_of(wi, !(zero > zero));
     }
     /// The density of a drawn direction in these lanes.
-    PerSr<F> pdf_where(const DrawnByAny<F>& drawn, MaskOf<F> where) const { return pdf_of(drawn.wi, where); }
+    PerSr<F> pdf_where(const DrawnByAny<F>& draw, MaskOf<F> where) const { return pdf_of(draw.wi, where); }
 
 private:
-    [[gnu::noinline]] DrawnToTriangle<F> drawn_by(Vec2<F> u, bool whole) const {
+    [[gnu::noinline]] DrawnToTriangle<F> drawn_by(Vec2<F> u, bool is_whole) const {
         const F zero = number<F>(0);
-        if (!around) return {{{zero, zero, number<F>(1)}, {zero}}, UintOf<F>(no_triangle)};
+        if (!surroundings) return {{{zero, zero, number<F>(1)}, {zero}}, UintOf<F>(no_triangle)};
         using Scalar = typename LaneArray<F>::Scalar;
         const LaneArray<F> ux(u.x), uy(u.y), px(position.x), py(position.y), pz(position.z);
         LaneArray<F> x, y, z, p;
         LaneIntegers<F> triangle;
         for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
-            const TriangleDraw drawn = sample_triangles(*around, {double(px.at[l]), double(py.at[l]), double(pz.at[l])},
-                double(ux.at[l]), double(uy.at[l]), whole);
-            x.at[l] = static_cast<Scalar>(drawn.w.x);
-            y.at[l] = static_cast<Scalar>(drawn.w.y);
-            z.at[l] = static_cast<Scalar>(drawn.w.z);
-            p.at[l] = static_cast<Scalar>(drawn.pdf);
-            triangle.at[l] = drawn.triangle;
+            const TriangleDraw draw = sample_triangles(*surroundings,
+                {double(px.at[l]), double(py.at[l]), double(pz.at[l])}, double(ux.at[l]), double(uy.at[l]), is_whole);
+            x.at[l] = static_cast<Scalar>(draw.w.x);
+            y.at[l] = static_cast<Scalar>(draw.w.y);
+            z.at[l] = static_cast<Scalar>(draw.w.z);
+            p.at[l] = static_cast<Scalar>(draw.pdf);
+            triangle.at[l] = draw.triangle;
         }
         return {{frame.to_local({x.pack(), y.pack(), z.pack()}), {p.pack()}}, triangle.pack()};
     }
 
     [[gnu::noinline]] PerSr<F> pdf_of(Vec3<F> wi, MaskOf<F> where) const {
-        if (!around) return {number<F>(0)};
+        if (!surroundings) return {number<F>(0)};
         using Scalar = typename LaneArray<F>::Scalar;
         const Vec3<F> d = frame.to_world(wi);
         const LaneArray<F> x(d.x), y(d.y), z(d.z), px(position.x), py(position.y), pz(position.z),
-            on(select(where, number<F>(1), number<F>(0)));
+            flags(select(where, number<F>(1), number<F>(0)));
         LaneArray<F> p(number<F>(0));
         for (std::size_t l = 0; l < Lanes<F>::count; ++l) {
-            if (!(on.at[l] > 0)) continue;
-            p.at[l] = static_cast<Scalar>(triangles_pdf(*around, {double(px.at[l]), double(py.at[l]), double(pz.at[l])},
-                {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
+            if (!(flags.at[l] > 0)) continue;
+            p.at[l] =
+                static_cast<Scalar>(triangles_pdf(*surroundings, {double(px.at[l]), double(py.at[l]), double(pz.at[l])},
+                    {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
         }
         return {p.pack()};
     }

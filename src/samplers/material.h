@@ -42,17 +42,18 @@ template <class F> struct MaterialSampler {
           diffuse(point),
           lobe(point.lobe_kind) {
         const F sum = point.lobe + point.diffuse;
-        const auto some = sum > number<F>(0);
-        q = lobe == LobeKind::none ? number<F>(0)
-                                   : select(some, point.lobe / select(some, sum, number<F>(1)), number<F>(0));
+        const auto has_density = sum > number<F>(0);
+        q = lobe == LobeKind::none
+            ? number<F>(0)
+            : select(has_density, point.lobe / select(has_density, sum, number<F>(1)), number<F>(0));
     }
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         if (lobe == LobeKind::none) return diffuse.sample(wo, u);
         const auto of_lobe = u.x < q;
         const F share = select(of_lobe, q, number<F>(1) - q);
-        const F stretched = select(of_lobe, u.x, u.x - q) / share;
-        const Vec3<F> a = sample_lobe(wo, {stretched, u.y}), b = diffuse.sample(wo, {stretched, u.y}).wi;
+        const F stretched_u = select(of_lobe, u.x, u.x - q) / share;
+        const Vec3<F> a = sample_lobe(wo, {stretched_u, u.y}), b = diffuse.sample(wo, {stretched_u, u.y}).wi;
         const Vec3<F> wi = {select(of_lobe, a.x, b.x), select(of_lobe, a.y, b.y), select(of_lobe, a.z, b.z)};
         return {wi, pdf(wo, wi)};
     }
@@ -65,10 +66,10 @@ private:
     /// The index in of_lobes of the sampler that a lobe names.
     template <template <class> class L> static constexpr std::size_t own_sampler() {
         return [&]<std::size_t... k>(std::index_sequence<k...>) {
-            std::size_t found = sizeof...(k);
-            ((std::tuple_element_t<k, decltype(of_lobes)>::name == L<F>::manual.own_arm ? void(found = k) : void()),
+            std::size_t match = sizeof...(k);
+            ((std::tuple_element_t<k, decltype(of_lobes)>::name == L<F>::manual.own_arm ? void(match = k) : void()),
                 ...);
-            return found;
+            return match;
         }(std::make_index_sequence<std::tuple_size_v<decltype(of_lobes)>>{});
     }
     [[gnu::noinline]] Vec3<F> sample_lobe(Vec3<F> wo, Vec2<F> u) const {

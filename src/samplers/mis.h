@@ -30,8 +30,8 @@ template <class F, class Heuristic> struct TwoSampleMis {
         if constexpr (t == 0) return brdf.pdf(wo, wi);
         else return light.pdf(wo, wi);
     }
-    template <int t> F weight(Vec3<F> wo, Drawn<F> drawn) const {
-        return Heuristic::weight(drawn.pdf.v, pdf_technique<1 - t>(wo, drawn.wi).v);
+    template <int t> F weight(Vec3<F> wo, Drawn<F> draw) const {
+        return Heuristic::weight(draw.pdf.v, pdf_technique<1 - t>(wo, draw.wi).v);
     }
 };
 
@@ -41,9 +41,9 @@ template <class F, class Heuristic> struct TwoSampleMis {
 struct BalanceHeuristic {
     /// 1 / (1 + other/own): no overflow for large densities; own = 0 was not drawn and has weight 0.
     template <class F> static F weight(F this_pdf, F other) {
-        const auto drawn = this_pdf > number<F>(0);
+        const auto is_drawn = this_pdf > number<F>(0);
         return select(
-            drawn, number<F>(1) / (number<F>(1) + other / select(drawn, this_pdf, number<F>(1))), number<F>(0));
+            is_drawn, number<F>(1) / (number<F>(1) + other / select(is_drawn, this_pdf, number<F>(1))), number<F>(0));
     }
 };
 
@@ -68,9 +68,9 @@ template <class F> struct MisBalance : TwoSampleMis<F, BalanceHeuristic> {
 
 struct PowerHeuristic {
     template <class F> static F weight(F this_pdf, F other) {
-        const auto drawn = this_pdf > number<F>(0);
-        return select(
-            drawn, number<F>(1) / (number<F>(1) + sqr(other / select(drawn, this_pdf, number<F>(1)))), number<F>(0));
+        const auto is_drawn = this_pdf > number<F>(0);
+        return select(is_drawn, number<F>(1) / (number<F>(1) + sqr(other / select(is_drawn, this_pdf, number<F>(1)))),
+            number<F>(0));
     }
 };
 

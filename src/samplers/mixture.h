@@ -30,14 +30,15 @@ template <class F> struct Mixture {
     F q;
     explicit Mixture(const ShadingPoint<F>& shading_point) : lobe(shading_point), diffuse(shading_point) {
         const F sum = shading_point.lobe + shading_point.diffuse;
-        const auto some = sum > number<F>(0);
-        q = select(some, smaller(shading_point.lobe / select(some, sum, number<F>(1)), number<F>(0.9)), number<F>(0));
+        const auto has_density = sum > number<F>(0);
+        q = select(has_density, smaller(shading_point.lobe / select(has_density, sum, number<F>(1)), number<F>(0.9)),
+            number<F>(0));
     }
 
     Drawn<F> sample(Vec3<F> wo, Vec2<F> u) const {
         const auto of_lobe = u.x < q;
-        const F stretched = select(of_lobe, u.x, u.x - q) / select(of_lobe, q, number<F>(1) - q);
-        const Vec3<F> a = lobe.sample(wo, {stretched, u.y}).wi, b = diffuse.sample(wo, {stretched, u.y}).wi;
+        const F stretched_u = select(of_lobe, u.x, u.x - q) / select(of_lobe, q, number<F>(1) - q);
+        const Vec3<F> a = lobe.sample(wo, {stretched_u, u.y}).wi, b = diffuse.sample(wo, {stretched_u, u.y}).wi;
         const Vec3<F> wi = {select(of_lobe, a.x, b.x), select(of_lobe, a.y, b.y), select(of_lobe, a.z, b.z)};
         return {wi, pdf(wo, wi)};
     }

@@ -50,9 +50,9 @@ template <class F> struct Phong {
         const F cos = lobe.value;
         const F sin = sqrt(lobe.one_minus * (number<F>(1) + cos));
         const SinCos<F> phi = sincos_turns(u.y);
-        const Frame<F> about = frame_about(mirror(wo));
-        const F along = u.x / larger(cos, number<F>(1e-30));  // (w.R)^s; u1 = 0 gives 0, not 0/0
-        return {about.to_world({sin * phi.cos, sin * phi.sin, cos}), {scale * along}};
+        const Frame<F> lobe_frame = frame_about(mirror(wo));
+        const F power = u.x / larger(cos, number<F>(1e-30));  // (w.R)^s; u1 = 0 gives 0, not 0/0
+        return {lobe_frame.to_world({sin * phi.cos, sin * phi.sin, cos}), {scale * power}};
     }
     [[gnu::always_inline]] PerSr<F> pdf(Vec3<F> wo, Vec3<F> wi) const {
         return {scale * cosine_power(wi, mirror(wo), s)};

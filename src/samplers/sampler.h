@@ -35,8 +35,8 @@ template <class F> struct Drawn {
 /// rounded direction may fail: float directions are 1e-7 apart, so an area light of 1e-6 m at 3 m is only three of them
 /// wide.
 template <class F> struct DrawnToDisk : Drawn<F> {
-    F disk;         // the index of that light, disks first
-    MaskOf<F> met;  // wi meets it; it may still be behind another light, or hidden
+    F disk;                 // the index of that light, disks first
+    MaskOf<F> meets_light;  // wi meets it; it may still be behind another light, or hidden
 };
 
 /// A direction that was drawn in a texel of the sky. Rounding may move the direction to a neighbouring texel, which may
@@ -115,14 +115,14 @@ concept DrawsOne = requires(const S arm, Vec3<F> wo, Vec3<F> wi, Vec2<F> u) {
 
 /// Two directions per sample, each from its own density; the weight of a direction drawn by technique t.
 template <class S, class F>
-concept DrawsTwo = requires(const S arm, Vec3<F> wo, Vec3<F> wi, Vec2<F> u, Drawn<F> drawn) {
+concept DrawsTwo = requires(const S arm, Vec3<F> wo, Vec3<F> wi, Vec2<F> u, Drawn<F> draw) {
     requires S::techniques == 2;
     { arm.template sample_technique<0>(wo, u) } -> std::convertible_to<Drawn<F>>;
     { arm.template sample_technique<1>(wo, u) } -> std::convertible_to<Drawn<F>>;
     { arm.template pdf_technique<0>(wo, wi) } -> std::same_as<PerSr<F>>;
     { arm.template pdf_technique<1>(wo, wi) } -> std::same_as<PerSr<F>>;
-    { arm.template weight<0>(wo, drawn) } -> std::same_as<F>;
-    { arm.template weight<1>(wo, drawn) } -> std::same_as<F>;
+    { arm.template weight<0>(wo, draw) } -> std::same_as<F>;
+    { arm.template weight<1>(wo, draw) } -> std::same_as<F>;
 };
 
 /// The requirements on a sampler: a name, a description, and construction from a surface point. `theory` (CasePoint ->

@@ -244,8 +244,8 @@ private:
 using ExternalSamplers = std::map<std::string, std::shared_ptr<const SamplerAdapter>, std::less<>>;
 /// Returns null if the arm is built in.
 inline const SamplerAdapter* external_of(const ExternalSamplers& samplers, std::string_view arm) {
-    const auto found = samplers.find(arm);
-    return found == samplers.end() ? nullptr : found->second.get();
+    const auto match = samplers.find(arm);
+    return match == samplers.end() ? nullptr : match->second.get();
 }
 
 /// A sampler as the kernels take it: a name of the list in all.h, or one that is not built in, which takes precedence.

@@ -30,15 +30,15 @@ template <class F> struct SkyByTexel {
         .check_cases = check_cases};
     static ExpectedBehaviour theory(const CasePoint& point) { return theory_of_light_arm(point); }
 
-    const Surroundings* around;
+    const Surroundings* surroundings;
     Frame<F> frame;
 
     explicit SkyByTexel(const ShadingPoint<F>& shading_point)
-        : around(shading_point.around), frame(shading_point.frame) {}
+        : surroundings(shading_point.around), frame(shading_point.frame) {}
 
     [[gnu::noinline]] DrawnToSky<F> sample(Vec3<F> /*wo*/, Vec2<F> u) const {
         const F zero = number<F>(0);
-        if (!around) return {{{zero, zero, number<F>(1)}, {zero}}, UintOf<F>(no_texel)};
+        if (!surroundings) return {{{zero, zero, number<F>(1)}, {zero}}, UintOf<F>(no_texel)};
         using Scalar = typename LaneArray<F>::Scalar;
         constexpr std::size_t lanes = Lanes<F>::count;
         const LaneArray<F> ux(u.x), uy(u.y);
@@ -47,16 +47,16 @@ template <class F> struct SkyByTexel {
             u1[l] = double(ux.at[l]);
             u2[l] = double(uy.at[l]);
         }
-        std::array<SkyDraw, lanes> drawn;
-        sample_sky(*around, u1, u2, drawn);
+        std::array<SkyDraw, lanes> draws;
+        sample_sky(*surroundings, u1, u2, draws);
         LaneArray<F> x, y, z, p;
         LaneIntegers<F> texel;
         for (std::size_t l = 0; l < lanes; ++l) {
-            x.at[l] = static_cast<Scalar>(drawn[l].w.x);
-            y.at[l] = static_cast<Scalar>(drawn[l].w.y);
-            z.at[l] = static_cast<Scalar>(drawn[l].w.z);
-            p.at[l] = static_cast<Scalar>(drawn[l].pdf);
-            texel.at[l] = drawn[l].texel;
+            x.at[l] = static_cast<Scalar>(draws[l].w.x);
+            y.at[l] = static_cast<Scalar>(draws[l].w.y);
+            z.at[l] = static_cast<Scalar>(draws[l].w.z);
+            p.at[l] = static_cast<Scalar>(draws[l].pdf);
+            texel.at[l] = draws[l].texel;
         }
         return {{frame.to_local({x.pack(), y.pack(), z.pack()}), {p.pack()}}, texel.pack()};
     }
@@ -66,21 +66,21 @@ template <class F> struct SkyByTexel {
         return pdf_of(wi, LaneIntegers<F>(UintOf<F>(no_texel)), !(zero > zero));
     }
     /// The density of a drawn direction, whose texel may be known, in these lanes.
-    PerSr<F> pdf_where(const DrawnByAny<F>& drawn, MaskOf<F> where) const {
-        return pdf_of(drawn.wi, LaneIntegers<F>(drawn.texel), where);
+    PerSr<F> pdf_where(const DrawnByAny<F>& draw, MaskOf<F> where) const {
+        return pdf_of(draw.wi, LaneIntegers<F>(draw.texel), where);
     }
 
 private:
     [[gnu::noinline]] PerSr<F> pdf_of(Vec3<F> wi, const LaneIntegers<F>& texel, MaskOf<F> where) const {
-        if (!around) return {number<F>(0)};
+        if (!surroundings) return {number<F>(0)};
         using Scalar = typename LaneArray<F>::Scalar;
         const Vec3<F> d = frame.to_world(wi);
-        const LaneArray<F> x(d.x), y(d.y), z(d.z), on(select(where, number<F>(1), number<F>(0)));
+        const LaneArray<F> x(d.x), y(d.y), z(d.z), flags(select(where, number<F>(1), number<F>(0)));
         LaneArray<F> p(number<F>(0));
         for (std::size_t l = 0; l < Lanes<F>::count; ++l)
-            if (on.at[l] > 0)
+            if (flags.at[l] > 0)
                 p.at[l] = static_cast<Scalar>(
-                    sky_pdf(*around, texel.at[l], {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
+                    sky_pdf(*surroundings, texel.at[l], {double(x.at[l]), double(y.at[l]), double(z.at[l])}));
         return {p.pack()};
     }
 };

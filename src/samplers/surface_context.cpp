@@ -20,22 +20,23 @@ constexpr std::size_t columns_of_light = 18;
 
 /// 0 disk, 1 sphere, 2 rectangle, and the later kinds of LightKinds.
 double kind_number(std::string_view kind) {
-    double number = 0, found = 0;
+    double number = 0, match = 0;
     const auto among = [&]<class... Kind>(KindList<Kind...>) {
-        ((Kind::name == kind ? void(found = number) : void(), ++number), ...);
+        ((Kind::name == kind ? void(match = number) : void(), ++number), ...);
     };
     among(LightKinds{});
-    return found;
+    return match;
 }
 
 void add_vector(const Vec3<double>& v, std::vector<double>& to) { to.insert(to.end(), {v.x, v.y, v.z}); }
 
-void add_light(const SceneLight& light, const LightAtPoint& seen, std::vector<double>& to) {
+void add_light(const SceneLight& light, const LightAtPoint& geometry, std::vector<double>& to) {
     to.push_back(kind_number(light.kind));
     to.push_back(light.radius);
     to.insert(to.end(), light.radiance.begin(), light.radiance.end());
-    for (const Vec3<double>& v : {seen.center, seen.normal, seen.edge_u, seen.edge_v}) add_vector(v, to);
-    to.push_back(seen.shines ? 1 : 0);
+    for (const Vec3<double>& v : {geometry.center, geometry.normal, geometry.edge_u, geometry.edge_v})
+        add_vector(v, to);
+    to.push_back(geometry.shines ? 1 : 0);
 }
 
 }  // namespace
@@ -50,7 +51,7 @@ std::size_t context_columns(std::span<const std::string> uses, std::size_t light
 }
 
 void add_context(std::span<const std::string> uses, const SurfaceRun& point, std::span<const SceneLight> lights,
-    std::span<const LightAtPoint> seen, std::vector<double>& to) {
+    std::span<const LightAtPoint> lights_at, std::vector<double>& to) {
     for (const std::string& name : uses) {
         if (name == "s") to.push_back(point.surface.s);
         else if (name == "alpha") to.push_back(point.surface.alpha);
@@ -61,7 +62,7 @@ void add_context(std::span<const std::string> uses, const SurfaceRun& point, std
         else {
             ensure(name == "lights", "a handshake names known quantities only");
             to.push_back(static_cast<double>(lights.size()));
-            for (std::size_t k = 0; k < lights.size(); ++k) add_light(lights[k], seen[k], to);
+            for (std::size_t k = 0; k < lights.size(); ++k) add_light(lights[k], lights_at[k], to);
         }
     }
 }

@@ -63,9 +63,9 @@ std::span<const std::string_view> context_names();
 /// Number of columns of one row for a scene with this many lights.
 std::size_t context_columns(std::span<const std::string> uses, std::size_t lights);
 
-/// Appends the columns of one surface point, in the order of `uses`. `seen`: each light relative to the point.
+/// Appends the columns of one surface point, in the order of `uses`. `lights_at`: each light relative to the point.
 void add_context(std::span<const std::string> uses, const SurfaceRun& point, std::span<const SceneLight> lights,
-    std::span<const LightAtPoint> seen, std::vector<double>& to);
+    std::span<const LightAtPoint> lights_at, std::vector<double>& to);
 
 /// Reads names of context_names() separated by commas, each at most once; returns false for any other text.
 bool take_context_names(std::string_view text, std::vector<std::string>& out);

@@ -89,8 +89,8 @@ public:
 private:
     std::size_t count_ = 0;
     std::vector<WeightFormula> formulas_{};  // empty: equal weights
-    bool rest_ = false;                      // the last weight is one minus the sum of the others
-    SourceLocation at_{};
+    bool has_remainder_ = false;             // the last weight is one minus the sum of the others
+    SourceLocation place_{};
 };
 
 }  // namespace crescent

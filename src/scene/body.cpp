@@ -23,15 +23,15 @@ double dot(Flat a, Flat b) { return a.x * b.x + a.y * b.y; }
 /// A line along (cos phi, sin phi) meets the ellipse where k = (-sin phi, cos phi) has (k.p)^2 <= (k.u)^2 + (k.v)^2, a
 /// quadratic form m - a cos 2(phi - middle) in k.
 Azimuths of_ellipse(Flat p, Flat u, Flat v) {
-    const double outside = sqr(cross(p, u)) + sqr(cross(p, v)) - sqr(cross(u, v));  // -det of the form = a^2 - m^2
+    const double discriminant = sqr(cross(p, u)) + sqr(cross(p, v)) - sqr(cross(u, v));  // -det of the form = a^2 - m^2
     const double xx = p.x * p.x - u.x * u.x - v.x * v.x, yy = p.y * p.y - u.y * u.y - v.y * v.y,
                  xy = p.x * p.y - u.x * u.y - v.x * v.y;
-    if (!(outside > 0)) return {};
+    if (!(discriminant > 0)) return {};
     const double middle = 0.5 * math::atan2(2 * xy, xx - yy),
-                 half = 0.5 * math::atan2(std::sqrt(outside), 0.5 * (xx + yy));
+                 half = 0.5 * math::atan2(std::sqrt(discriminant), 0.5 * (xx + yy));
     const auto [sin, cos] = math::sincos(middle);
-    const bool ahead = dot(p, {cos, sin}) > 0;
-    return {ahead ? middle : middle + pi, half};
+    const bool is_ahead = dot(p, {cos, sin}) > 0;
+    return {is_ahead ? middle : middle + pi, half};
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ inline constexpr Between before_light{at_an_end, 1 - at_an_end};
 /// A point, and the chord as seen from it.
 struct Sight {
     Vec3d x, d0, step;  // d(v) = y(v) - x = d0 + v step
-    Between between;
+    Between limits;
 };
 
 /// Returns v in `range` with a v^2 + 2 b v + c <= 0, known to be one interval there.
@@ -160,9 +160,9 @@ struct Met {
     Interval way, start, end;
     /// Returns the v at which its surface is crossed: where the way meets it, unless it runs inside from start to end.
     std::array<Interval, 2> crossed() const {
-        const Interval inside = both(start, end);
-        if (inside.empty()) return {way, {}};
-        return {Interval{way.lo, inside.lo}, Interval{inside.hi, way.hi}};
+        const Interval interior = both(start, end);
+        if (interior.empty()) return {way, {}};
+        return {Interval{way.lo, interior.lo}, Interval{interior.hi, way.hi}};
     }
 };
 
@@ -179,14 +179,14 @@ inline OnPlane project(Vec3d p, Vec3d n, const Sight& s) {
     const double sign = hx > 0 ? 1 : -1;
     // Intersection point = x - d hx / (n.d): relative to p, times -n.d, which is linear in v.
     const Vec3d g0 = sign * (-h0 * (s.x - p) + hx * s.d0), g1 = sign * (-h1 * (s.x - p) + hx * (s.d0 + s.step));
-    const auto beyond = [&](double f, double side) {
+    const auto where_beyond = [&](double f, double side) {
         return where_positive(side * sign * (hx + f * h0), side * sign * (hx + f * h1));
     };
     return {.at0 = g0,
         .step = g1 - g0,
         .w0 = -sign * h0,
         .w1 = sign * (h0 - h1),
-        .sides = hx == 0 ? Interval{} : both(beyond(s.between.from, 1), beyond(s.between.to, -1))};
+        .sides = hx == 0 ? Interval{} : both(where_beyond(s.limits.from, 1), where_beyond(s.limits.to, -1))};
 }
 
 // ---- The first intersection of a ray x + t d with a shape; t is in units of d and infinite for a miss.

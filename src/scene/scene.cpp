@@ -15,10 +15,10 @@ namespace crescent {
 Scene::Made::Made(SceneData from) : data(std::move(from)) {
     const Camera& c = data.camera;
     forward = normalize(c.target - c.eye);
-    const Vec3d across = normalize(cross(forward, c.up));
+    const Vec3d unit_right = normalize(cross(forward, c.up));
     const double pixel = 2 * math::tan(c.vfov_deg * pi / 360) / data.image.height;  // at distance 1
-    right = pixel * across;
-    up = pixel * cross(across, forward);
+    right = pixel * unit_right;
+    up = pixel * cross(unit_right, forward);
     for (std::size_t k = 0; k < data.shapes.size(); ++k)
         if (data.shapes[k].occludes) add_occluders(data.shapes[k], static_cast<int>(k), occluders);
     for (const DiskLight& disk : data.disks) lights.push_back(disk.light());
@@ -42,10 +42,10 @@ Scene::Made::Made(SceneData from) : data(std::move(from)) {
             if (mesh.two_sided) triangle_lights.push_back({{p, r, q}, k, t, instance.mesh});
         }
     }
-    around = surroundings();
+    surroundings = make_surroundings();
 }
 
-std::shared_ptr<const Surroundings> Scene::Made::surroundings() const {
+std::shared_ptr<const Surroundings> Scene::Made::make_surroundings() const {
     if (!data.sky && rays.empty()) return nullptr;
     auto out = std::make_shared<Surroundings>();
     if (data.sky) out->sky.emplace(*data.sky);
@@ -63,29 +63,29 @@ std::shared_ptr<const Surroundings> Scene::Made::surroundings() const {
     return out;
 }
 
-Scene::Scene(SceneData data) : made_(std::make_shared<const Made>(std::move(data))), s_(made_->data.s()) {}
+Scene::Scene(SceneData data) : content_(std::make_shared<const Made>(std::move(data))), s_(content_->data.s()) {}
 
 std::vector<MeshInstance> Scene::Made::instances() const {
-    std::vector<MeshInstance> placed;
+    std::vector<MeshInstance> out;
     for (std::size_t m = 0; m < data.meshes.size(); ++m) {
         const MeshObject& mesh = data.meshes[m];
         ensure(mesh.pack != nullptr, "the files of meshes are read before the scene is made");
         const Affine transform = mesh.placement.transform();
-        if (mesh.instances.empty()) placed.push_back({mesh.pack, transform, static_cast<int>(m)});
+        if (mesh.instances.empty()) out.push_back({mesh.pack, transform, static_cast<int>(m)});
         for (const Placement& placement : mesh.instances)
-            placed.push_back({mesh.pack, placement.transform().after(transform), static_cast<int>(m)});
+            out.push_back({mesh.pack, placement.transform().after(transform), static_cast<int>(m)});
     }
-    return placed;
+    return out;
 }
 
 std::array<Vec3d, 3> Scene::Made::corners(std::uint32_t instance, std::uint32_t triangle) const {
-    const MeshInstance& placed = rays.instances()[instance];
+    const MeshInstance& mesh_instance = rays.instances()[instance];
     const auto corner = [&](std::size_t k) {
-        return placed.to_world.point(widen(placed.pack->mesh.corner(triangle, k)));
+        return mesh_instance.to_world.point(widen(mesh_instance.pack->mesh.corner(triangle, k)));
     };
     // A mirrored triangle keeps its front.
-    return placed.to_world.det() > 0 ? std::array{corner(0), corner(1), corner(2)}
-                                     : std::array{corner(0), corner(2), corner(1)};
+    return mesh_instance.to_world.det() > 0 ? std::array{corner(0), corner(1), corner(2)}
+                                            : std::array{corner(0), corner(2), corner(1)};
 }
 
 Vec3d Scene::Made::nearest_seen() const {
@@ -93,15 +93,15 @@ Vec3d Scene::Made::nearest_seen() const {
     const Camera& c = data.camera;
     const Image& image = data.image;
     Vec3d nearest = c.eye;
-    double least = std::numeric_limits<double>::infinity();
+    double distance2 = std::numeric_limits<double>::infinity();
     for (int j = 0; j < steps; ++j) {
         for (int i = 0; i < steps; ++i) {
             const auto middle = [&](int k, int size) { return static_cast<int>((k + 0.5) * size / steps); };
             const std::optional<Hit> hit = trace(middle(i, image.width), middle(j, image.height));
             if (!hit) continue;
             const Vec3d to = hit->x - c.eye;
-            if (dot(to, to) < least) {
-                least = dot(to, to);
+            if (dot(to, to) < distance2) {
+                distance2 = dot(to, to);
                 nearest = hit->x;
             }
         }
@@ -115,7 +115,7 @@ void Scene::remember_primaries() {
     const auto remember = [&](auto& values, const auto& what) {
         parallel_for(std::size_t{0}, height, [&](std::size_t j) {
             for (std::size_t i = 0; i < width; ++i)
-                if (const auto hit = made_->trace(static_cast<int>(i), static_cast<int>(j)))
+                if (const auto hit = content_->trace(static_cast<int>(i), static_cast<int>(j)))
                     values[j * width + i] = what(*hit);
         });
     };
@@ -141,7 +141,7 @@ void Scene::forget_hits() {
 
 Scene Scene::with_s(double s) const {
     Scene other = *this;
-    if (made_->s_shape >= 0) {
+    if (content_->s_shape >= 0) {
         other.s_ = s;
         other.other_s_ = true;
     }
@@ -155,24 +155,24 @@ std::size_t Scene::index_of(int i, int j) const {
 std::optional<Hit> Scene::primary(int i, int j) const {
     const std::size_t index = index_of(i, j);
     if (hits_) return (*hits_)[index].shape < 0 ? std::nullopt : std::optional<Hit>((*hits_)[index]);
-    if (!shapes_) return made_->trace(i, j);
+    if (!shapes_) return content_->trace(i, j);
     const int shape = (*shapes_)[index];
     if (shape < 0) return {};
-    if (static_cast<std::size_t>(shape) >= shapes().size()) return made_->trace(i, j);
-    const Vec3d d = made_->towards(i, j);
-    return made_->hit(shape, d, intersect(shapes()[static_cast<std::size_t>(shape)], camera().eye, d));
+    if (static_cast<std::size_t>(shape) >= shapes().size()) return content_->trace(i, j);
+    const Vec3d d = content_->towards(i, j);
+    return content_->hit(shape, d, intersect(shapes()[static_cast<std::size_t>(shape)], camera().eye, d));
 }
 
 bool Scene::sees_surface(int i, int j) const {
     const std::size_t index = index_of(i, j);
     if (hits_) return (*hits_)[index].shape >= 0;
-    return shapes_ ? (*shapes_)[index] >= 0 : made_->trace(i, j).has_value();
+    return shapes_ ? (*shapes_)[index] >= 0 : content_->trace(i, j).has_value();
 }
 
 Rgb Scene::background(int i, int j) const {
     if (!has_background()) return {};
-    const SkyTable& sky = *made_->around->sky;
-    return sky.radiance(sky.texel_at(made_->towards(i, j)));
+    const SkyTable& sky = *content_->surroundings->sky;
+    return sky.radiance(sky.texel_at(content_->towards(i, j)));
 }
 
 Vec3d Scene::Made::towards(int i, int j) const {
@@ -193,8 +193,8 @@ std::optional<Hit> Scene::Made::trace(int i, int j) const {
     }
     if (!rays.empty()) {
         const Vec3d from = data.camera.eye - origin;
-        if (const MeshHit met = rays.closest(from, d, infinity); met.found()) {
-            const Hit on_mesh = hit(met, d);
+        if (const MeshHit mesh_hit = rays.closest(from, d, infinity); mesh_hit.found()) {
+            const Hit on_mesh = hit(mesh_hit, d);
             const double t = dot(on_mesh.x - data.camera.eye, d);
             if (t < best.order) return on_mesh;
         }
@@ -204,16 +204,18 @@ std::optional<Hit> Scene::Made::trace(int i, int j) const {
 
 /// In double precision, on the triangle that the ray in single precision has found: its plane, and the nearest point of
 /// the triangle in it.
-Hit Scene::Made::hit(const MeshHit& met, Vec3d d) const {
-    const MeshInstance& instance = rays.instances()[met.instance];
+Hit Scene::Made::hit(const MeshHit& mesh_hit, Vec3d d) const {
+    const MeshInstance& instance = rays.instances()[mesh_hit.instance];
     const Mesh& mesh = instance.pack->mesh;
-    const Triangle& triangle = mesh.triangles[met.triangle];
-    const auto corner = [&](std::size_t k) { return instance.to_world.point(widen(mesh.corner(met.triangle, k))); };
-    const Vec3d a = corner(0), e1 = corner(1) - a, e2 = corner(2) - a, across = cross(e1, e2);
+    const Triangle& triangle = mesh.triangles[mesh_hit.triangle];
+    const auto corner = [&](std::size_t k) {
+        return instance.to_world.point(widen(mesh.corner(mesh_hit.triangle, k)));
+    };
+    const Vec3d a = corner(0), e1 = corner(1) - a, e2 = corner(2) - a, plane_normal = cross(e1, e2);
     const Vec3d from = data.camera.eye - a;
     // Cramer's rule for from + t d = u e1 + v e2; a ray along the plane keeps the weights that were found.
-    const double det = -dot(across, d);
-    double u = static_cast<double>(met.u), v = static_cast<double>(met.v);
+    const double det = -dot(plane_normal, d);
+    double u = static_cast<double>(mesh_hit.u), v = static_cast<double>(mesh_hit.v);
     if (det != 0) {
         u = dot(cross(e2, d), from) / det * -1;
         v = dot(cross(d, e1), from) / det * -1;
@@ -228,11 +230,11 @@ Hit Scene::Made::hit(const MeshHit& met, Vec3d d) const {
     out.shape = static_cast<int>(data.shapes.size()) + instance.mesh;
     out.x = a + u * e1 + v * e2;
     out.wo = -d;
-    out.instance = met.instance;
-    out.triangle = met.triangle;
+    out.instance = mesh_hit.instance;
+    out.triangle = mesh_hit.triangle;
     out.u = u;
     out.v = v;
-    const Vec3d face = normalize(across);
+    const Vec3d face = normalize(plane_normal);
     out.face = dot(face, d) < 0 ? face : -face;
     out.n = out.face;
     if (!mesh.normals.empty()) {
@@ -240,17 +242,17 @@ Hit Scene::Made::hit(const MeshHit& met, Vec3d d) const {
         const Vec3d smooth = instance.to_world.normal((1 - u - v) * normal(0) + u * normal(1) + v * normal(2));
         const double side = dot(smooth, out.face);
         const Vec3d n = side == 0 ? out.face : normalize(side > 0 ? smooth : -smooth);
-        out.below = dot(n, d) >= 0;
-        if (!out.below) out.n = n;
+        out.is_below = dot(n, d) >= 0;
+        if (!out.is_below) out.n = n;
     }
     return out;
 }
 
-Hit Scene::Made::hit(int shape, Vec3d d, const Intersection& met) const {
+Hit Scene::Made::hit(int shape, Vec3d d, const Intersection& crossing) const {
     return {.shape = shape,
-        .reveal = met.reveal,
-        .x = data.camera.eye + met.t * d,
-        .n = dot(met.n, d) < 0 ? met.n : -met.n,
+        .reveal = crossing.reveal,
+        .x = data.camera.eye + crossing.t * d,
+        .n = dot(crossing.n, d) < 0 ? crossing.n : -crossing.n,
         .wo = -d};
 }
 
@@ -260,8 +262,8 @@ Vec3d Scene::ray_start(const Hit& hit) const {
 }
 
 Surface Scene::surface_of_shape(std::size_t shape) const {
-    Material material = made_->data.material(shape);
-    if (other_s_ && (static_cast<std::ptrdiff_t>(shape) == made_->s_shape || material.inherits_s)) material.s = s_;
+    Material material = content_->data.material(shape);
+    if (other_s_ && (static_cast<std::ptrdiff_t>(shape) == content_->s_shape || material.inherits_s)) material.s = s_;
     return surface_of(material, s_);
 }
 
@@ -275,11 +277,11 @@ Texels Scene::texels(const Hit& hit) const {
     const Mesh& mesh = object.pack->mesh;
     ensure(!mesh.uv.empty(), "a mesh with a texture has texture coordinates");
     const Triangle& corners = mesh.triangles[hit.triangle];
-    const auto along = [&](float Vec2<float>::* axis) {
+    const auto interpolate = [&](float Vec2<float>::* axis) {
         const auto coordinate = [&](std::size_t k) { return static_cast<double>(mesh.uv[corners[k]].*axis); };
         return (1 - hit.u - hit.v) * coordinate(0) + hit.u * coordinate(1) + hit.v * coordinate(2);
     };
-    const double u = along(&Vec2<float>::x), v = along(&Vec2<float>::y);
+    const double u = interpolate(&Vec2<float>::x), v = interpolate(&Vec2<float>::y);
     if (rho_d) out.rho_d = texel_at(*rho_d, u, v);
     if (alpha) out.alpha = texel_at(*alpha, u, v)[0];
     return out;
@@ -295,7 +297,7 @@ Surface Scene::surface(const Hit& hit) const {
     const Texels factor = texels(hit);
     for (std::size_t c = 0; c < 3; ++c) out.rho_d[c] *= factor.rho_d[c];
     out.alpha *= factor.alpha;
-    if (hit.below) {
+    if (hit.is_below) {
         out.rho_d = {};
         out.rho_s = 0;
     }

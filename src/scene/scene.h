@@ -24,7 +24,7 @@ struct Hit {
     std::uint32_t instance = no_item, triangle = no_item;  // as in MeshHit
     double u = 0, v = 0;                                   // weights of the triangle's corners 1 and 2
 
-    bool below = false;  // the camera is below the smooth surface: nothing is reflected, and n is the face
+    bool is_below = false;  // the camera is below the smooth surface: nothing is reflected, and n is the face
     /// Returns whether it is on a mesh.
     bool is_mesh() const { return instance != no_item; }
 };
@@ -51,7 +51,7 @@ public:
     /// without a visible sky.
     Rgb background(int i, int j) const;
     /// Returns whether there is a sky that the camera sees.
-    bool has_background() const { return made_->data.sky && made_->data.sky->visible; }
+    bool has_background() const { return content_->data.sky && content_->data.sky->visible; }
     /// Traces every pixel once and stores the hits for as long as the scene and its copies live: whole hits if the
     /// image has at most whole_hits pixels, else only the shape, 4 bytes per pixel, which primary() then tests alone.
     void remember_primaries();
@@ -78,27 +78,27 @@ public:
     double s() const { return s_; }
     /// Returns a point near what the camera sees; positions in single precision are relative to it, so that a scene may
     /// be anywhere. It is the nearest of some primary hits, or the eye if these see nothing.
-    Vec3d origin() const { return made_->origin; }
-    const Image& image() const { return made_->data.image; }
-    const Camera& camera() const { return made_->data.camera; }
-    const std::vector<Shape>& shapes() const { return made_->data.shapes; }
-    const std::vector<MeshObject>& meshes() const { return made_->data.meshes; }
+    Vec3d origin() const { return content_->origin; }
+    const Image& image() const { return content_->data.image; }
+    const Camera& camera() const { return content_->data.camera; }
+    const std::vector<Shape>& shapes() const { return content_->data.shapes; }
+    const std::vector<MeshObject>& meshes() const { return content_->data.meshes; }
     /// Returns the rays against all instances of the meshes; positions are relative to origin().
-    const Rays& rays() const { return made_->rays; }
-    bool has_meshes() const { return !made_->rays.empty(); }
+    const Rays& rays() const { return content_->rays; }
+    bool has_meshes() const { return !content_->rays.empty(); }
     /// Returns the triangles that emit, in the order of instances and triangles, the back of two-sided ones as
     /// triangles of their own.
-    const std::vector<TriangleLight>& triangle_lights() const { return made_->triangle_lights; }
-    const std::vector<Occluder>& occluders() const { return made_->occluders; }
+    const std::vector<TriangleLight>& triangle_lights() const { return content_->triangle_lights; }
+    const std::vector<Occluder>& occluders() const { return content_->occluders; }
     /// Returns the lights: disks first, else in the order in which they are given.
-    const std::vector<Light>& lights() const { return made_->lights; }
-    std::size_t disk_count() const { return made_->disk_count; }
-    const Rgb& fill() const { return made_->data.fill; }
+    const std::vector<Light>& lights() const { return content_->lights; }
+    std::size_t disk_count() const { return content_->disk_count; }
+    const Rgb& fill() const { return content_->data.fill; }
     /// Returns the sky; null if the scene has none.
-    const std::shared_ptr<const Surroundings>& surroundings() const { return made_->around; }
+    const std::shared_ptr<const Surroundings>& surroundings() const { return content_->surroundings; }
     /// Returns whether both come from one Scene by copies and with_s(), with the same exponent, so all their values are
     /// equal.
-    bool is_same_as(const Scene& other) const { return made_ == other.made_ && s_ == other.s_; }
+    bool is_same_as(const Scene& other) const { return content_ == other.content_ && s_ == other.s_; }
 
 private:
     std::size_t index_of(int i, int j) const;
@@ -112,20 +112,20 @@ private:
         std::size_t disk_count = 0;
         Rays rays;
         std::vector<TriangleLight> triangle_lights;
-        std::shared_ptr<const Surroundings> around;  // null: nothing but bodies and lights
-        std::ptrdiff_t s_shape = -1;                 // the surface whose exponent is the scene's; -1: none
+        std::shared_ptr<const Surroundings> surroundings;  // null: nothing but bodies and lights
+        std::ptrdiff_t s_shape = -1;                       // the surface whose exponent is the scene's; -1: none
 
         explicit Made(SceneData from);
-        std::shared_ptr<const Surroundings> surroundings() const;
+        std::shared_ptr<const Surroundings> make_surroundings() const;
         Vec3d towards(int i, int j) const;  // direction from the eye to pixel (i, j), unit
         std::optional<Hit> trace(int i, int j) const;
-        Hit hit(int shape, Vec3d d, const Intersection& met) const;
-        Hit hit(const MeshHit& met, Vec3d d) const;
+        Hit hit(int shape, Vec3d d, const Intersection& crossing) const;
+        Hit hit(const MeshHit& mesh_hit, Vec3d d) const;
         std::array<Vec3d, 3> corners(std::uint32_t instance, std::uint32_t triangle) const;
         std::vector<MeshInstance> instances() const;
         Vec3d nearest_seen() const;
     };
-    std::shared_ptr<const Made> made_;
+    std::shared_ptr<const Made> content_;
     double s_ = 0;
     bool other_s_ = false;                                     // s_ differs from the data
     std::shared_ptr<const std::vector<Hit>> hits_;             // hit for each pixel; shape -1: no hit

@@ -54,26 +54,26 @@ std::optional<Rgb> albedo_of_reveal(const Shape& shape) {
 // the viewpoint.
 
 std::optional<Line> cut(const shapes::Disk& disk, Vec3d center, Vec3d k) {
-    const Vec3d across = k - dot(k, disk.normal) * disk.normal;
-    const double size2 = dot(across, across), distance = dot(k, center);
+    const Vec3d tangent = k - dot(k, disk.normal) * disk.normal;
+    const double size2 = dot(tangent, tangent), distance = dot(k, center);
     if (!(size2 * sqr(disk.radius) > sqr(distance))) return {};
     const double half = std::sqrt(sqr(disk.radius) - sqr(distance) / size2);
-    const Vec3d foot = center - (distance / size2) * across,
-                along = (half / std::sqrt(size2)) * cross(disk.normal, across);
-    return Line{foot - along, foot + along};
+    const Vec3d foot = center - (distance / size2) * tangent,
+                half_chord = (half / std::sqrt(size2)) * cross(disk.normal, tangent);
+    return Line{foot - half_chord, foot + half_chord};
 }
 
 std::optional<Line> cut(const shapes::Quad& quad, Vec3d corner, Vec3d k) {
     const std::array corners = {corner, corner + quad.edge_u, corner + quad.edge_u + quad.edge_v, corner + quad.edge_v};
     std::array<Vec3d, 2> ends{};
-    std::size_t found = 0;
+    std::size_t end_count = 0;
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec3d p = corners[i], q = corners[(i + 1) % 4];
         const double hp = dot(k, p), hq = dot(k, q);
-        if ((hp >= 0) == (hq >= 0) || found == 2) continue;
-        ends[found++] = p + (hp / (hp - hq)) * (q - p);
+        if ((hp >= 0) == (hq >= 0) || end_count == 2) continue;
+        ends[end_count++] = p + (hp / (hp - hq)) * (q - p);
     }
-    if (found < 2) return {};
+    if (end_count < 2) return {};
     return Line{ends[0], ends[1]};
 }
 
@@ -106,7 +106,7 @@ std::optional<std::size_t> SceneData::surface_of_s() const {
         return {};
     };
     if (!s_of.empty())
-        if (const auto named = first([&](std::size_t k) { return surface_name(k) == s_of; })) return named;
+        if (const auto match = first([&](std::size_t k) { return surface_name(k) == s_of; })) return match;
     if (const auto lobe = first([&](std::size_t k) { return material(k).rho_s > 0; })) return lobe;
     return first([](std::size_t) { return true; });
 }
@@ -126,7 +126,7 @@ double SceneData::s() const {
 Affine Placement::transform() const {
     if (matrix) {
         const auto column = [&](std::size_t k) { return Vec3d{(*matrix)[k], (*matrix)[4 + k], (*matrix)[8 + k]}; };
-        return {.x = column(0), .y = column(1), .z = column(2), .at = column(3)};
+        return {.x = column(0), .y = column(1), .z = column(2), .shift = column(3)};
     }
     return translation(translate).after(rotation(rotate).after(scaling(scale)));
 }

@@ -62,7 +62,7 @@ struct Light {
     std::string name;
     LightKinds::Any form;  // one of the kinds of lights/all.h
     Rgb radiance{};
-    SourceLocation at;
+    SourceLocation location;
     std::string_view kind() const { return LightKinds::names[form.index()]; }
 
     /// Returns the body with which it hides the lights behind it.
@@ -91,12 +91,12 @@ struct DiskLight {
     double radius = 0;
     Rgb radiance{};
     bool two_sided = false;
-    SourceLocation at;
+    SourceLocation location;
     Light light() const {
         return {.name = name,
             .form = lights::Disk{.center = center, .normal = normal, .radius = radius, .two_sided = two_sided},
             .radiance = radiance,
-            .at = at};
+            .location = location};
     }
 };
 
@@ -108,7 +108,7 @@ struct Shape {
     Shapes::Any form;  // one of the kinds of shapes/all.h
     Material material;
     bool occludes = false;  // whether it hides lights
-    SourceLocation at;
+    SourceLocation location;
     std::string_view kind() const { return Shapes::names[form.index()]; }
 };
 
@@ -149,7 +149,7 @@ struct MeshObject {
     std::optional<std::string> content;    // 16 hexadecimal digits of content_of(); none: not known
     Rgb emission{};                        // radiance of its front sides
     bool two_sided = false;                // whether it emits from the back too
-    SourceLocation at;
+    SourceLocation location;
 
     bool emits() const { return emission[0] > 0 || emission[1] > 0 || emission[2] > 0; }
 };
@@ -229,9 +229,9 @@ inline double disk_area(const Figure& figure) {
 /// Returns the corners of a parallelogram that contains it, in order.
 inline std::array<Vec3d, 4> corners_about(const shapes::Disk& disk) {
     const Frame<double> frame = frame_about(disk.normal);
-    const Vec3d side = disk.radius * frame.t, up = disk.center + disk.radius * frame.b,
-                down = disk.center - disk.radius * frame.b;
-    return {up - side, up + side, down + side, down - side};
+    const Vec3d side = disk.radius * frame.t, top = disk.center + disk.radius * frame.b,
+                bottom = disk.center - disk.radius * frame.b;
+    return {top - side, top + side, bottom + side, bottom - side};
 }
 /// Returns the corners in their order about the normal.
 inline std::array<Vec3d, 4> corners_about(const shapes::Quad& quad) {
@@ -241,16 +241,16 @@ inline std::array<Vec3d, 4> corners_about(const Figure& figure) {
     return std::visit([](const auto& f) { return corners_about(f); }, figure);
 }
 
-/// Returns a disk of the same directions from x, `far` times as far away.
-inline shapes::Disk moved(const shapes::Disk& disk, Vec3d x, double far) {
-    return {x + far * (disk.center - x), disk.normal, far * disk.radius};
+/// Returns a disk of the same directions from x, `factor` times as far away.
+inline shapes::Disk moved(const shapes::Disk& disk, Vec3d x, double factor) {
+    return {x + factor * (disk.center - x), disk.normal, factor * disk.radius};
 }
-/// Returns the figure seen from x, lengths over `far`.
-inline shapes::Quad moved(const shapes::Quad& quad, Vec3d x, double far) {
-    return {x + far * (quad.corner - x), far * quad.edge_u, far * quad.edge_v};
+/// Returns the figure seen from x, lengths over `factor`.
+inline shapes::Quad moved(const shapes::Quad& quad, Vec3d x, double factor) {
+    return {x + factor * (quad.corner - x), factor * quad.edge_u, factor * quad.edge_v};
 }
-inline Figure moved(const Figure& figure, Vec3d x, double far) {
-    return std::visit([&](const auto& f) -> Figure { return moved(f, x, far); }, figure);
+inline Figure moved(const Figure& figure, Vec3d x, double factor) {
+    return std::visit([&](const auto& f) -> Figure { return moved(f, x, factor); }, figure);
 }
 
 /// Returns the figure as a body that hides others.

@@ -25,10 +25,10 @@ public:
     /// Returns whether a plane across `axis` separates them.
     bool across(Vec3d axis) const { return is_beyond(axis) || is_beyond(-axis); }
 
-    /// Returns whether the plane that touches the points and the light on the side of `aside` separates them.
-    bool by_graze(Vec3d aside) const {
+    /// Returns whether the plane that touches the points and the light on their side `side` separates them.
+    bool by_graze(Vec3d side) const {
         const double d2 = dot(d_, d_);
-        const Vec3d p = aside - (dot(aside, d_) / d2) * d_;
+        const Vec3d p = side - (dot(side, d_) / d2) * d_;
         const double size = std::sqrt(dot(p, p));
         if (!(size > 1e-12)) return false;
         const Vec3d unit = (1 / size) * p;
@@ -72,8 +72,8 @@ Ball ball_around(const Occluder& body) {
         body.body);
 }
 
-std::array<Interval, 2> hidden(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1, Between between) {
-    const Sight sight = {.x = x, .d0 = y0 - x, .step = y1 - y0, .between = between};
+std::array<Interval, 2> hidden(const Occluder& o, Vec3d x, Vec3d y0, Vec3d y1, Between limits) {
+    const Sight sight = {.x = x, .d0 = y0 - x, .step = y1 - y0, .limits = limits};
     return std::visit([&](const auto& body) { return body.hidden(sight); }, o.body);
 }
 

@@ -11,9 +11,9 @@
 
 namespace crescent {
 
-/// Returns the v for which the way from x to y(v) crosses the body's surface within `between`: one interval if x is
+/// Returns the v for which the way from x to y(v) crosses the body's surface within `limits`: one interval if x is
 /// outside the body, else at most two (points inside one body see each other).
-std::array<Interval, 2> hidden(const Occluder& body, Vec3d x, Vec3d y0, Vec3d y1, Between between = before_light);
+std::array<Interval, 2> hidden(const Occluder& body, Vec3d x, Vec3d y0, Vec3d y1, Between limits = before_light);
 
 /// Returns whether x is in the sphere or box; false for flat bodies.
 bool holds(const Occluder& body, Vec3d x);

@@ -26,12 +26,12 @@ constexpr std::size_t columns_a_guide = 4;
 /// Draws whose tables are fetched together.
 constexpr std::size_t draws_at_once = 16;
 
-/// Writes the guides: how many of `rising` are at most k / guides.size(), for each k; below(x): x in their unit.
-template <class Numbers, class Below>
-void write_guides(std::span<std::uint16_t> guides, const Numbers& rising, const Below& below) {
+/// Writes the guides: how many of `rising` are at most k / guides.size(), for each k; convert(x): x in their unit.
+template <class Numbers, class Convert>
+void write_guides(std::span<std::uint16_t> guides, const Numbers& rising, const Convert& convert) {
     std::size_t index = 0;
     for (std::size_t k = 0; k < guides.size(); ++k) {
-        const double x = below(static_cast<double>(k) / static_cast<double>(guides.size()));
+        const double x = convert(static_cast<double>(k) / static_cast<double>(guides.size()));
         while (index < rising.size() && static_cast<double>(rising[index]) <= x) ++index;
         guides[k] = static_cast<std::uint16_t>(index);
     }
@@ -40,13 +40,13 @@ void write_guides(std::span<std::uint16_t> guides, const Numbers& rising, const 
 /// The azimuth atan2(y, x) / (2 pi) within 1e-9, in a tenth of the time of math::atan2: half-angle reduction to
 /// |r| <= tan(pi / 8), and the series up to r^17.
 double rough_turns(double y, double x) {
-    const double ax = std::fabs(x), ay = std::fabs(y), longer = ax > ay ? ax : ay, least = ax > ay ? ay : ax;
-    const bool halved = least > 0.41421356237309503 * longer;
-    const double r = halved ? (least - longer) / (least + longer) : least / longer, r2 = r * r;
+    const double ax = std::fabs(x), ay = std::fabs(y), longer = ax > ay ? ax : ay, shorter = ax > ay ? ay : ax;
+    const bool is_halved = shorter > 0.41421356237309503 * longer;
+    const double r = is_halved ? (shorter - longer) / (shorter + longer) : shorter / longer, r2 = r * r;
     constexpr std::array series = {1.0 / 15, 1.0 / 13, 1.0 / 11, 1.0 / 9, 1.0 / 7, 1.0 / 5, 1.0 / 3, 1.0};
     double sum = 1.0 / 17;
     for (const double term : series) sum = term - r2 * sum;
-    double angle = r * sum + (halved ? pi / 4 : 0);
+    double angle = r * sum + (is_halved ? pi / 4 : 0);
     angle = ay > ax ? pi / 2 - angle : angle;
     angle = x < 0 ? pi - angle : angle;
     return (y < 0 ? -angle : angle) / (2 * pi);
@@ -90,7 +90,7 @@ struct Negative {
 
 Negative negative_numbers(const RgbImage& image) {
     Negative out;
-    double below = 0, above = 0;
+    double sum_below = 0, sum_above = 0;
     const std::size_t row_size = 3 * static_cast<std::size_t>(image.width);
     for (std::size_t row = 0; row * row_size < image.size(); ++row) {
         double row_below = 0, row_above = 0;
@@ -102,10 +102,10 @@ Negative negative_numbers(const RgbImage& image) {
             if (out.count++ == 0 || x < image[out.lowest]) out.lowest = k;
         }
         const double weight = math::sin(pi * (static_cast<double>(row) + 0.5) / image.height);
-        below += weight * row_below;
-        above += weight * row_above;
+        sum_below += weight * row_below;
+        sum_above += weight * row_above;
     }
-    out.share = below > 0 ? below / above : 0;
+    out.share = sum_below > 0 ? sum_below / sum_above : 0;
     return out;
 }
 
@@ -127,15 +127,15 @@ std::string why_no_sky(const RgbImage& image, double scale) {
             texel % width, texel / width, brightest_sky, scale * double(image[k]));
     };
     double largest = 0;
-    std::optional<std::size_t> below;
+    std::optional<std::size_t> negative_index;
     for (std::size_t k = 0; k < image.size(); ++k) {
         const float x = image[k];
-        const double scaled = scale * double(x);
-        largest = std::max(largest, scaled);
-        if (x < 0 && std::isfinite(x)) below = k;
-        else if (!(x >= 0 && scaled <= brightest_sky)) return at_texel(k);
+        const double radiance = scale * double(x);
+        largest = std::max(largest, radiance);
+        if (x < 0 && std::isfinite(x)) negative_index = k;
+        else if (!(x >= 0 && radiance <= brightest_sky)) return at_texel(k);
     }
-    if (below) {
+    if (negative_index) {
         const Negative negative = negative_numbers(image);
         return fmt::format("{}; {} {:.3g} % of the energy, more than {:g} %", at_texel(negative.lowest),
             counted(negative.count, "number[s] below 0 [is|are]"), 100 * negative.share, 100 * negative_share);
@@ -188,16 +188,16 @@ Rgb SkyTable::radiance(std::uint32_t texel) const {
 SkyTable::RowEdges SkyTable::edges_of(int row) const {
     const int high = height(), mirrored = high - 1 - row, upper = std::min(row, mirrored);
     const double polar = edge_[static_cast<std::size_t>(upper)];
-    if (row == mirrored) return {.polar = polar, .equatorial = polar, .across = true, .below = false};
+    if (row == mirrored) return {.polar = polar, .equatorial = polar, .crosses_equator = true, .is_below = false};
     return {.polar = polar,
         .equatorial = edge_[static_cast<std::size_t>(upper) + 1],
-        .across = false,
-        .below = row > mirrored};
+        .crosses_equator = false,
+        .is_below = row > mirrored};
 }
 
 double SkyTable::solid_angle(int row) const {
     const RowEdges edges = edges_of(row);
-    return 2 * pi / width() * (edges.across ? 2 * (1 - edges.polar) : edges.equatorial - edges.polar);
+    return 2 * pi / width() * (edges.crosses_equator ? 2 * (1 - edges.polar) : edges.equatorial - edges.polar);
 }
 
 SkyDraw SkyTable::sample(double u, double v) const {
@@ -216,10 +216,10 @@ void SkyTable::sample(std::span<const double> u, std::span<const double> v, std:
 void SkyTable::sample_some(std::span<const double> u, std::span<const double> v, std::span<SkyDraw> out) const {
     struct Place {
         std::size_t row, column;
-        double down, along;  // within the texel, 0 to 1
+        double row_part, column_part;  // within the texel, 0 to 1
     };
     std::array<Place, draws_at_once> places;
-    const auto inside = [](double x, double low, double high) {
+    const auto fraction_of = [](double x, double low, double high) {
         const double part = high > low ? (x - low) / (high - low) : 0.5;
         return std::clamp(part, 0.0, 1.0);
     };
@@ -229,7 +229,7 @@ void SkyTable::sample_some(std::span<const double> u, std::span<const double> v,
         while (row < last_row && rows_[row] <= u[k] * total_) ++row;
         row = std::min(row, last_row);
         places[k].row = row;
-        places[k].down = inside(u[k] * total_, row > 0 ? rows_[row - 1] : 0, rows_[row]);
+        places[k].row_part = fraction_of(u[k] * total_, row > 0 ? rows_[row - 1] : 0, rows_[row]);
         __builtin_prefetch(&column_guide_[row * guides_of_row_ + entry_of(v[k], guides_of_row_)]);
     }
     for (std::size_t k = 0; k < count; ++k) {
@@ -244,24 +244,24 @@ void SkyTable::sample_some(std::span<const double> u, std::span<const double> v,
         std::size_t column = place.column;
         while (column + 1 < columns && double(shares[column]) <= v[k]) ++column;
         place.column = column;
-        place.along = inside(v[k], column > 0 ? double(shares[column - 1]) : 0, double(shares[column]));
+        place.column_part = fraction_of(v[k], column > 0 ? double(shares[column - 1]) : 0, double(shares[column]));
         image_->prefetch(3 * (place.row * columns + column));
     }
     for (std::size_t k = 0; k < count; ++k) {
-        const auto& [row, column, down, along] = places[k];
+        const auto& [row, column, row_part, column_part] = places[k];
         const RowEdges edges = edges_of(static_cast<int>(row));
         double h, y;
-        if (edges.across) {
-            y = (1 - edges.polar) * (1 - 2 * down);
+        if (edges.crosses_equator) {
+            y = (1 - edges.polar) * (1 - 2 * row_part);
             h = 1 - std::fabs(y);
         } else {
-            h = edges.polar + (edges.equatorial - edges.polar) * (edges.below ? 1 - down : down);
-            y = edges.below ? h - 1 : 1 - h;
+            h = edges.polar + (edges.equatorial - edges.polar) * (edges.is_below ? 1 - row_part : row_part);
+            y = edges.is_below ? h - 1 : 1 - h;
         }
-        const double across = std::sqrt(h * (2 - h));
-        const math::SinCos phi = rough_sincos((static_cast<double>(column) + along) / width() - turns_);
+        const double sin_theta = std::sqrt(h * (2 - h));
+        const math::SinCos phi = rough_sincos((static_cast<double>(column) + column_part) / width() - turns_);
         const auto texel = static_cast<std::uint32_t>(row * columns + column);
-        out[k] = {{across * phi.sin, y, -across * phi.cos}, texel, pdf(texel)};
+        out[k] = {{sin_theta * phi.sin, y, -sin_theta * phi.cos}, texel, pdf(texel)};
     }
 }
 
@@ -269,15 +269,15 @@ std::uint32_t SkyTable::texel_at(Vec3d w) const {
     const double across2 = w.x * w.x + w.z * w.z, size = std::sqrt(across2 + w.y * w.y);
     const double h = across2 / (size * (size + std::fabs(w.y)));
     const int last = (height() - 1) / 2;  // the last row that is not below the equator
-    std::size_t above = edge_guide_[entry_of(std::sqrt(h), edge_guide_.size())];
-    while (above < edge_.size() && edge_[above] <= h) ++above;
-    const int upper = std::min(static_cast<int>(above) - 1, last);
+    std::size_t edge_index = edge_guide_[entry_of(std::sqrt(h), edge_guide_.size())];
+    while (edge_index < edge_.size() && edge_[edge_index] <= h) ++edge_index;
+    const int upper = std::min(static_cast<int>(edge_index) - 1, last);
     const int row = w.y < 0 ? height() - 1 - upper : upper;
     const auto position = [&](double turn) { return (turn - std::floor(turn)) * width(); };
     double place = position(rough_turns(w.x, -w.z) + turns_);
     // Within the error of the rough turn from the edge of a column, and for (0, 0): NaN.
-    const double beyond = place - std::floor(place);
-    if (!(beyond > 1e-4 && beyond < 1 - 1e-4)) place = position(math::atan2(w.x, -w.z) / (2 * pi) + turns_);
+    const double fraction = place - std::floor(place);
+    if (!(fraction > 1e-4 && fraction < 1 - 1e-4)) place = position(math::atan2(w.x, -w.z) / (2 * pi) + turns_);
     const int column = std::min(static_cast<int>(place), width() - 1);
     return static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(width()) + static_cast<std::uint32_t>(column);
 }

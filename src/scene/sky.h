@@ -36,9 +36,9 @@ struct SkyLight {
     double scale = 1;                      // of the radiance
     bool visible = true;                   // to the camera, where it sees no surface
     std::optional<std::string> content{};  // 16 hexadecimal digits of RgbImage::hash; none: not known
-    SourceLocation at{};
+    SourceLocation location{};
     std::shared_ptr<const RgbImage> image{};  // none before the file is read
-    std::size_t raised = 0;                   // numbers of the file that raise_to_zero() set to 0
+    std::size_t raised_count = 0;             // numbers of the file that raise_to_zero() set to 0
 };
 
 /// Filters and compression leave numbers below 0. An image is a sky if they are at most this share of its energy.
@@ -86,7 +86,7 @@ private:
     /// the same edge on both sides.
     struct RowEdges {
         double polar, equatorial;
-        bool across, below;  // it contains the equator; it is below it
+        bool crosses_equator, is_below;  // it contains the equator; it is below it
     };
     RowEdges edges_of(int row) const;
     void sample_some(std::span<const double> u, std::span<const double> v, std::span<SkyDraw> out) const;

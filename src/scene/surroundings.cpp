@@ -13,69 +13,71 @@ void put(const Rgb& radiance, float* rgb) {
 
 }  // namespace
 
-MeshesBefore meshes_before(const Surroundings& around, Vec3f x, Vec3f d, float light, std::uint32_t aimed) {
-    constexpr float before = 1 - 1e-5f, nothing = 1e30f;
+MeshesBefore meshes_before(
+    const Surroundings& surroundings, Vec3f x, Vec3f d, float light, std::uint32_t aimed_triangle) {
+    constexpr float margin = 1 - 1e-5f, nothing = 1e30f;
     MeshesBefore out;
-    if (!around.triangles) {
-        out.hidden = around.rays.occluded(x, d, light * before);
+    if (!surroundings.triangles) {
+        out.is_hidden = surroundings.rays.occluded(x, d, light * margin);
         return out;
     }
-    float end = light * before;
-    if (aimed == no_triangle && light == nothing && !around.sky &&
-        !around.triangles->may_meet(x, d, 2 * around.rays.error(x))) {
-        out.hidden = true;  // or it leaves the scene: there is no light either way
+    float end = light * margin;
+    if (aimed_triangle == no_triangle && light == nothing && !surroundings.sky &&
+        !surroundings.triangles->may_meet(x, d, 2 * surroundings.rays.error(x))) {
+        out.is_hidden = true;  // or it leaves the scene: there is no light either way
         return out;
     }
-    if (aimed != no_triangle) {
-        out.distance = static_cast<float>(around.triangles->distance(aimed, widen(x), widen(d)));
+    if (aimed_triangle != no_triangle) {
+        out.distance = static_cast<float>(surroundings.triangles->distance(aimed_triangle, widen(x), widen(d)));
         if (out.distance > 0 && out.distance < light) {
-            out.triangle = aimed;
-            end = std::min(end, out.distance * before);
+            out.triangle = aimed_triangle;
+            end = std::min(end, out.distance * margin);
         }
     }
-    const MeshHit hit = around.rays.closest(x, d, end);
+    const MeshHit hit = surroundings.rays.closest(x, d, end);
     if (!hit.found()) return out;
-    out.triangle = around.triangles->find(hit.instance, hit.triangle, widen(d));
+    out.triangle = surroundings.triangles->find(hit.instance, hit.triangle, widen(d));
     out.distance = hit.t;
-    out.hidden = out.triangle == no_triangle;
+    out.is_hidden = out.triangle == no_triangle;
     return out;
 }
 
-void sky_radiance(const Surroundings& around, std::uint32_t texel, Vec3f d, float* rgb) {
-    texel_radiance(around, texel == no_texel ? sky_texel(around, d) : texel, rgb);
+void sky_radiance(const Surroundings& surroundings, std::uint32_t texel, Vec3f d, float* rgb) {
+    texel_radiance(surroundings, texel == no_texel ? sky_texel(surroundings, d) : texel, rgb);
 }
 
-void texel_radiance(const Surroundings& around, std::uint32_t texel, float* rgb) {
-    if (around.sky && texel != no_texel) put(around.sky->radiance(texel), rgb);
+void texel_radiance(const Surroundings& surroundings, std::uint32_t texel, float* rgb) {
+    if (surroundings.sky && texel != no_texel) put(surroundings.sky->radiance(texel), rgb);
 }
 
-std::uint32_t sky_texel(const Surroundings& around, Vec3f d) {
-    return around.sky ? around.sky->texel_at(widen(d)) : no_texel;
+std::uint32_t sky_texel(const Surroundings& surroundings, Vec3f d) {
+    return surroundings.sky ? surroundings.sky->texel_at(widen(d)) : no_texel;
 }
 
-void triangle_radiance(const Surroundings& around, std::uint32_t triangle, float* rgb) {
-    put(around.triangles->triangles()[triangle].radiance, rgb);
+void triangle_radiance(const Surroundings& surroundings, std::uint32_t triangle, float* rgb) {
+    put(surroundings.triangles->triangles()[triangle].radiance, rgb);
 }
 
-bool has_sky(const Surroundings& around) { return around.sky.has_value(); }
-bool has_meshes(const Surroundings& around) { return !around.rays.empty(); }
+bool has_sky(const Surroundings& surroundings) { return surroundings.sky.has_value(); }
+bool has_meshes(const Surroundings& surroundings) { return !surroundings.rays.empty(); }
 
 void sample_sky(
-    const Surroundings& around, std::span<const double> u, std::span<const double> v, std::span<SkyDraw> out) {
-    if (around.sky) around.sky->sample(u, v, out);
+    const Surroundings& surroundings, std::span<const double> u, std::span<const double> v, std::span<SkyDraw> out) {
+    if (surroundings.sky) surroundings.sky->sample(u, v, out);
     else std::ranges::fill(out, SkyDraw{.w = {0, 1, 0}, .texel = no_texel, .pdf = 0});
 }
 
-double sky_pdf(const Surroundings& around, std::uint32_t texel, Vec3d d) {
-    return around.sky ? around.sky->pdf(texel == no_texel ? around.sky->texel_at(d) : texel) : 0;
+double sky_pdf(const Surroundings& surroundings, std::uint32_t texel, Vec3d d) {
+    return surroundings.sky ? surroundings.sky->pdf(texel == no_texel ? surroundings.sky->texel_at(d) : texel) : 0;
 }
 
-TriangleDraw sample_triangles(const Surroundings& around, Vec3d x, double u, double v, bool whole) {
-    return around.triangles ? around.triangles->sample(x, u, v, whole) : TriangleDraw{{0, 1, 0}, no_triangle, 0};
+TriangleDraw sample_triangles(const Surroundings& surroundings, Vec3d x, double u, double v, bool is_whole) {
+    return surroundings.triangles ? surroundings.triangles->sample(x, u, v, is_whole)
+                                  : TriangleDraw{{0, 1, 0}, no_triangle, 0};
 }
 
-double triangles_pdf(const Surroundings& around, Vec3d x, Vec3d d) {
-    return around.triangles ? around.triangles->pdf(x, d) : 0;
+double triangles_pdf(const Surroundings& surroundings, Vec3d x, Vec3d d) {
+    return surroundings.triangles ? surroundings.triangles->pdf(x, d) : 0;
 }
 
 }  // namespace crescent

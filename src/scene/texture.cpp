@@ -127,10 +127,10 @@ ImageSize read_image_size(std::string_view head, std::uint64_t size, const std::
     if (header.width < 1 || header.height < 1 || header.width > widest_texture || header.height > widest_texture)
         fail(fmt::format("byte 16: expected 1 x 1 to {0} x {0} texels, found {1} x {2}", widest_texture, header.width,
             header.height));
-    const std::uint64_t expected = sizeof header + std::uint64_t{12} * header.width * header.height;
-    if (size != expected)
-        fail(fmt::format("expected {} bytes for {} x {} texels, found {}{}", expected, header.width, header.height,
-            size, size < expected ? ": the file is truncated" : ""));
+    const std::uint64_t expected_size = sizeof header + std::uint64_t{12} * header.width * header.height;
+    if (size != expected_size)
+        fail(fmt::format("expected {} bytes for {} x {} texels, found {}{}", expected_size, header.width, header.height,
+            size, size < expected_size ? ": the file is truncated" : ""));
     return {header.width, header.height};
 }
 
@@ -155,8 +155,8 @@ std::string why_no_texture(const RgbImage& image, TextureOf property) {
     for (std::size_t k = 0; k < image.texels(); ++k) {
         const float t[] = {image[3 * k], image[3 * k + 1], image[3 * k + 2]};
         const bool roughness = property == TextureOf::alpha;
-        const auto good = [&](float x) { return x <= 1 && (roughness ? x > 0 : x >= 0); };
-        if (good(t[0]) && good(t[1]) && good(t[2]) && (!roughness || (t[0] == t[1] && t[1] == t[2]))) continue;
+        const auto is_good = [&](float x) { return x <= 1 && (roughness ? x > 0 : x >= 0); };
+        if (is_good(t[0]) && is_good(t[1]) && is_good(t[2]) && (!roughness || (t[0] == t[1] && t[1] == t[2]))) continue;
         const std::size_t width = static_cast<std::size_t>(image.width);
         return fmt::format("texel ({}, {}), counted from the top-left: expected {}, found ({}, {}, {})", k % width,
             k / width, roughness ? "a grey roughness above 0, up to 1" : "an albedo from 0 to 1", t[0], t[1], t[2]);

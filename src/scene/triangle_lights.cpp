@@ -15,8 +15,8 @@ namespace {
 
 /// Whether a ray meets the box of a leaf, compiled as the caller is (see bvh_tree.h). Leaves are visited if it is met.
 [[gnu::always_inline]] inline bool meets_leaf(const BvhTree& tree, Vec3f x, Vec3f w, float error) {
-    const auto found = [](std::size_t) __attribute__((always_inline)) { return true; };
-    return visit_leaves(tree.nodes, BoxRay(x, w, error), infinity, found, [](std::size_t) {});
+    const auto accept = [](std::size_t) __attribute__((always_inline)) { return true; };
+    return visit_leaves(tree.nodes, BoxRay(x, w, error), infinity, accept, [](std::size_t) {});
 }
 #ifdef CRESCENT_EIGHT_LANES
 CRESCENT_EIGHT_LANES bool meets_leaf_wide(const BvhTree& tree, Vec3f x, Vec3f w, float error) {
@@ -37,9 +37,9 @@ TriangleLights::TriangleLights(std::vector<EmittingTriangle> triangles) : triang
                 reach_ = std::max(reach_, static_cast<float>(std::fabs(c)));
         }
         boxes.push_back(box);
-        const Vec3d e1 = t.corner[1] - t.corner[0], e2 = t.corner[2] - t.corner[0], across = cross(e1, e2);
-        sides_.push_back({t.corner[0], e1, e2, across});
-        total += luminance(t.radiance) * 0.5 * std::sqrt(dot(across, across));
+        const Vec3d e1 = t.corner[1] - t.corner[0], e2 = t.corner[2] - t.corner[0], normal = cross(e1, e2);
+        sides_.push_back({t.corner[0], e1, e2, normal});
+        total += luminance(t.radiance) * 0.5 * std::sqrt(dot(normal, normal));
         powers_.push_back(total);
     }
     ensure(total > 0, "emitting triangles have power");
@@ -47,12 +47,12 @@ TriangleLights::TriangleLights(std::vector<EmittingTriangle> triangles) : triang
 }
 
 double TriangleLights::density(std::uint32_t k, double distance, Vec3d w) const {
-    const Vec3d& across = sides_[k].across;
-    const double cos = -dot(w, across) / std::sqrt(dot(across, across));
+    const Vec3d& normal = sides_[k].normal;
+    const double cos = -dot(w, normal) / std::sqrt(dot(normal, normal));
     return cos > 0 ? luminance(triangles_[k].radiance) / powers_.back() * distance * distance / cos : 0;
 }
 
-TriangleDraw TriangleLights::sample(Vec3d x, double u, double v, bool whole) const {
+TriangleDraw TriangleLights::sample(Vec3d x, double u, double v, bool is_whole) const {
     const double target = u * powers_.back();
     std::uint32_t k = 0;  // the first power above `target`, or the last: without branches, which chance decides
     for (auto remaining = static_cast<std::uint32_t>(powers_.size()) - 1; remaining > 0;) {
@@ -68,23 +68,23 @@ TriangleDraw TriangleLights::sample(Vec3d x, double u, double v, bool whole) con
     if (!(distance > 0)) return {{0, 0, 1}, no_triangle, 0};
     const Vec3d w = (1 / distance) * to;
     const double density_here = density(k, distance, w);
-    return {w, k, density_here > 0 ? density_here + (whole ? pdf(x, w, k) : 0) : 0};
+    return {w, k, density_here > 0 ? density_here + (is_whole ? pdf(x, w, k) : 0) : 0};
 }
 
 template <class Work> void TriangleLights::each_met(Vec3d x, Vec3d w, Work&& work) const {
     const Vec3f o = as<float>(x);
-    const float far = std::max({reach_, std::fabs(o.x), std::fabs(o.y), std::fabs(o.z)});
-    const BoxRay ray(o, as<float>(w), 1e-5f * far);
+    const float reach = std::max({reach_, std::fabs(o.x), std::fabs(o.y), std::fabs(o.z)});
+    const BoxRay ray(o, as<float>(w), 1e-5f * reach);
     const auto test = [&](std::size_t leaf) {
         for (const std::uint32_t k : tree_->leaves[leaf]) {
             if (k == no_item) break;
             // x + t w = corner + a e1 + b e2 by Cramer's rule, times the determinant (Moeller & Trumbore 1997).
             const Side& side = sides_[k];
-            const double det = -dot(side.across, w);
+            const double det = -dot(side.normal, w);
             if (!(det > 0)) continue;  // its back
             const Vec3d from = x - side.corner;
             const double a = -dot(from, cross(side.e2, w)), b = dot(from, cross(side.e1, w)),
-                         t = dot(from, side.across);
+                         t = dot(from, side.normal);
             if (a >= 0 && b >= 0 && a + b <= det && t > 0) work(k, t / det);
         }
         return false;
@@ -109,10 +109,10 @@ double TriangleLights::pdf(Vec3d x, Vec3d w, std::uint32_t but) const {
 
 std::uint32_t TriangleLights::nearest(Vec3d x, Vec3d w) const {
     std::uint32_t out = no_triangle;
-    double least = std::numeric_limits<double>::infinity();
+    double shortest = std::numeric_limits<double>::infinity();
     each_met(x, w, [&](std::uint32_t k, double distance) {
-        if (distance < least || (distance == least && k < out)) {
-            least = distance;
+        if (distance < shortest || (distance == shortest && k < out)) {
+            shortest = distance;
             out = k;
         }
     });
@@ -120,15 +120,15 @@ std::uint32_t TriangleLights::nearest(Vec3d x, Vec3d w) const {
 }
 
 double TriangleLights::distance(std::uint32_t k, Vec3d x, Vec3d w) const {
-    return dot(sides_[k].across, sides_[k].corner - x) / dot(sides_[k].across, w);
+    return dot(sides_[k].normal, sides_[k].corner - x) / dot(sides_[k].normal, w);
 }
 
 std::uint32_t TriangleLights::find(std::uint32_t instance, std::uint32_t triangle, Vec3d d) const {
     const auto key = [](const EmittingTriangle& t) { return std::tuple(t.instance, t.triangle); };
-    auto found = std::ranges::lower_bound(triangles_, std::tuple(instance, triangle), {}, key);
-    for (; found != triangles_.end() && key(*found) == std::tuple(instance, triangle); ++found) {
-        const auto k = static_cast<std::uint32_t>(found - triangles_.begin());
-        if (dot(sides_[k].across, d) < 0) return k;
+    auto match = std::ranges::lower_bound(triangles_, std::tuple(instance, triangle), {}, key);
+    for (; match != triangles_.end() && key(*match) == std::tuple(instance, triangle); ++match) {
+        const auto k = static_cast<std::uint32_t>(match - triangles_.begin());
+        if (dot(sides_[k].normal, d) < 0) return k;
     }
     return no_triangle;
 }

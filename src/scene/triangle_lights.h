@@ -42,9 +42,9 @@ public:
     explicit TriangleLights(std::vector<EmittingTriangle> triangles);
 
     const std::vector<EmittingTriangle>& triangles() const { return triangles_; }
-    /// Draws a direction from x; u and v in [0, 1). `whole`: with the density of all triangles that it meets, else with
-    /// that of the drawn one.
-    TriangleDraw sample(Vec3d x, double u, double v, bool whole = true) const;
+    /// Draws a direction from x; u and v in [0, 1). `is_whole`: with the density of all triangles that it meets, else
+    /// with that of the drawn one.
+    TriangleDraw sample(Vec3d x, double u, double v, bool is_whole = true) const;
     /// The density with which w, of unit length, is drawn from x, except by triangle `but`; 1/sr.
     double pdf(Vec3d x, Vec3d w, std::uint32_t but = no_triangle) const;
     /// Whether w may meet a triangle that is off by at most `error`, m. False only if it meets none.
@@ -59,7 +59,7 @@ public:
 private:
     /// As it is met and drawn.
     struct Side {
-        Vec3d corner, e1, e2, across;  // across = e1 x e2, towards the front, twice the area long
+        Vec3d corner, e1, e2, normal;  // normal = e1 x e2, towards the front, twice the area long
     };
     /// Calls work(index, distance) for every front that w meets, in an order that depends on nothing else.
     template <class Work> void each_met(Vec3d x, Vec3d w, Work&& work) const;

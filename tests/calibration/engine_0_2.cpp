@@ -33,7 +33,7 @@ public:
         Result out;
         for (const check::CheckOutcome& o : check::check_samplers(check_cases, settings, monitor)) {
             for (const check::SmallFault& f : o.small) take(f, out);
-            for (const auto& techniques : o.at)
+            for (const auto& techniques : o.checks)
                 for (const check::CheckAt& c : techniques) collect(c, out);
             if (!o.wrong()) continue;
             if (const auto cause = check::cause_of(check_cases, o)) out.causes.push_back(cause->text);
@@ -46,7 +46,7 @@ private:
     static void take(const check::SmallFault& f, Result& out) {
         add_once(out.wrong, check::info(f.family).verdict);
         out.message +=
-            fmt::format("[{} {} of {} {:.3g}: {}]", check::info(f.family).name, f.times, f.of, f.size, f.what);
+            fmt::format("[{} {} of {} {:.3g}: {}]", check::info(f.family).name, f.times, f.trials, f.size, f.what);
     }
     static void collect(const check::CheckAt& c, Result& out) {
         for (const check::SmallFault& f : c.small) take(f, out);

@@ -122,9 +122,9 @@ LostSupport lost_in(const Data& data, const Box& box) {
     std::nth_element(cosines.begin(), cosines.begin() + std::ptrdiff_t(cosines.size() / 2), cosines.end());
     const double c = cosines[cosines.size() / 2];
     const Vec3d R = {-std::sqrt(std::max(0.0, 1 - c * c)), 0, c};
-    std::uint64_t lost = 0;
-    for (const Vec3d& w : cosine_directions(data.cast.seed, lost_draws)) lost += dot(w, R) <= 0;
-    const double p = static_cast<double>(lost) / lost_draws;
+    std::uint64_t lost_count = 0;
+    for (const Vec3d& w : cosine_directions(data.cast.seed, lost_draws)) lost_count += dot(w, R) <= 0;
+    const double p = static_cast<double>(lost_count) / lost_draws;
     return {.theta_R_deg = math::acos(c) * 180 / pi,
         .measured = p,
         .se = std::sqrt(p * (1 - p) / lost_draws),
@@ -136,13 +136,14 @@ LostSupport lost_in(const Data& data, const Box& box) {
 std::pair<int, int> worst_pixel(
     const Film& film, const ReferenceFilm& reference, const ShapeMap& shapes, const Box& box) {
     std::pair<int, int> worst{box.x0, box.y0};
-    double most = -1;
+    double largest_error = -1;
     for (int j = box.y0; j <= box.y1; ++j) {
         for (int i = box.x0; i <= box.x1; ++i) {
-            const std::size_t at = std::size_t(j) * std::size_t(film.width) + std::size_t(i);
-            const double error = std::fabs(static_cast<double>(film.y[at]) - static_cast<double>(reference.y[at]));
-            if (shapes.shape[at] >= 0 && error > most) {
-                most = error;
+            const std::size_t index = std::size_t(j) * std::size_t(film.width) + std::size_t(i);
+            const double error =
+                std::fabs(static_cast<double>(film.y[index]) - static_cast<double>(reference.y[index]));
+            if (shapes.shape[index] >= 0 && error > largest_error) {
+                largest_error = error;
                 worst = {i, j};
             }
         }
@@ -155,18 +156,18 @@ double WeightTail::edge(std::size_t bin) const {
 }
 
 double WeightTail::expected(std::size_t bin) const {
-    const auto above = [&](double x) {  // P(u^-k > x / least), u uniform in (0, 1)
-        if (k > 0) return x <= least ? 1 : math::pow(x / least, -1 / k);
-        return x >= least ? 0 : k < 0 ? 1 - math::pow(x / least, -1 / k) : 1;
+    const auto survival_of = [&](double x) {  // P(u^-k > x / smallest), u uniform in (0, 1)
+        if (k > 0) return x <= smallest ? 1 : math::pow(x / smallest, -1 / k);
+        return x >= smallest ? 0 : k < 0 ? 1 - math::pow(x / smallest, -1 / k) : 1;
     };
-    return static_cast<double>(n) * (above(edge(bin)) - above(edge(bin + 1)));
+    return static_cast<double>(n) * (survival_of(edge(bin)) - survival_of(edge(bin + 1)));
 }
 
 WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed) {
     WeightTail out;
     out.s = s;
     out.k = (s - 1) / (s + 1);
-    out.least = 2 / (s + 1);
+    out.smallest = 2 / (s + 1);
     out.n = n;
     ShadingPoint<float> shading_point{};
     shading_point.wo = {0, 0, 1};
@@ -174,17 +175,17 @@ WeightTail weight_tail(double s, std::uint64_t n, std::uint32_t seed) {
     const Phong<float> arm(shading_point);
     std::vector<double> weights;
     for (std::uint64_t k = 0; k < n; ++k) {
-        const Drawn<float> drawn = arm.sample(shading_point.wo, draw(seed, 0, k));
-        const double p = static_cast<double>(drawn.pdf.v);
-        weights.push_back(drawn.wi.z > 0 && p > 0 ? static_cast<double>(drawn.wi.z) / (pi * p) : 0);
+        const Drawn<float> sample = arm.sample(shading_point.wo, draw(seed, 0, k));
+        const double p = static_cast<double>(sample.pdf.v);
+        weights.push_back(sample.wi.z > 0 && p > 0 ? static_cast<double>(sample.wi.z) / (pi * p) : 0);
     }
-    double smallest = out.least;
-    for (const double w : weights) smallest = w > 0 ? std::min(smallest, w) : smallest;
-    out.first_log10 = std::floor(math::log10(smallest) * out.decade_parts) / out.decade_parts;
+    double lowest = out.smallest;
+    for (const double w : weights) lowest = w > 0 ? std::min(lowest, w) : lowest;
+    out.first_log10 = std::floor(math::log10(lowest) * out.decade_parts) / out.decade_parts;
     for (const double w : weights) {
         if (!(w > 0)) continue;
-        const double at = (math::log10(w) - out.first_log10) * out.decade_parts;
-        const std::size_t bin = static_cast<std::size_t>(std::max(at, 0.0));
+        const double position = (math::log10(w) - out.first_log10) * out.decade_parts;
+        const std::size_t bin = static_cast<std::size_t>(std::max(position, 0.0));
         if (bin >= out.bins.size()) out.bins.resize(bin + 1);
         ++out.bins[bin];
     }

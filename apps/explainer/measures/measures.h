@@ -37,10 +37,10 @@ struct PixelStory {
 };
 
 /// Weights (n.w)/(pi p) of the lobe's sampler on a Lambert surface seen from directly above, R = n, under constant
-/// light: their mean is 1, their distribution X = least u^-k for u in (0, 1): Pareto's if k > 0.
+/// light: their mean is 1, their distribution X = smallest u^-k for u in (0, 1): Pareto's if k > 0.
 struct WeightTail {
-    double s = 0, k = 0, least = 0;  // k = (s-1)/(s+1), least = 2/(s+1)
-    std::optional<Tail> fit;         // k-hat of the draws
+    double s = 0, k = 0, smallest = 0;  // k = (s-1)/(s+1), smallest = 2/(s+1)
+    std::optional<Tail> fit;            // k-hat of the draws
     std::uint64_t n = 0;
     double median = 0, largest = 0;
     double decade_parts = 4;  // bins per decade

@@ -73,7 +73,7 @@ TEST(WeightTail, FollowsItsParetoDistribution) {
         EXPECT_EQ(std::accumulate(tail.bins.begin(), tail.bins.end(), std::uint64_t{0}), tail.n);
         if (s > 1) ASSERT_TRUE(tail.fit);
         if (s > 1) EXPECT_NEAR(tail.fit->k, tail.k, 4 * tail.fit->se);
-        EXPECT_NEAR(tail.median, tail.least * std::exp2(tail.k), 0.01 * tail.median);
+        EXPECT_NEAR(tail.median, tail.smallest * std::exp2(tail.k), 0.01 * tail.median);
         for (std::size_t k = 0; k < tail.bins.size(); ++k)
             EXPECT_NEAR(double(tail.bins[k]), tail.expected(k), 5 * std::sqrt(tail.expected(k) + 1)) << "s = " << s;
     }

@@ -27,19 +27,19 @@ Shot beyond(const Data& data) {
     const Order s = order_of(data, data.key(c.cosine), data.key(c.phong), c.surround);
     const double mix_h = data.region(data.key(c.mixture), c.highlight)->rmse,
                  mix_s = data.region(data.key(c.mixture), c.surround)->rmse;
-    const bool both = mix_h < h.high_value && mix_s < s.high_value;
+    const bool improves_both = mix_h < h.high_value && mix_s < s.high_value;
 
     Shot shot;
     shot.name = "beyond";
     shot.title = Words("Both at once");
     shot.kind = Kind::photograph;
-    shot.seen = Words(
+    shot.description = Words(
         "Four columns of one view: cosine, Phong, their mixture, and multiple importance sampling with the light; "
         "under each its error in both regions.");
     shot.cues = {{0.5, Words("Two ways of aiming, each with its own failure. Can one estimator have both?"), true},
         {10,
-            both ? Words("Toss a coin between both lobes and divide by the mixture: neither is undersampled.")
-                 : Words("Toss a coin between both lobes and divide by the mixture of both densities.")},
+            improves_both ? Words("Toss a coin between both lobes and divide by the mixture: neither is undersampled.")
+                          : Words("Toss a coin between both lobes and divide by the mixture of both densities.")},
         {15.8, Words("Aim at the light too, and weigh both kinds of ray: multiple importance sampling.")},
         {21.4,
             Words("It costs two rays a sample. At half the N, as many rays: ", data.rmse(half, c.highlight), " and ",

@@ -15,14 +15,14 @@ std::vector<Words> claims_of(const Data& data) {
         out.push_back(Words("how far it spreads over ",
             count(std::uint64_t(data.experiment.seeds), "seeds of the experiment"), " seeds"));
     out.push_back(Words("errors against a deterministic reference"));
-    std::uint64_t of = 0, held = 0;
+    std::uint64_t total = 0, passes = 0;
     for (const AssertionResult& a : data.metrics.assertions) {
         if (a.text.find("plate_bytes") != std::string::npos) continue;
-        ++of;
-        held += a.pass;
+        ++total;
+        passes += a.pass;
     }
-    if (of > 0)
-        out.push_back(Words(count(held, "assertions that hold"), " of ", count(of, "assertions on numbers"),
+    if (total > 0)
+        out.push_back(Words(count(passes, "assertions that hold"), " of ", count(total, "assertions on numbers"),
             " assertions on its numbers hold"));
     out.push_back(Words("the same bits from any number of threads"));
     return out;
@@ -43,7 +43,7 @@ Shot claims(const Data& data) {
     Shot shot;
     shot.name = "claims";
     shot.title = Words("What this can claim, and what it cannot");
-    shot.seen = Words("Two lists, what the run can claim and what it cannot.");
+    shot.description = Words("Two lists, what the run can claim and what it cannot.");
     shot.cues = {{0.5, Words("The integral never changed. Where the rays went decided where the noise went.")},
         {6.5, Words("Cosine rarely finds the small light. Phong rarely leaves its lobe.")}};
     shot.seconds = 13.5;

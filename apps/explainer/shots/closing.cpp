@@ -20,7 +20,7 @@ Shot closing(const Data& data) {
     Shot shot;
     shot.name = "closing";
     shot.title = Words("Make it again");
-    shot.seen = Words(
+    shot.description = Words(
         "The command that makes the film again, with the experiment, its hash, the commit, the seed and the hash of a "
         "film.");
     shot.cues = {{0.5, Words("Every picture, curve and number came out of this one command.")}};

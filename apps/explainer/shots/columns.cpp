@@ -34,9 +34,10 @@ std::vector<Column> columns_of(const Data& data, const Box& crop) {
 /// "the other way round" only if it is.
 Words second_answer(const Data& data, const Order& h, const Order& s) {
     const Cast& c = data.cast;
-    const bool turned = h.low.arm != s.low.arm;
-    return Words(turned ? "In the surround it is the other way round: " : "In the surround too: ", data.arm(s.low.arm),
-        " ", data.rmse(s.low, c.surround), ", ", data.arm(s.high.arm), " ", data.rmse(s.high, c.surround), ".");
+    const bool is_reversed = h.low.arm != s.low.arm;
+    return Words(
+        is_reversed ? "In the surround it is the other way round: " : "In the surround too: ", data.arm(s.low.arm), " ",
+        data.rmse(s.low, c.surround), ", ", data.arm(s.high.arm), " ", data.rmse(s.high, c.surround), ".");
 }
 
 std::vector<Cue> cues_of(const Data& data) {
@@ -59,8 +60,8 @@ std::vector<Cue> cues_of(const Data& data) {
 
 Shot columns(const Data& data) {
     const Cast& c = data.cast;
-    const Closeup all = whole_or_part(data, whole_slot), crop = whole_or_part(data, {0, 0, 580, 500});
-    const Block whole = photograph_of(data, plates::view(&data.reference()), all.box);
+    const Closeup overview = whole_or_part(data, whole_slot), crop = whole_or_part(data, {0, 0, 580, 500});
+    const Block picture = photograph_of(data, plates::view(&data.reference()), overview.box);
     const std::vector<Column> cols = columns_of(data, crop.box);
     const Box box_h = data.box(c.highlight), box_s = data.box(c.surround);
 
@@ -68,38 +69,42 @@ Shot columns(const Data& data) {
     shot.name = "columns";
     shot.title = Words("Same light, same N");
     shot.kind = Kind::photograph;
-    shot.seen = Words(
+    shot.description = Words(
         "The converged picture with two regions outlined, the highlight and the surround. Then three columns of the "
         "same view, aimed three ways; under each its error in both regions.");
     shot.cues = cues_of(data);
     shot.seconds = 35;
     shot.still = 34;
     shot.draw = [=](Frame& f) {
-        const double before = 1 - f.ease(17.2, 17.7), now = f.ease(17.8, 18.5);
-        if (before > 0) {
-            const Rect r = show(f, whole, all.times, whole_slot, before * f.ease(0.2, 0.9));
-            mark(f, explainer::on_picture(r, all.box, box_h), highlight_ink, before * f.ease(10.6, 11.1));
-            mark(f, explainer::on_picture(r, all.box, box_s), surround_ink, before * f.ease(12, 12.5));
-            const Rect h_at = explainer::on_picture(r, all.box, box_h), s_at = explainer::on_picture(r, all.box, box_s);
-            tag(f, {h_at.right() + 14, h_at.bottom()}, Words("here"), highlight_ink, before * f.ease(10.6, 11.1));
-            tag(f, {s_at.right() + 14, s_at.bottom()}, Words("there"), surround_ink, before * f.ease(12, 12.5));
+        const double overview_opacity = 1 - f.ease(17.2, 17.7), columns_opacity = f.ease(17.8, 18.5);
+        if (overview_opacity > 0) {
+            const Rect r = show(f, picture, overview.times, whole_slot, overview_opacity * f.ease(0.2, 0.9));
+            mark(
+                f, explainer::on_picture(r, overview.box, box_h), highlight_ink, overview_opacity * f.ease(10.6, 11.1));
+            mark(f, explainer::on_picture(r, overview.box, box_s), surround_ink, overview_opacity * f.ease(12, 12.5));
+            const Rect h_rect = explainer::on_picture(r, overview.box, box_h),
+                       s_rect = explainer::on_picture(r, overview.box, box_s);
+            tag(f, {h_rect.right() + 14, h_rect.bottom()}, Words("here"), highlight_ink,
+                overview_opacity * f.ease(10.6, 11.1));
+            tag(f, {s_rect.right() + 14, s_rect.bottom()}, Words("there"), surround_ink,
+                overview_opacity * f.ease(12, 12.5));
         }
-        const double w = 580, between = 30, total = w * double(cols.size()) + between * double(cols.size() - 1),
+        const double w = 580, gap = 30, total = w * double(cols.size()) + gap * double(cols.size() - 1),
                      x0 = (sheet_width - total) / 2;
-        for (std::size_t k = 0; k < cols.size() && now > 0; ++k) {
+        for (std::size_t k = 0; k < cols.size() && columns_opacity > 0; ++k) {
             const Column& col = cols[k];
-            const Rect at = column_of(x0, w, between, k);
+            const Rect column = column_of(x0, w, gap, k);
             const double in = f.ease(17.8 + 0.5 * double(k), 18.5 + 0.5 * double(k));
-            f.text({at.x, 112, w, 50}, col.name, with(with(title_text, col.ink), Align::centre), in);
-            const Rect r = show(f, col.block, crop.times, {at.x, 170, w, 500}, in);
+            f.text({column.x, 112, w, 50}, col.name, with(with(title_text, col.ink), Align::centre), in);
+            const Rect r = show(f, col.block, crop.times, {column.x, 170, w, 500}, in);
             const double lit_h = f.ease(23.5, 24), lit_s = f.ease(29, 29.5);
             mark(f, explainer::on_picture(r, crop.box, box_h), highlight_ink, lit_h);
-            f.text({at.x, 684, w, 46}, col.density, with(with(with_px(body_text, 34), Align::centre), Vertical::middle),
-                in * (1 - lit_h));
-            f.text({at.x, 684, w, 72}, Words(col.highlight), with(number_text, highlight_ink), lit_h);
-            f.text({at.x, 756, w, 40}, Words("RMSE, highlight"), with(small_text, Align::centre), lit_h);
-            f.text({at.x, 796, w, 62}, Words(col.surround), with(with_px(number_text, 46), surround_ink), lit_s);
-            f.text({at.x, 856, w, 40}, Words("RMSE, surround"), with(small_text, Align::centre), lit_s);
+            f.text({column.x, 684, w, 46}, col.density,
+                with(with(with_px(body_text, 34), Align::centre), Vertical::middle), in * (1 - lit_h));
+            f.text({column.x, 684, w, 72}, Words(col.highlight), with(number_text, highlight_ink), lit_h);
+            f.text({column.x, 756, w, 40}, Words("RMSE, highlight"), with(small_text, Align::centre), lit_h);
+            f.text({column.x, 796, w, 62}, Words(col.surround), with(with_px(number_text, 46), surround_ink), lit_s);
+            f.text({column.x, 856, w, 40}, Words("RMSE, surround"), with(small_text, Align::centre), lit_s);
         }
     };
     return shot;

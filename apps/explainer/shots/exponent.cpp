@@ -37,11 +37,11 @@ struct Column {
     double error = 0;  // in the highlight
 };
 
-constexpr double width = 576, between = 36;
+constexpr double width = 576, gap = 36;
 
 /// Returns the left edge of column k of `count`.
 double left_of(std::size_t k, std::size_t count) {
-    return (sheet_width - width * double(count) - between * double(count - 1)) / 2 + (width + between) * double(k);
+    return (sheet_width - width * double(count) - gap * double(count - 1)) / 2 + (width + gap) * double(k);
 }
 
 /// The first, the middle and the last exponent.
@@ -77,7 +77,7 @@ Shot exponent(const Data& data) {
     shot.name = "exponent";
     shot.title = Words("A sharper lobe");
     shot.kind = Kind::photograph;
-    shot.seen = Words(
+    shot.description = Words(
         "Three columns, one for each exponent: the lobe as a curve, narrower and narrower, and under it the highlight "
         "as it comes out.");
     shot.cues = {{0.5, Words("The exponent s sharpens the gloss, and with it the lobe that aims.")},
@@ -97,8 +97,8 @@ Shot exponent(const Data& data) {
             f.polyline(col.lobe, ink, 4, in);
             f.text({col.foot.x + 124, col.foot.y - 130, 200, 50}, col.name, with_px(title_text, 44), in);
             show(f, col.block, crop.times, {x, 342, width, 396}, f.ease(6 + 0.5 * double(k), 6.7 + 0.5 * double(k)));
-            const double shown = f.ease(11.5, 12.1);
-            f.text({x, 748, width, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), shown);
+            const double opacity = f.ease(11.5, 12.1);
+            f.text({x, 748, width, 48}, col.highlight, with(with(label_text, highlight_ink), Align::centre), opacity);
             f.text({x, 796, width, 48}, col.surround, with(with(label_text, surround_ink), Align::centre),
                 f.ease(14, 14.6));
         }

@@ -25,31 +25,32 @@ struct Bar {
 std::vector<Bar> bars_of(const Data& data) {
     const Cast& c = data.cast;
     const double reference = mean_of(data.reference().y);
-    std::vector<std::pair<Bar, double>> all;
-    all.push_back({{Words("reference"), Words(figure(reference, 3, "mean Y of the reference")), 0, bright}, reference});
+    std::vector<std::pair<Bar, double>> bars;
+    bars.push_back(
+        {{Words("reference"), Words(figure(reference, 3, "mean Y of the reference")), 0, bright}, reference});
     for (const std::string& arm : {c.cosine, c.phong}) {
         const RunKey key = data.key(arm);
         const double mean = data.metric(key)->y_mean;
-        all.push_back(
+        bars.push_back(
             {{Words(data.arm(arm)), Words(figure(mean, 3, "y_mean of " + to_string(key))), 0, data.ink(arm)}, mean});
     }
-    double most = 0;
-    for (const auto& [bar, value] : all) most = std::max(most, value);
+    double largest = 0;
+    for (const auto& [bar, value] : bars) largest = std::max(largest, value);
     std::vector<Bar> out;
-    for (auto& [bar, value] : all) {
-        bar.part = most > 0 ? value / most : 0;
+    for (auto& [bar, value] : bars) {
+        bar.part = largest > 0 ? value / largest : 0;
         out.push_back(bar);
     }
     return out;
 }
 
-void draw_bars(Frame& f, const std::vector<Bar>& bars, double up) {
+void draw_bars(Frame& f, const std::vector<Bar>& bars, double opacity) {
     for (std::size_t k = 0; k < bars.size(); ++k) {
-        const double y = 730 + 54.0 * double(k), grown = f.ease(21.6 + 0.6 * double(k), 22.6 + 0.6 * double(k));
-        f.text({90, y, 300, 44}, bars[k].name, with(label_text, bars[k].ink), up);
-        f.fill({400, y + 6, 1150 * bars[k].part * grown, 32}, bars[k].ink, up);
-        f.text(
-            {1600, y, 200, 44}, bars[k].value, label_text, up * f.ease(22.4 + 0.6 * double(k), 22.8 + 0.6 * double(k)));
+        const double y = 730 + 54.0 * double(k), growth = f.ease(21.6 + 0.6 * double(k), 22.6 + 0.6 * double(k));
+        f.text({90, y, 300, 44}, bars[k].name, with(label_text, bars[k].ink), opacity);
+        f.fill({400, y + 6, 1150 * bars[k].part * growth, 32}, bars[k].ink, opacity);
+        f.text({1600, y, 200, 44}, bars[k].value, label_text,
+            opacity * f.ease(22.4 + 0.6 * double(k), 22.8 + 0.6 * double(k)));
     }
 }
 
@@ -83,9 +84,9 @@ std::vector<Cue> cues_of(const Data& data) {
 
 Shot failure_b(const Data& data) {
     const Cast& c = data.cast;
-    const Closeup all = whole_or_part(data, whole_slot),
+    const Closeup overview = whole_or_part(data, whole_slot),
                   crop = close_up(data, data.box(c.surround), {0, 0, 840, 552}, 0.98);
-    const Block whole = photograph_of(data, plates::view(data.film(data.key(c.phong))), all.box);
+    const Block picture = photograph_of(data, plates::view(data.film(data.key(c.phong))), overview.box);
     const std::vector<std::string> arms = {c.cosine, c.phong};
     std::vector<Block> blocks;
     std::vector<Words> names, errors;
@@ -104,7 +105,7 @@ Shot failure_b(const Data& data) {
     shot.name = "failure-b";
     shot.kind = Kind::photograph;
     shot.title = starved ? Words("Failure B: Phong starves the surround") : Words("The surround, both ways");
-    shot.seen = Words(
+    shot.description = Words(
         "The whole picture by the Phong arm. Then the surround enlarged, cosine next to Phong; then the mean of the "
         "frame as bars: "
         "reference, cosine, Phong.");
@@ -112,17 +113,17 @@ Shot failure_b(const Data& data) {
     shot.seconds = 27.5;
     shot.still = 26.5;
     shot.draw = [=](Frame& f) {
-        const double before = f.ease(0.2, 0.9) * (1 - f.ease(9.8, 10.3)), now = f.ease(10.4, 11.1);
-        if (before > 0) show(f, whole, all.times, whole_slot, before);
-        const double up = f.ease(20.9, 21.5);
-        for (std::size_t k = 0; k < blocks.size() && now > 0; ++k) {
+        const double overview_opacity = f.ease(0.2, 0.9) * (1 - f.ease(9.8, 10.3)), pair_opacity = f.ease(10.4, 11.1);
+        if (overview_opacity > 0) show(f, picture, overview.times, whole_slot, overview_opacity);
+        const double bars_opacity = f.ease(20.9, 21.5);
+        for (std::size_t k = 0; k < blocks.size() && pair_opacity > 0; ++k) {
             const double x = 90 + 900.0 * double(k);
-            f.text({x, 112, 840, 46}, names[k], with(with(title_text, inks[k]), Align::centre), now);
-            show(f, blocks[k], crop.times, {x, 162, 840, 552}, now);
+            f.text({x, 112, 840, 46}, names[k], with(with(title_text, inks[k]), Align::centre), pair_opacity);
+            show(f, blocks[k], crop.times, {x, 162, 840, 552}, pair_opacity);
             f.text({x, 720, 840, 44}, errors[k], with(with(body_text, Vertical::middle), Align::centre),
-                f.ease(16, 16.6) * (1 - up));
+                f.ease(16, 16.6) * (1 - bars_opacity));
         }
-        if (up > 0) draw_bars(f, bars, up);
+        if (bars_opacity > 0) draw_bars(f, bars, bars_opacity);
     };
     return shot;
 }

@@ -58,7 +58,7 @@ Shot heat(const Data& data) {
     shot.name = "heat";
     shot.title = Words("Where the error sits");
     shot.kind = Kind::backend;
-    shot.seen = Words(
+    shot.description = Words(
         "Two maps of the same crop around the highlight: how far each pixel of luminance is from the reference, blue "
         "for little, red for much, "
         "on one scale; first for the cosine arm, then for the Phong arm.");

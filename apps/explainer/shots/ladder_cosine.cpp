@@ -10,19 +10,19 @@ Shot ladder_cosine(const Data& data) {
     const Ladder& l = ladder_of(data, c.cosine);
     const RunKey low = data.key(c.cosine, l.n.front()), high = data.key(c.cosine, l.n.back());
     const std::string source = "ladder of " + c.cosine;
-    const double more = double(high.n) / double(low.n), less = l.rmse.front() / l.rmse.back();
+    const double ray_ratio = double(high.n) / double(low.n), error_ratio = l.rmse.front() / l.rmse.back();
     LadderShotText text;
     text.arm = c.cosine;
     text.opening = Words("Failure A. Aim by the cosine, and watch the highlight as rays are added.");
-    text.after = {
-        Words(number(more, 4, source), " times the rays, and the error falls ", figure(less, 3, source), " times."),
+    text.closing = {Words(number(ray_ratio, 4, source), " times the rays, and the error falls ",
+                        figure(error_ratio, 3, source), " times."),
         l.slope < -0.35 && l.slope > -0.65
             ? Words("It falls like one over the root of N. To halve it you need four times the rays.")
             : Words("Its slope here is ", figure(l.slope, 3, source), "; independent samples give minus a half.")};
     Shot shot = ladder_shot(data, text);
     shot.name = "ladder-cosine";
     shot.title = Words("Failure A: cosine, and the highlight sparkles");
-    shot.seen = Words(
+    shot.description = Words(
         "The highlight enlarged at four values of N, and the error against N on two logarithmic axes, point "
         "by point.");
     return shot;

@@ -12,16 +12,17 @@ Shot ladder_phong(const Data& data) {
     const std::string source = "rmse of both arms";
     LadderShotText text;
     text.arm = c.phong;
-    text.before = c.cosine;
+    text.dimmed_arm = c.cosine;
     text.opening = Words("The same N, the same random numbers, now aimed along the mirror direction.");
-    text.after = {Words("At N\u00a0=\u00a0", data.n_of(at_n.low), " the error of ", data.arm(at_n.low.arm), " is ",
+    text.closing = {Words("At N\u00a0=\u00a0", data.n_of(at_n.low), " the error of ", data.arm(at_n.low.arm), " is ",
         figure(at_n.high_value / at_n.low_value, 2, source), " times smaller than that of ", data.arm(at_n.high.arm),
         ".")};
-    if (l.heavy) text.after.push_back(Words("But rare huge samples remain: the line bends where one of them falls."));
+    if (l.heavy) text.closing.push_back(Words("But rare huge samples remain: the line bends where one of them falls."));
     Shot shot = ladder_shot(data, text);
     shot.name = "ladder-phong";
     shot.title = Words("The same N, aimed along the mirror direction");
-    shot.seen = Words("The same crops and the same chart for the Phong arm; the line of the cosine arm stays, dim.");
+    shot.description =
+        Words("The same crops and the same chart for the Phong arm; the line of the cosine arm stays, dim.");
     return shot;
 }
 

@@ -53,11 +53,11 @@ public:
           dome_({530, 560}, 350, 48, pixel_.mirror()) {
         const RunKey key = data.key(data.cast.cosine);
         const plates::View view = plates::view(data.film(key));
-        const Box at{pixel_.i(), pixel_.j(), pixel_.i(), pixel_.j()};
-        whole_ = around(data, data.box(data.cast.highlight), int(photo_slot.w), int(photo_slot.h));
-        near_ = around(data, at, crop_side, crop_side);
-        photo_ = photograph_of(data, view, whole_);
-        crop_ = photograph_of(data, view, near_);
+        const Box pixel_box{pixel_.i(), pixel_.j(), pixel_.i(), pixel_.j()};
+        photo_box_ = around(data, data.box(data.cast.highlight), int(photo_slot.w), int(photo_slot.h));
+        crop_box_ = around(data, pixel_box, crop_side, crop_side);
+        photo_ = photograph_of(data, view, photo_box_);
+        crop_ = photograph_of(data, view, crop_box_);
         const auto f = [&](Vec3d w) { return pixel_.f(w, pixel_.disk_met(w)); };
         fields_[0] = field_of(dome_, f);
         fields_[1] = field_of(dome_, [&](Vec3d w) { return pixel_.light(w); });
@@ -78,30 +78,32 @@ public:
 private:
     /// Returns the pixel's square in the enlarged crop.
     Rect square() const {
-        const double x = crop_corner.x + (pixel_.i() - near_.x0) * crop_times;
-        return {x, crop_corner.y + (near_.y1 - pixel_.j()) * crop_times, crop_times, crop_times};
+        const double x = crop_corner.x + (pixel_.i() - crop_box_.x0) * crop_times;
+        return {x, crop_corner.y + (crop_box_.y1 - pixel_.j()) * crop_times, crop_times, crop_times};
     }
-    Point in_photo(int i, int j) const { return {photo_slot.x + (i - whole_.x0), photo_slot.y + (whole_.y1 - j)}; }
+    Point in_photo(int i, int j) const {
+        return {photo_slot.x + (i - photo_box_.x0), photo_slot.y + (photo_box_.y1 - j)};
+    }
 
     void photograph(Frame& f) const {
-        const double shown = f.ease(0, 0.6) * (1 - f.ease(opening, opening + 0.8));
-        if (shown <= 0) return;
-        f.picture(photo_, photo_slot.x, photo_slot.y, 1, shown);
+        const double opacity = f.ease(0, 0.6) * (1 - f.ease(opening, opening + 0.8));
+        if (opacity <= 0) return;
+        f.picture(photo_, photo_slot.x, photo_slot.y, 1, opacity);
         f.text({photo_slot.x, photo_slot.bottom() + 10, 960, 40},
             Words("photograph: ", data_.arm(data_.cast.cosine), ", N = ", data_.n_of(data_.key(data_.cast.cosine))),
-            small_text, shown);
-        const double near = shown * f.ease(zoomed, zoomed + 0.6);
-        const Point a = in_photo(near_.x0, near_.y1), b = in_photo(near_.x1 + 1, near_.y0 - 1);
-        f.outline({a.x, a.y, b.x - a.x, b.y - a.y}, highlight_ink, 4, near);
+            small_text, opacity);
+        const double crop_opacity = opacity * f.ease(zoomed, zoomed + 0.6);
+        const Point a = in_photo(crop_box_.x0, crop_box_.y1), b = in_photo(crop_box_.x1 + 1, crop_box_.y0 - 1);
+        f.outline({a.x, a.y, b.x - a.x, b.y - a.y}, highlight_ink, 4, crop_opacity);
         const double side = crop_side * crop_times;
-        f.line({b.x, a.y}, crop_corner, rule, 2, near);
-        f.line({b.x, b.y}, {crop_corner.x, crop_corner.y + side}, rule, 2, near);
-        f.picture(crop_, crop_corner.x, crop_corner.y, crop_times, near);
-        f.outline(square().inset(-3), highlight_ink, 6, near);
+        f.line({b.x, a.y}, crop_corner, rule, 2, crop_opacity);
+        f.line({b.x, b.y}, {crop_corner.x, crop_corner.y + side}, rule, 2, crop_opacity);
+        f.picture(crop_, crop_corner.x, crop_corner.y, crop_times, crop_opacity);
+        f.outline(square().inset(-3), highlight_ink, 6, crop_opacity);
         f.text({crop_corner.x, crop_corner.y + side + 10, side, 40},
             Words("pixel ", count(std::uint64_t(pixel_.i()), "the opened pixel"), ", ",
                 count(std::uint64_t(pixel_.j()), "the opened pixel"), ",  × ", number(crop_times, 2, "enlargement")),
-            small_text, near);
+            small_text, crop_opacity);
     }
 
     /// Moves the pixel's outline to the edge of its hemisphere.
@@ -123,9 +125,9 @@ private:
     void fields(Frame& f) const {
         const double starts[] = {reflects, lights, leans, product};
         for (int k = 0; k < 4; ++k) {
-            const double shown = f.ease(starts[k], starts[k] + 0.8);
-            const double gone = k < 3 ? f.ease(starts[k + 1] + 0.8, starts[k + 1] + 0.81) : 0;
-            if (shown > 0 && gone < 1) f.field(fields_[k].block, dome_.corner(), shown);
+            const double opacity = f.ease(starts[k], starts[k] + 0.8);
+            const double fade = k < 3 ? f.ease(starts[k + 1] + 0.8, starts[k + 1] + 0.81) : 0;
+            if (opacity > 0 && fade < 1) f.field(fields_[k].block, dome_.corner(), opacity);
         }
         const double dome = f.ease(opening + 1.9, opening + 2.6);
         dome_.grid(f, dome);
@@ -138,50 +140,51 @@ private:
     }
 
     void disk(Frame& f) const {
-        const double shown = f.ease(lights + 0.9, lights + 1.5);
-        if (story_.disk < 0 || shown <= 0) return;
+        const double opacity = f.ease(lights + 0.9, lights + 1.5);
+        if (story_.disk < 0 || opacity <= 0) return;
         const PixelLight& disk = pixel_.lights()[std::size_t(story_.disk)];
-        dome_.trace(f, disk.rim, bright, 3, shown);
-        const Point at = dome_.at(disk.towards), label{900, at.y + 60};
-        f.line({at.x + 26, at.y + 10}, {label.x - 10, label.y}, bright, 2, shown);
-        f.text({label.x, label.y - 24, 240, 44}, Words(name(disk.name)), label_text, shown);
+        dome_.trace(f, disk.rim, bright, 3, opacity);
+        const Point position = dome_.at(disk.towards), label{900, position.y + 60};
+        f.line({position.x + 26, position.y + 10}, {label.x - 10, label.y}, bright, 2, opacity);
+        f.text({label.x, label.y - 24, 240, 44}, Words(name(disk.name)), label_text, opacity);
         if (round(disk))
             f.text({label.x, label.y + 20, 240, 44},
-                Words("radius ", number(disk.angular_radius, 3, "angle of the light"), "°"), small_text, shown);
+                Words("radius ", number(disk.angular_radius, 3, "angle of the light"), "°"), small_text, opacity);
     }
 
     /// Returns whether a light is described by its angular radius, unlike a rectangle.
     bool round(const PixelLight& light) const {
-        const std::vector<LightTable> all = all_lights(data_.experiment);
+        const std::vector<LightTable> tables = all_lights(data_.experiment);
         const auto is_it = [&](const LightTable& table) { return table.light.name == light.name; };
-        const auto found = std::ranges::find_if(all, is_it);
-        return found != all.end() && found->light.kind() != "rectangle";
+        const auto match = std::ranges::find_if(tables, is_it);
+        return match != tables.end() && match->light.kind() != "rectangle";
     }
 
     /// Draws the colour bar of the field that is shown, with its name and its ends.
     void scale(Frame& f, const double (&starts)[4]) const {
-        const double shown = f.ease(reflects, reflects + 0.8);
-        f.field(bar_, bar_corner, shown);
-        const Rect under{bar_corner.x, bar_corner.y + bar_height + 8, bar_width, 40};
-        f.text(under, Words(number(0, 1, "least of a scale")), small_text, shown);
+        const double opacity = f.ease(reflects, reflects + 0.8);
+        f.field(bar_, bar_corner, opacity);
+        const Rect label_box{bar_corner.x, bar_corner.y + bar_height + 8, bar_width, 40};
+        f.text(label_box, Words(number(0, 1, "least of a scale")), small_text, opacity);
         const Words whats[] = {Words(formulas::f, ", per sr"), Words(formulas::light, ", ", formulas::radiance_unit),
             Words(formulas::cosine), Words(formulas::f, " ", formulas::light, " ", formulas::cosine)};
         for (int k = 0; k < 4; ++k) {
-            const double gone = k < 3 ? f.ease(starts[k + 1], starts[k + 1] + 0.1) : 0;
-            const double now = f.ease(starts[k] + 0.1, starts[k] + 0.6) * (1 - gone);
-            f.text({bar_corner.x, bar_corner.y - 56, bar_width, 44}, whats[k], with(label_text, Align::centre), now);
-            f.text(under, Words(figure(fields_[k].top, 3, "largest value over the hemisphere")),
-                with(small_text, Align::right), now);
+            const double fade = k < 3 ? f.ease(starts[k + 1], starts[k + 1] + 0.1) : 0;
+            const double label_opacity = f.ease(starts[k] + 0.1, starts[k] + 0.6) * (1 - fade);
+            f.text({bar_corner.x, bar_corner.y - 56, bar_width, 44}, whats[k], with(label_text, Align::centre),
+                label_opacity);
+            f.text(label_box, Words(figure(fields_[k].top, 3, "largest value over the hemisphere")),
+                with(small_text, Align::right), label_opacity);
         }
     }
 
     void estimator(Frame& f) const {
         const auto lit = [&](double from, double to) { return f.during(from + 0.4, to); };
         EstimatorTerms terms;
-        const double all = lit(product, divided);
-        terms.f = {f.ease(reflects, reflects + 0.6), std::max(all, lit(reflects, lights))};
-        terms.light = {f.ease(lights, lights + 0.6), std::max(all, lit(lights, leans))};
-        terms.cosine = {f.ease(leans, leans + 0.6), std::max(all, lit(leans, product))};
+        const double product_lit = lit(product, divided);
+        terms.f = {f.ease(reflects, reflects + 0.6), std::max(product_lit, lit(reflects, lights))};
+        terms.light = {f.ease(lights, lights + 0.6), std::max(product_lit, lit(lights, leans))};
+        terms.cosine = {f.ease(leans, leans + 0.6), std::max(product_lit, lit(leans, product))};
         terms.density = {f.ease(divided, divided + 0.6), lit(divided, averaged)};
         terms.average = {f.ease(averaged, averaged + 0.6), f.ease(averaged, averaged + 0.6)};
         draw_estimator(f, formula_at, formula_px, terms);
@@ -191,16 +194,16 @@ private:
     const PixelStory& story_;
     const OpenPixel& pixel_;
     Hemisphere dome_;
-    Box whole_, near_;
+    Box photo_box_, crop_box_;
     Block photo_, crop_, bar_;
     Field fields_[4];
 };
 
 std::vector<Cue> OnePixel::cues() const {
     std::vector<Cue> out;
-    const std::string at = data_.cast.highlight;
-    out.push_back(
-        {0.4, Words("The pixel of region ", name(at), " that ", data_.arm(data_.cast.cosine), " gets most wrong.")});
+    const std::string region = data_.cast.highlight;
+    out.push_back({0.4,
+        Words("The pixel of region ", name(region), " that ", data_.arm(data_.cast.cosine), " gets most wrong.")});
     out.push_back({opening, Words("What light does it send to the eye?"), true});
     out.push_back({reflects, Words("f: what it passes on to the eye.")});
     if (story_.disk < 0) {
@@ -229,19 +232,19 @@ std::vector<Cue> OnePixel::cues() const {
 }  // namespace
 
 Shot one_pixel(const Data& data) {
-    const auto drawn = std::make_shared<const OnePixel>(data);
+    const auto drawing = std::make_shared<const OnePixel>(data);
     Shot shot;
     shot.name = "one-pixel";
     shot.kind = Kind::backend;
     shot.title = Words("One pixel, opened");
-    shot.seen = Words(
+    shot.description = Words(
         "A pixel of the crescent grows into the hemisphere above its surface point. Colours show in turn the "
         "reflectance f, "
         "the light L, the cosine and their product; the estimator is written next to them, term by term.");
     shot.seconds = end;
     shot.still = shot.seconds - 0.5;
-    shot.cues = drawn->cues();
-    shot.draw = [drawn](Frame& f) { drawn->draw(f); };
+    shot.cues = drawing->cues();
+    shot.draw = [drawing](Frame& f) { drawing->draw(f); };
     return shot;
 }
 

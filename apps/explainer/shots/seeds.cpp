@@ -65,11 +65,11 @@ Words verdict_text(Verdict v) {
 }
 
 Words counted(const std::vector<Row>& rows) {
-    const auto of = [&](Verdict v) {
+    const auto count_of = [&](Verdict v) {
         return count(std::uint64_t(std::ranges::count(rows, v, &Row::verdict)), "verdicts of the strips");
     };
-    return Words("Reproduced: ", of(Verdict::reproduced), ". Outside: ", of(Verdict::outside),
-        ". Inconclusive, for their tail: ", of(Verdict::heavy), ".");
+    return Words("Reproduced: ", count_of(Verdict::reproduced), ". Outside: ", count_of(Verdict::outside),
+        ". Inconclusive, for their tail: ", count_of(Verdict::heavy), ".");
 }
 
 void strip(Frame& f, const Row& row, const Rect& r, double in, double bars, double diamonds) {
@@ -89,32 +89,32 @@ void strip(Frame& f, const Row& row, const Rect& r, double in, double bars, doub
 
 Shot seeds(const Data& data) {
     const std::vector<Row> rows = rows_of(data);
-    const bool published = std::ranges::any_of(rows, [](const Row& r) { return r.published.has_value(); });
+    const bool has_published = std::ranges::any_of(rows, [](const Row& r) { return r.published.has_value(); });
     Shot shot;
     shot.name = "seeds";
     shot.kind = Kind::backend;
     const Number n = count(std::uint64_t(data.experiment.seeds), "seeds of the experiment");
     shot.title = Words("Other random numbers: ", n, data.experiment.seeds == 1 ? " seed" : " seeds");
-    shot.seen = Words(
+    shot.description = Words(
         "A row for each figure and arm: a dot a seed, a bar over the middle nine tenths of them, a diamond for the "
         "published figure, "
         "and the verdict.");
     shot.cues = {{0.5, Words("One run is one draw. Each dot is the same figure from another seed.")},
         {6,
-            published ? Words("The diamond is the published figure, the bar the middle nine tenths of the seeds.")
-                      : Words("The bar spans the middle nine tenths of the seeds.")}};
-    if (published) shot.cues.push_back({11.8, counted(rows)});
-    shot.seconds = published ? 17 : 11.8;
+            has_published ? Words("The diamond is the published figure, the bar the middle nine tenths of the seeds.")
+                          : Words("The bar spans the middle nine tenths of the seeds.")}};
+    if (has_published) shot.cues.push_back({11.8, counted(rows)});
+    shot.seconds = has_published ? 17 : 11.8;
     shot.still = shot.seconds - 1;
-    const std::vector<Row> drawn = rows;
+    const std::vector<Row> shot_rows = rows;
     shot.draw = [=](Frame& f) {
         const double bars = f.ease(6, 6.6), diamonds = f.ease(7, 7.6);
         f.text({570, 838, 200, 40}, Words("÷ ", number(span, 2, "scale of the strips")), small_text, f.ease(0.5, 1.1));
         f.text({870, 838, 220, 40}, Words("median"), with(small_text, Align::centre), f.ease(0.5, 1.1));
         f.text({1190, 838, 200, 40}, Words("× ", number(span, 2, "scale of the strips")),
             with(small_text, Align::right), f.ease(0.5, 1.1));
-        for (std::size_t k = 0; k < drawn.size(); ++k) {
-            const Row& row = drawn[k];
+        for (std::size_t k = 0; k < shot_rows.size(); ++k) {
+            const Row& row = shot_rows[k];
             const double y = 124 + 88.0 * double(k), in = f.ease(0.5 + 0.6 * double(k), 1.1 + 0.6 * double(k));
             f.text({70, y, 320, 70}, row.name, with(with_px(label_text, 32), bright), in);
             f.text({390, y, 180, 70}, row.arm, with(with_px(label_text, 32), row.ink), in);

@@ -7,7 +7,7 @@ namespace crescent::explainer {
 
 namespace {
 
-constexpr double first = 1.0, each = 0.7;  // s: when the first film appears, and the duration of each
+constexpr double first = 1.0, interval = 0.7;  // s: when the first film appears, and the duration of each
 constexpr Rect slot{480, 300, 960, 540};
 
 }  // namespace
@@ -27,13 +27,13 @@ Shot title(const Data& data) {
     }
     add(plates::view(&data.reference()), Words("converged reference"));
 
-    const Words under("one integral, two ways of aiming, one N");
-    const double last = first + each * double(blocks.size() - 1);
+    const Words subtitle("one integral, two ways of aiming, one N");
+    const double last = first + interval * double(blocks.size() - 1);
     Shot shot;
     shot.name = "title";
     shot.title = length(data.experiment.title) > 50 ? Words("The experiment") : Words(name(data.experiment.title));
     shot.kind = Kind::photograph;
-    shot.seen =
+    shot.description =
         Words("A lacquer sphere on a plinth comes out of noise as the number of samples doubles; then the title.");
     shot.seconds = last + 6.5;
     shot.still = shot.seconds - 1.5;
@@ -41,7 +41,7 @@ Shot title(const Data& data) {
         {last - 1.5, Words("More rays, less noise. But how they are aimed decides where the noise goes.")}};
     shot.draw = [=](Frame& f) {
         const int n = static_cast<int>(blocks.size());
-        const int k = f.after(first) ? std::min(f.steps(first, first + each * n, n), n - 1) : 0;
+        const int k = f.after(first) ? std::min(f.steps(first, first + interval * n, n), n - 1) : 0;
         const Block& block = blocks[std::size_t(k)];
         const double in = f.ease(0, 0.8);
         const Rect r = show(f, block, part.times, slot, in);
@@ -49,7 +49,7 @@ Shot title(const Data& data) {
             with(with(label_text, muted), Align::right), in);
         f.text({60, 120, sheet_width - 120, 110}, Words("Where the noise goes"), with(big_text, Align::centre),
             f.ease(last, last + 0.8));
-        f.text({60, 226, sheet_width - 120, 54}, under, with(with(label_text, muted), Align::centre),
+        f.text({60, 226, sheet_width - 120, 54}, subtitle, with(with(label_text, muted), Align::centre),
             f.ease(last + 0.6, last + 1.4));
     };
     return shot;

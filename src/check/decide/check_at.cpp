@@ -22,24 +22,25 @@ namespace {
 struct Stage {
     Integrals integrals;
     Observations observations;
-    Look done;
+    Look progress;
 
     /// The number of evaluations of f: at the points of the first pass and at the first draws, where f may also be
     /// compared with its reference value.
-    static double of_f(const Source& source, const Look& first, double draws) {
+    static double cost_of_f(const Source& source, const Look& target, double draws) {
         if (!source.has_f()) return 0;
-        return first.points + draws * (source.declaration.has_true_f ? 2 : 1);
+        return target.points + draws * (source.declaration.has_true_f ? 2 : 1);
     }
-    void extend(Source& source, const Plan& plan, Look to, std::uint32_t of_f, StreamKey key, int look) {
-        to.points = std::max(to.points, done.points + 2 * static_cast<std::uint32_t>(plan.tree.leaves().size()));
-        to.independent = std::max(to.independent, done.independent);
+    void extend(Source& source, const Plan& plan, Look target, std::uint32_t f_draws, StreamKey key, int look_index) {
+        target.points =
+            std::max(target.points, progress.points + 2 * static_cast<std::uint32_t>(plan.tree.leaves().size()));
+        target.independent = std::max(target.independent, progress.independent);
         key.purpose = Purpose::points;
-        key.part = static_cast<std::uint16_t>(look);
-        const bool with_f = done.points == 0 && of_f > 0;  // only in the first pass
-        integrate(source, plan, to.points - done.points, with_f, key, integrals);
-        done = to;
+        key.part = static_cast<std::uint16_t>(look_index);
+        const bool uses_f = progress.points == 0 && f_draws > 0;  // only in the first pass
+        integrate(source, plan, target.points - progress.points, uses_f, key, integrals);
+        progress = target;
         key.part = 0;
-        observe(source, plan, to, of_f, key, integrals, observations);
+        observe(source, plan, target, f_draws, key, integrals, observations);
     }
     Evidence evidence(const Source& source, const Plan& plan) const {
         return {.source = source, .plan = plan, .integrals = integrals, .observations = observations};
@@ -70,17 +71,17 @@ public:
 
     CheckAt run() {
         const Stopwatch watch;
-        StreamKey looks = key_;
-        looks.purpose = Purpose::pairs;
-        out_.scatter = look_for_noise(source_, looks);
+        StreamKey noise_key = key_;
+        noise_key.purpose = Purpose::pairs;
+        out_.scatter = look_for_noise(source_, noise_key);
         source_.estimates = out_.scatter.pdf();
         source_.f_estimates = out_.scatter.f();
         if (!source_.f_estimates) source_.unscaled = both_ways(source_.adapter, key_) != BothWays::not_known;
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget_, key_));
         out_.small = small_tests(source_, key_);
-        for (int look = is_of_weights() ? budget_.looks - 1 : 0; look < budget_.looks; ++look) {
-            if (decided_by(look)) break;
-            if (look == 0 && !is_of_weights() && regrown()) look = -1;
+        for (int look_index = is_of_weights() ? budget_.looks - 1 : 0; look_index < budget_.looks; ++look_index) {
+            if (decided_by(look_index)) break;
+            if (look_index == 0 && !is_of_weights() && regrown()) look_index = -1;
         }
         for (int k = 0; k < further_looks && goes_on(); ++k) look_further(k);
         finish();
@@ -97,80 +98,83 @@ private:
     double reserved_;
     CheckAt out_;
     Stage first_;
-    std::map<Family, Least> least_;  // of first_
-    double confirming_ = 0;          // evaluations of second stages
+    std::map<Family, Least> least_answers_;  // of first_
+    double confirmation_cost_ = 0;           // evaluations of second stages
     std::optional<ResolutionEffect> resolution_;
 
     /// Only the weights of a sampler without density show a fault: those of all draws are used, and all points have f.
     bool is_of_weights() const { return source_.traits.reciprocal_weight; }
     std::uint32_t draws_with_weights() const {
-        return is_of_weights() ? std::numeric_limits<std::uint32_t>::max() : budget_.of_f();
+        return is_of_weights() ? std::numeric_limits<std::uint32_t>::max() : budget_.f_draws();
     }
-    double level_of(int look) const { return level_at(levels_, look, budget_.looks); }
+    double level_of(int look_index) const { return level_at(levels_, look_index, budget_.looks); }
 
-    double remaining() const { return budget_.evaluations + confirming_ - static_cast<double>(source_.evaluations()); }
+    double remaining() const {
+        return budget_.evaluations + confirmation_cost_ - static_cast<double>(source_.evaluations());
+    }
 
     /// The size of this look: a part of all that stage 1 may still evaluate, including what it has evaluated.
-    Look next(int look) const {
-        const double affordable = remaining() - budget_.cost_of_sizes() + first_.done.cost();
-        const std::uint32_t parts = 1u << 3 * (budget_.looks - 1 - look);
-        Look last = look_of(affordable);
+    Look next(int look_index) const {
+        const double limit = remaining() - budget_.cost_of_sizes() + first_.progress.cost();
+        const std::uint32_t parts = 1u << 3 * (budget_.looks - 1 - look_index);
+        Look last = look_of(limit);
         Look begin = last.divided_by(1u << 3 * (budget_.looks - 1));
         begin.points = std::max(begin.points, 2 * static_cast<std::uint32_t>(out_.plan->tree.leaves().size()));
-        const double of_f = Stage::of_f(source_, begin, is_of_weights() ? begin.independent : budget_.of_f());
-        const double evaluated = first_.observations.weighted_draws + first_.integrals.light.points;
-        last = look_of(affordable - std::max(of_f - evaluated, 0.0));
+        const double f_cost = Stage::cost_of_f(source_, begin, is_of_weights() ? begin.independent : budget_.f_draws());
+        const double f_evaluations = first_.observations.weighted_draws + first_.integrals.light.points;
+        last = look_of(limit - std::max(f_cost - f_evaluations, 0.0));
         return last.divided_by(parts);
     }
 
-    bool decided_by(int look) { return look_at(next(look), look, level_of(look)); }
+    bool decided_by(int look_index) { return look_at(next(look_index), look_index, level_of(look_index)); }
 
     /// The evaluations that stage 1 may have in all.
     double most_of_first_stage() const {
-        const double further = budget_.most_evaluations + confirming_ - static_cast<double>(source_.evaluations());
-        return std::min(further, evaluations_in_time()) - budget_.cost_of_sizes() + first_.done.cost();
+        const double limit = budget_.most_evaluations + confirmation_cost_ - static_cast<double>(source_.evaluations());
+        return std::min(limit, evaluations_in_time()) - budget_.cost_of_sizes() + first_.progress.cost();
     }
     /// Half of the evaluations for which a program has time besides its other w_o. A program of 1 M evaluations per
     /// second has time for all.
     double evaluations_in_time() const {
-        const QueryUsage now = source_.adapter.spending();
-        if (now.allowed <= 0) return std::numeric_limits<double>::infinity();
-        const double rate = static_cast<double>(now.answers) / std::max(now.seconds, 1e-9);
-        return std::max((now.allowed - now.seconds) * rate - reserved_, 0.0) / 2;
+        const QueryUsage usage = source_.adapter.spending();
+        if (usage.allowed <= 0) return std::numeric_limits<double>::infinity();
+        const double rate = static_cast<double>(usage.answers) / std::max(usage.seconds, 1e-9);
+        return std::max((usage.allowed - usage.seconds) * rate - reserved_, 0.0) / 2;
     }
     /// The evaluations of stage 1 that the sizes require, a third more than in proportion to their squares.
-    double needed_of_first_stage() const {
+    double requirement_of_first_stage() const {
         Sizes sizes = out_.sizes;
         if (out_.is_integral_open()) sizes.integral = error_in_reach(first_.integrals, first_.observations);
-        return 4.0 / 3 * first_.done.cost() * sqr(worst_ratio(sizes) / out_.most_ratio());
+        return 4.0 / 3 * first_.progress.cost() * sqr(worst_ratio(sizes) / out_.most_ratio());
     }
     bool goes_on() const {
         if (!out_.inconclusive || out_.wrong() || source_.recorded()) return false;
         const double limit = most_of_first_stage();
-        return limit > 1.5 * first_.done.cost() && needed_of_first_stage() < out_of_reach * limit;
+        return limit > 1.5 * first_.progress.cost() && requirement_of_first_stage() < out_of_reach * limit;
     }
     void look_further(int k) {
-        const double needed = std::max(needed_of_first_stage(), 1.5 * first_.done.cost());
+        const double requirement = std::max(requirement_of_first_stage(), 1.5 * first_.progress.cost());
         // The tree was made for fewer points, which resolve less of p.
         if (k == 0 && out_.is_integral_open() && !is_of_weights()) {
-            CheckBudget larger = budget_;
-            larger.evaluations = most_of_first_stage();
-            grow_again(larger, StreamKey::further);
+            CheckBudget larger_budget = budget_;
+            larger_budget.evaluations = most_of_first_stage();
+            grow_again(larger_budget, StreamKey::further);
         }
         const double limit = most_of_first_stage();
-        const Look to = look_of(k + 1 < further_looks ? std::min(needed, limit) : limit);
-        look_at(to, budget_.looks + k, levels_.first * early_look);
+        const Look target = look_of(k + 1 < further_looks ? std::min(requirement, limit) : limit);
+        look_at(target, budget_.looks + k, levels_.first * early_look);
     }
 
-    bool look_at(const Look& to, int look, double level) {
-        first_.extend(source_, *out_.plan, to, draws_with_weights(), key_, look);
-        out_.looks = look + 1;
+    bool look_at(const Look& target, int look_index, double level) {
+        first_.extend(source_, *out_.plan, target, draws_with_weights(), key_, look_index);
+        out_.looks = look_index + 1;
         const Evidence e = first_.evidence(source_, *out_.plan);
         note_answers(e);
-        const std::vector<Least> suspects = suspects_of(all_tests(e), least_, level, e.observations.independent);
-        if (!suspects.empty()) confirm(suspects, look);
+        const std::vector<Least> suspects =
+            suspects_of(all_tests(e), least_answers_, level, e.observations.independent);
+        if (!suspects.empty()) confirm(suspects, look_index);
         if (!out_.findings.empty()) return true;
-        if (!budget_.stop_when_conclusive && look < budget_.looks - 1) return false;
+        if (!budget_.stop_when_conclusive && look_index < budget_.looks - 1) return false;
         out_.sizes = sizes(e, level);
         out_.inconclusive = worst_ratio(out_.sizes) > out_.most_ratio();
         return budget_.stop_when_conclusive && !out_.inconclusive;
@@ -179,54 +183,55 @@ private:
     /// If p has regions that the tree does not resolve, builds the tree once more from all points and draws so far.
     /// These are then used for nothing else.
     bool regrown() {
-        const Estimate& claimed = first_.integrals.sums[mass];
-        const double worse = regrow_from * regrow_points / first_.integrals.points;
-        const double error = std::sqrt(claimed.variance + first_.integrals.unresolved.variance);
-        if (key_.stage != 1 || !(error > worse * std::max(claimed.value, 1e-3))) return false;
-        if (first_.integrals.heavy.empty() && first_.observations.unmet_at.empty()) return false;
+        const Estimate& claim = first_.integrals.sums[mass];
+        const double threshold = regrow_from * regrow_points / first_.integrals.points;
+        const double error = std::sqrt(claim.variance + first_.integrals.unresolved.variance);
+        if (key_.stage != 1 || !(error > threshold * std::max(claim.value, 1e-3))) return false;
+        if (first_.integrals.heavy.empty() && first_.observations.excess_points.empty()) return false;
         grow_again(budget_, StreamKey::regrown);
         return true;
     }
 
     void grow_again(const CheckBudget& budget, std::uint8_t stage) {
         std::vector<DensityPoint> hints = first_.integrals.heavy;
-        const std::vector<DensityPoint>& drawn = first_.observations.unmet_at;
-        hints.insert(hints.end(), drawn.begin(), drawn.end());
+        const std::vector<DensityPoint>& points = first_.observations.excess_points;
+        hints.insert(hints.end(), points.begin(), points.end());
         key_.stage = stage;
         first_ = {};
         out_.plan = std::make_shared<const Plan>(make_plan(source_, budget, key_, std::move(hints)));
     }
 
     Sizes sizes(const Evidence& e, double level) {
-        const bool drawn = e.observations.checks.directions > 0 || e.integrals.sums[mass].value > 0;
-        if (!drawn) return {};  // only delta parts or no samples: no density that could hide a fault
+        const bool has_draws = e.observations.checks.directions > 0 || e.integrals.sums[mass].value > 0;
+        if (!has_draws) return {};  // only delta parts or no samples: no density that could hide a fault
         StreamKey key = key_;
         key.purpose = Purpose::pairs;
-        return sizes_of(source_, e, level, budget_.of_sizes(), key);
+        return sizes_of(source_, e, level, budget_.size_draws(), key);
     }
 
     /// Repeats the tests on as many fresh draws and points. After an early look it uses twice as many: a clear fault is
     /// then explained from them, and the verdicts on f come from them too.
-    void confirm(const std::vector<Least>& suspects, int look) {
-        const bool early = look < budget_.looks - 1;
-        const Look to = early ? first_.done.times(2) : first_.done;
-        const bool of_f = std::ranges::any_of(suspects, [](const Least& b) { return is_of_f(b.answer.family); });
-        const double before = static_cast<double>(source_.evaluations());
+    void confirm(const std::vector<Least>& suspects, int look_index) {
+        const bool is_early = look_index < budget_.looks - 1;
+        const Look target = is_early ? first_.progress.times(2) : first_.progress;
+        const bool tests_f = std::ranges::any_of(suspects, [](const Least& b) { return is_of_f(b.answer.family); });
+        const double start = static_cast<double>(source_.evaluations());
         Stage second;
         StreamKey key = key_;
-        key.stage = static_cast<std::uint8_t>(key_.stage + 1 + look);
-        second.integrals.light.lost_in = first_.integrals.light.lost_in;
-        second.extend(source_, *out_.plan, to, of_f || early ? draws_with_weights() : 0, key, 0);
+        key.stage = static_cast<std::uint8_t>(key_.stage + 1 + look_index);
+        second.integrals.light.lost_leaves = first_.integrals.light.lost_leaves;
+        second.extend(source_, *out_.plan, target, tests_f || is_early ? draws_with_weights() : 0, key, 0);
         Evidence e = second.evidence(source_, *out_.plan);
-        e.least *= std::min(1.0, second.observations.independent / first_.observations.independent);
+        e.fewest_draws *= std::min(1.0, second.observations.independent / first_.observations.independent);
         for (const Least& b : suspects) {
-            const Answer again = retest(all_tests(e), b.answer);
-            if (again.p < levels_.second && !is_of_resolution(again, second.observations.independent))
-                out_.findings.push_back({b.answer, again, b.members});
+            const Answer answer = retest(all_tests(e), b.answer);
+            if (answer.p < levels_.second && !is_of_resolution(answer, second.observations.independent))
+                out_.findings.push_back({b.answer, answer, b.members});
             else out_.suspected.push_back(b.answer);
         }
-        confirming_ += static_cast<double>(source_.evaluations()) - before;
-        if (!out_.findings.empty() && second.done.cost() > first_.done.cost()) use_second_stage(std::move(second));
+        confirmation_cost_ += static_cast<double>(source_.evaluations()) - start;
+        if (!out_.findings.empty() && second.progress.cost() > first_.progress.cost())
+            use_second_stage(std::move(second));
     }
 
     /// Whether the resolution of the random numbers may cause this deviation.
@@ -238,7 +243,7 @@ private:
         return true;
     }
 
-    void note_answers(const Evidence& e) { least_ = least_by_family<Answer>(all_tests(e)); }
+    void note_answers(const Evidence& e) { least_answers_ = least_by_family<Answer>(all_tests(e)); }
 
     /// Uses the second stage for the explanation, since it has more draws than the first.
     void use_second_stage(Stage&& second) {
@@ -262,8 +267,8 @@ private:
     /// Whether no test had anything to test: no draws, and no density.
     bool is_nothing_drawn() const {
         const DrawChecks& c = first_.observations.checks;
-        const bool no_density = !source_.has_density() || first_.integrals.sums[mass].value == 0;
-        return c.tested > 0 && c.nothing == c.tested && no_density && source_.invalid().pdf == 0;
+        const bool lacks_density = !source_.has_density() || first_.integrals.sums[mass].value == 0;
+        return c.draws > 0 && c.nothing == c.draws && lacks_density && source_.invalid().pdf == 0;
     }
 
     /// Whether the sampler draws at a w_o on either side.
@@ -281,10 +286,10 @@ private:
 
     /// Removes what was found from answers that are not numbers, except for `valid`.
     void withhold_verdicts() {
-        const auto withheld = [&](Family f) { return out_.is_withheld(info(f).verdict); };
-        std::erase_if(out_.findings, [&](const Finding& f) { return withheld(f.first.family); });
-        std::erase_if(out_.small, [&](const SmallFault& f) { return withheld(f.family); });
-        std::erase_if(out_.answers, [&](const Answer& a) { return withheld(a.family); });
+        const auto is_withheld = [&](Family f) { return out_.is_withheld(info(f).verdict); };
+        std::erase_if(out_.findings, [&](const Finding& f) { return is_withheld(f.first.family); });
+        std::erase_if(out_.small, [&](const SmallFault& f) { return is_withheld(f.family); });
+        std::erase_if(out_.answers, [&](const Answer& a) { return is_withheld(a.family); });
     }
 
     void finish() {
@@ -292,9 +297,9 @@ private:
         out_.invalid = source_.invalid();
         out_.nothing_drawn = is_nothing_drawn();
         out_.draws_elsewhere = out_.nothing_drawn && draws_elsewhere();
-        for (const auto& [family, least] : least_) {
-            out_.answers.push_back(least.answer);
-            out_.answers.back().p = least.p();
+        for (const auto& [family, entry] : least_answers_) {
+            out_.answers.push_back(entry.answer);
+            out_.answers.back().p = entry.p();
         }
         if (out_.wrong()) {
             out_.sizes = {};
@@ -319,14 +324,16 @@ constexpr BuiltOn built_on[] = {{"support", true, true, false, false}, {"normali
 }  // namespace
 
 bool CheckAt::is_withheld(std::string_view verdict) const {
-    const auto many = [](std::uint64_t invalid, std::uint64_t evaluations) {
+    const auto exceeds_limit = [](std::uint64_t invalid, std::uint64_t evaluations) {
         return static_cast<double>(invalid) > most_invalid * static_cast<double>(evaluations);
     };
     const DrawChecks& c = observations.checks;
     for (const BuiltOn& b : built_on)
         if (b.verdict == verdict)
-            return (b.pdf && many(invalid.pdf, invalid.of_pdf)) || (b.f && many(invalid.f, invalid.of_f)) ||
-                (b.draws && many(c.unusable, c.tested)) || (b.weights && many(c.bad_weights, c.directions));
+            return (b.pdf && exceeds_limit(invalid.pdf, invalid.pdf_evaluations)) ||
+                (b.f && exceeds_limit(invalid.f, invalid.f_evaluations)) ||
+                (b.draws && exceeds_limit(c.unusable, c.draws)) ||
+                (b.weights && exceeds_limit(c.bad_weights, c.directions));
     return false;
 }
 

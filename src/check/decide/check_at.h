@@ -33,7 +33,7 @@ struct Sizes {
     std::optional<double> parameter;  // relative error of an exponent: draws by p^(1 + e)
     // Change of the distribution by a fault of size 1, as total variation: a rotation does not change a uniform
     // density.
-    double by_leak = 1, by_rotation = 1, by_parameter = 1;
+    double leak_change = 1, rotation_change = 1, parameter_change = 1;
 };
 
 /// level: of a family at stage 1. `draws`: number of draws that are rotated to measure the effect; 8 evaluations each.
@@ -114,8 +114,8 @@ CheckAt check_sampler_at(const SamplerAdapter& adapter, int technique, Vec3d wo,
 
 /// Of all techniques together.
 struct WeightTail {
-    bool has_weights = false;  // whether every draw has a weight
-    bool whole = false;        // whether some draws are below the surface
+    bool has_weights = false;      // whether every draw has a weight
+    bool has_lower_draws = false;  // whether some draws are below the surface
     Spread spread;
     double variance_error = 0;      // relative standard error of the variance
     std::optional<Tail> fit;        // none if the largest weights are equal

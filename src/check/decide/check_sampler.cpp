@@ -20,7 +20,7 @@
 namespace crescent::check {
 
 bool CheckOutcome::wrong() const {
-    return !small.empty() || std::ranges::any_of(at, [](const auto& techniques) {
+    return !small.empty() || std::ranges::any_of(checks, [](const auto& techniques) {
         return std::ranges::any_of(techniques, [](const CheckAt& c) { return c.wrong(); });
     });
 }
@@ -31,12 +31,12 @@ std::vector<CheckOutcome> grouped(std::span<const CheckCase> check_cases) {
     std::vector<CheckOutcome> out;
     for (std::size_t i = 0; i < check_cases.size(); ++i) {
         if (check_cases[i].baseline) continue;
-        const auto same = [&](const CheckOutcome& o) {
+        const auto is_same_sampler = [&](const CheckOutcome& o) {
             const CheckCase& t = check_cases[o.check_cases[0]];
             return t.arm == check_cases[i].arm && t.brdf == check_cases[i].brdf &&
                 t.parameters == check_cases[i].parameters && t.lighting == check_cases[i].lighting;
         };
-        auto outcome = std::ranges::find_if(out, same);
+        auto outcome = std::ranges::find_if(out, is_same_sampler);
         if (outcome == out.end()) outcome = out.insert(out.end(), {check_cases[i].arm, {}, {}, {}, {}, 0, {}, {}});
         outcome->check_cases.push_back(i);
     }
@@ -51,13 +51,13 @@ bool takes_any_wo(std::span<const CheckCase> check_cases, const CheckOutcome& o)
 
 /// An estimate of f is not reciprocal. If a sampler is checked serially, no w_o has been checked before this call.
 bool estimates_f(const CheckCase& check_case, const CheckOutcome& o, const StreamKey& key) {
-    if (std::ranges::all_of(o.at, [](const auto& techniques) { return techniques.empty(); })) {
+    if (std::ranges::all_of(o.checks, [](const auto& techniques) { return techniques.empty(); })) {
         Source source(*check_case.adapter, 0, check_case.wo, check_case.light);
         return look_for_noise(source, key).f();
     }
     const auto is_estimate = [](const CheckAt& c) { return c.scatter.f(); };
     return std::ranges::any_of(
-        o.at, [&](const auto& techniques) { return std::ranges::any_of(techniques, is_estimate); });
+        o.checks, [&](const auto& techniques) { return std::ranges::any_of(techniques, is_estimate); });
 }
 
 void test_whole_sampler(std::span<const CheckCase> check_cases, const CheckSettings& settings, CheckOutcome& out) {
@@ -79,9 +79,9 @@ void test_whole_sampler(std::span<const CheckCase> check_cases, const CheckSetti
             if (!estimates_f(check_cases[out.check_cases[0]], out, key)) add(fault);
     }
     for (std::size_t i : out.check_cases) {
-        const std::size_t before = out.small.size();
+        const std::size_t fault_count = out.small.size();
         add(mis_weights(*check_cases[i].adapter, check_cases[i].wo, key));
-        if (out.small.size() > before) break;
+        if (out.small.size() > fault_count) break;
     }
 }
 
@@ -105,14 +105,15 @@ template <class Work> std::optional<Cut> cut_of(const Work& work) {
 
 /// Unusable numbers among a few draws.
 std::optional<SmallFault> fault_of_first_draws(const CheckCase& check_case, const StreamKey& key) {
-    constexpr std::uint32_t few = 256;  // a program with 10 answers per second needs less than five minutes for 12 w_o
+    // A program with 10 answers per second needs less than five minutes for 12 w_o.
+    constexpr std::uint32_t draw_count = 256;
     SmallFault out{Family::values};
     const Traits traits = check_case.adapter->traits();
-    const std::vector<PrimarySample> u = first_numbers(key, few, traits);
+    const std::vector<PrimarySample> u = first_numbers(key, draw_count, traits);
     std::vector<Draw> draws(u.size());
     for (int t = 0; t < check_case.adapter->techniques(); ++t) {
         check_case.adapter->sample(t, check_case.wo, u, draws);
-        out.of += few;
+        out.trials += draw_count;
         for (std::size_t i = 0; i < u.size(); ++i)
             if (const auto fault = fault_of(draws[i], traits); fault && out.times++ == 0) {
                 out.first = {.u = u[i], .draw = draws[i], .p = draws[i].pdf, .expected = 0};
@@ -127,7 +128,7 @@ public:
     Call(std::span<const CheckCase> check_cases, const CheckSettings& settings, ProgressMonitor& monitor)
         : check_cases_(check_cases), settings_(settings), monitor_(monitor), outcomes_(grouped(check_cases)) {
         for (CheckOutcome& o : outcomes_) {
-            o.at.resize(o.check_cases.size());
+            o.checks.resize(o.check_cases.size());
             o.cut.resize(o.check_cases.size());
             o.tails.resize(o.check_cases.size());
             for (std::size_t k = 0; k < o.check_cases.size(); ++k) jobs_.push_back({&o, k});
@@ -139,17 +140,18 @@ public:
     }
 
     std::vector<CheckOutcome> run() {
-        const bool serial = std::ranges::any_of(check_cases_, [](const CheckCase& t) { return t.adapter->serial(); });
+        const bool is_serial =
+            std::ranges::any_of(check_cases_, [](const CheckCase& t) { return t.adapter->serial(); });
         const bool is_limited_in_time =
             std::ranges::any_of(check_cases_, [](const CheckCase& t) { return t.adapter->spending().allowed > 0; });
-        if (serial || is_limited_in_time) {
-            run_within_time(serial);
+        if (is_serial || is_limited_in_time) {
+            run_within_time(is_serial);
         } else {
             parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t j) { check(jobs_[j]); });
             check_whole();
         }
         for (CheckOutcome& o : outcomes_) {
-            for (const auto& techniques : o.at)
+            for (const auto& techniques : o.checks)
                 for (const CheckAt& c : techniques) o.evaluations += c.evaluations;
         }
         return std::move(outcomes_);
@@ -179,7 +181,7 @@ private:
         budget.most_evaluations =
             std::min(settings_.most_at_one, budget.evaluations + further_for_one(check_case)) / techniques;
         const double reserved = static_cast<double>(jobs_left_) * budget.evaluations;
-        std::vector<CheckAt>& checks = job.outcome->at[job.index];
+        std::vector<CheckAt>& checks = job.outcome->checks[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         cut = cut_of([&] {
             for (int t = 0; t < check_case.adapter->techniques(); ++t)
@@ -212,15 +214,15 @@ private:
             for (const SmallFault& f : c.small) add(f.family);
             for (const Finding& f : c.findings) add(f.first.family);
         }
-        const bool open = std::ranges::any_of(techniques, &CheckAt::inconclusive);
+        const bool is_open = std::ranges::any_of(techniques, &CheckAt::inconclusive);
         const std::optional<std::string>& known_fault = check_case.theory.wrong;
-        const bool expected = known_fault && wrong.size() == 1 && wrong[0] == *known_fault;
-        const std::string found = !wrong.empty()
-            ? fmt::format("{} wrong{}", fmt::join(wrong, ", "), expected ? " as expected" : "")
-            : open ? "inconclusive"
-                   : "no fault found";
+        const bool is_expected = known_fault && wrong.size() == 1 && wrong[0] == *known_fault;
+        const std::string result = !wrong.empty()
+            ? fmt::format("{} wrong{}", fmt::join(wrong, ", "), is_expected ? " as expected" : "")
+            : is_open ? "inconclusive"
+                      : "no fault found";
         monitor_.log(
-            fmt::format("1 of {}: {}, {}: {}", jobs_.size(), printable(check_case.arm), check_case.text(), found));
+            fmt::format("1 of {}: {}, {}: {}", jobs_.size(), printable(check_case.arm), check_case.text(), result));
     }
 
     /// The evaluations by which one w_o may go on: what is left, in the order of a serial check; an equal share if w_o
@@ -237,7 +239,7 @@ private:
         const auto free = [](auto&... containers) {
             (std::remove_reference_t<decltype(containers)>().swap(containers), ...);
         };
-        free(c.observations.met, c.observations.node_by_set, c.integrals.light.weighted_points);
+        free(c.observations.direction_keys, c.observations.node_by_set, c.integrals.light.weighted_points);
         if (settings_.keep_evidence) return;
         free(c.observations.weights);
         if (c.wrong() || !has_density) return;
@@ -259,37 +261,37 @@ private:
 
     /// Keeps the fault of the first draws if the later draws do not show it or are missing.
     void keep_first_fault(const Job& job, const std::optional<SmallFault>& fault) {
-        std::vector<CheckAt>& techniques = job.outcome->at[job.index];
+        std::vector<CheckAt>& techniques = job.outcome->checks[job.index];
         std::optional<Cut>& cut = job.outcome->cut[job.index];
         if (cut) cut->first_draws = true;
         if (!fault) return;
-        const auto not_valid = [](const auto& f) { return info(f.family).verdict == info(Family::values).verdict; };
+        const auto is_invalid = [](const auto& f) { return info(f.family).verdict == info(Family::values).verdict; };
         for (const CheckAt& c : techniques) {
-            if (std::ranges::any_of(c.small, not_valid)) return;
-            if (std::ranges::any_of(c.findings, [&](const Finding& f) { return not_valid(f.first); })) return;
+            if (std::ranges::any_of(c.small, is_invalid)) return;
+            if (std::ranges::any_of(c.findings, [&](const Finding& f) { return is_invalid(f.first); })) return;
         }
         if (techniques.empty()) techniques.emplace_back().wo = case_of(job).wo;
         techniques.front().small.push_back(*fault);
     }
 
     /// What the w_o of one program took so far; of those that several threads check at once, each counts what all took.
-    struct Spent {
-        double answers = 0, seconds = 0, most = 0;  // most: answers of one w_o
-        void add(const QueryUsage& before, const QueryUsage& after) {
-            const double more = static_cast<double>(after.answers - before.answers);
-            answers += more;
-            most = std::max(most, more);
-            seconds += after.seconds - before.seconds;
+    struct Spending {
+        double answers = 0, seconds = 0, most_answers = 0;  // most_answers: answers of one w_o
+        void add(const QueryUsage& start, const QueryUsage& end) {
+            const double answer_count = static_cast<double>(end.answers - start.answers);
+            answers += answer_count;
+            most_answers = std::max(most_answers, answer_count);
+            seconds += end.seconds - start.seconds;
         }
-        bool has_time(const QueryUsage& now) const {
-            if (now.allowed <= 0 || answers == 0) return true;
-            return now.seconds + most * seconds / answers < now.allowed;
+        bool has_time(const QueryUsage& usage) const {
+            if (usage.allowed <= 0 || answers == 0) return true;
+            return usage.seconds + most_answers * seconds / answers < usage.allowed;
         }
     };
 
     /// First a few draws at every w_o and the tests of the whole sampler, then each w_o while time is left. The cost of
     /// the most expensive w_o so far predicts the next one. The first w_o of each program is always tried.
-    void run_within_time(bool serial) {
+    void run_within_time(bool is_serial) {
         order_jobs();
         std::vector<std::optional<SmallFault>> first_faults(jobs_.size());
         for (std::size_t j = 0; j < jobs_.size(); ++j) {
@@ -308,18 +310,18 @@ private:
         check_whole();
         std::atomic<std::size_t> next = 0;  // in this order, also on several threads
         Mutex lock;
-        std::map<const SamplerAdapter*, Spent> spent_by;  // guarded by the lock
-        for_each_index(serial, jobs_.size(), [&](std::size_t) {
+        std::map<const SamplerAdapter*, Spending> spending;  // guarded by the lock
+        for_each_index(is_serial, jobs_.size(), [&](std::size_t) {
             const std::size_t j = next++;
             const Job& job = jobs_[j];
             const SamplerAdapter* adapter = case_of(job).adapter.get();
-            if (serial) jobs_left_ = jobs_.size() - j - 1;
+            if (is_serial) jobs_left_ = jobs_.size() - j - 1;
             std::optional<Cut>& cut = job.outcome->cut[job.index];
             if (cut) return monitor_.advance(1);
-            const QueryUsage before = adapter->spending();
+            const QueryUsage start = adapter->spending();
             const bool has_time = [&] {
                 const Guard guard(lock);
-                return spent_by[adapter].has_time(before);
+                return spending[adapter].has_time(start);
             }();
             if (has_time) check(job);
             else {
@@ -328,7 +330,7 @@ private:
             }
             keep_first_fault(job, first_faults[j]);
             const Guard guard(lock);
-            spent_by[adapter].add(before, adapter->spending());
+            spending[adapter].add(start, adapter->spending());
         });
     }
 };

@@ -34,16 +34,16 @@ struct CheckSettings {
 struct Cut {
     enum class Why { fault, exited, too_slow } why = Why::fault;
     std::string what;
-    bool first_draws = false;  // whether the first draws were examined, see CheckOutcome::at
+    bool first_draws = false;  // whether the first draws were examined, see CheckOutcome::checks
 };
 
 /// The outcome for one sampler.
 struct CheckOutcome {
     std::string arm;
-    std::vector<std::size_t> check_cases;  // indices into the call's cases
-    std::vector<std::vector<CheckAt>> at;  // by case and technique; if cut short, the faults of the first draws
-    std::vector<WeightTail> tails;         // by case
-    std::vector<SmallFault> small;         // faults of the sampler as a whole
+    std::vector<std::size_t> check_cases;      // indices into the call's cases
+    std::vector<std::vector<CheckAt>> checks;  // by case and technique; if cut short, the faults of the first draws
+    std::vector<WeightTail> tails;             // by case
+    std::vector<SmallFault> small;             // faults of the sampler as a whole
     std::uint64_t evaluations = 0;
     std::vector<std::optional<Cut>> cut;  // by case
     std::optional<Cut> whole_cut{};       // of the tests of the whole sampler
@@ -80,9 +80,9 @@ struct Efficiency {
     double variance = 0, relative_se = 0;  // of X; relative standard error of the variance
     double nanoseconds = 0, cost_se = 0;   // per sample, relative standard error; 0: not measured
     bool has_weights = false;
-    bool heavy = false;  // whether the tail is too heavy for a variance
-    bool whole = false;  // over the sphere, not only the upper hemisphere
-    std::string fault;   // the error if the sampler failed meanwhile
+    bool heavy = false;           // whether the tail is too heavy for a variance
+    bool is_over_sphere = false;  // over the sphere, not only the upper hemisphere
+    std::string fault;            // the error if the sampler failed meanwhile
     double value() const { return variance * nanoseconds; }
     double low() const;
     double high() const;

@@ -33,24 +33,24 @@ TEST(CheckedSamplers, AreGroupedByNameAndSurface) {
     EXPECT_EQ(found[0].check_cases, (std::vector<std::size_t>{0, 3}));
     EXPECT_EQ(found[1].check_cases, std::vector<std::size_t>{1});
     EXPECT_FALSE(found[0].wrong());
-    EXPECT_EQ(found[0].at[1].size(), 1u);  // one technique
+    EXPECT_EQ(found[0].checks[1].size(), 1u);  // one technique
 }
 
 TEST(CheckedSamplers, HaveTheSameNumbersBesideOthers) {
     const auto s = std::make_shared<FunctionSampler>();
     const auto one = checked({case_of(s, 10)}), two = checked({case_of(s, 10), case_of(s, 70)});
-    const Observations &alone = one[0].at[0][0].observations, &beside = two[0].at[0][0].observations;
+    const Observations &alone = one[0].checks[0][0].observations, &beside = two[0].checks[0][0].observations;
     EXPECT_EQ(alone.sums[slope].sum, beside.sums[slope].sum);
-    EXPECT_NE(alone.sums[slope].sum, two[0].at[1][0].observations.sums[slope].sum);
+    EXPECT_NE(alone.sums[slope].sum, two[0].checks[1][0].observations.sums[slope].sum);
 }
 
 TEST(CheckedSamplers, FreeTheEvidenceOfARightWo) {
     const auto right = std::make_shared<FunctionSampler>(), wrong = std::make_shared<FunctionSampler>();
     wrong->p = [](Vec3d o, Vec3d w) { return 2 * cosine_pdf(o, w); };
-    EXPECT_FALSE(checked({case_of(right, 40)})[0].at[0][0].plan);
+    EXPECT_FALSE(checked({case_of(right, 40)})[0].checks[0][0].plan);
     const auto found = checked({case_of(wrong, 40)});
     EXPECT_TRUE(found[0].wrong());
-    EXPECT_TRUE(found[0].at[0][0].plan);
+    EXPECT_TRUE(found[0].checks[0][0].plan);
 }
 
 TEST(CheckedSamplers, AFaultOfTheWholeSamplerIsOfNoWo) {
@@ -59,7 +59,7 @@ TEST(CheckedSamplers, AFaultOfTheWholeSamplerIsOfNoWo) {
     const auto found = checked({case_of(s, 20), case_of(s, 60)});
     ASSERT_EQ(found[0].small.size(), 1u);
     EXPECT_EQ(found[0].small[0].family, Family::reciprocity);
-    for (const auto& at : found[0].at) EXPECT_FALSE(at[0].wrong());
+    for (const auto& at : found[0].checks) EXPECT_FALSE(at[0].wrong());
 }
 
 struct LogMonitor : ProgressMonitor {
@@ -101,10 +101,10 @@ TEST(CheckedSamplers, KeepTheResultsBeforeAFailure) {
     s->of.wo = Traits::WoDomain::upper;
     const auto found = checked({case_of(s, 40), case_of(s, 60)});
     EXPECT_FALSE(found[0].cut[0]);
-    EXPECT_EQ(found[0].at[0].size(), 1u);
+    EXPECT_EQ(found[0].checks[0].size(), 1u);
     ASSERT_TRUE(found[0].cut[1]);
     EXPECT_EQ(found[0].cut[1]->what, "it ended");
-    EXPECT_TRUE(found[0].at[1].empty());
+    EXPECT_TRUE(found[0].checks[1].empty());
 }
 
 }  // namespace check_sampler_test

@@ -19,16 +19,16 @@ Vec3d mirrored(Vec3d wo) { return {-wo.x, -wo.y, wo.z}; }
 /// The direction into which w_o is refracted; none for total reflection.
 std::optional<Vec3d> refracted(Vec3d wo, double below_over_above) {
     const double e = wo.z > 0 ? below_over_above : 1 / below_over_above, x = -wo.x / e, y = -wo.y / e,
-                 rest = 1 - x * x - y * y;
-    if (rest < 0) return {};
-    return Vec3d{x, y, wo.z > 0 ? -std::sqrt(rest) : std::sqrt(rest)};
+                 squared_cosine = 1 - x * x - y * y;
+    if (squared_cosine < 0) return {};
+    return Vec3d{x, y, wo.z > 0 ? -std::sqrt(squared_cosine) : std::sqrt(squared_cosine)};
 }
 
-bool is_refracted(Vec3d wo, Vec3d wi, Vec3d eta, bool inverted) {
+bool is_refracted(Vec3d wo, Vec3d wi, Vec3d eta, bool is_inverted) {
     for (int c = 0; c < 3; ++c) {
-        const double one = channel_of(eta, c);
-        const std::optional<Vec3d> due = refracted(wo, inverted ? 1 / one : one);
-        if (due && near(*due, wi)) return true;
+        const double index = channel_of(eta, c);
+        const std::optional<Vec3d> expected = refracted(wo, is_inverted ? 1 / index : index);
+        if (expected && near(*expected, wi)) return true;
     }
     return false;
 }
@@ -46,17 +46,18 @@ bool turns_with_wo(const Source& source, Vec3d wi, const StreamKey& key) {
     constexpr double angle = 2.4;  // radians; no symmetry of a pattern
     if (!source.declaration.can_draw) return false;
     const math::SinCos rotation = math::sincos(angle);
-    const auto turned = [&](Vec3d w) {
+    const auto turn = [&](Vec3d w) {
         return Vec3d{rotation.cos * w.x - rotation.sin * w.y, rotation.sin * w.x + rotation.cos * w.y, w.z};
     };
-    const std::vector<Draw> draws = drawn_at(source, turned(source.wo), 256, key);
-    return std::ranges::any_of(draws, [due = turned(wi)](const Draw& d) { return d.delta > 0 && near(d.wi, due); });
+    const std::vector<Draw> draws = drawn_at(source, turn(source.wo), 256, key);
+    return std::ranges::any_of(
+        draws, [expected = turn(wi)](const Draw& d) { return d.delta > 0 && near(d.wi, expected); });
 }
 
 SmallFault fault_at(const DeltaPart& p, const char* what) {
     SmallFault out{.family = Family::delta_direction,
-        .times = static_cast<double>(p.drawn),
-        .of = static_cast<double>(p.drawn),
+        .times = static_cast<double>(p.draws),
+        .trials = static_cast<double>(p.draws),
         .what = what};
     out.first.draw.wi = p.wi;
     out.first.draw.delta = p.q;
@@ -69,30 +70,30 @@ SmallFault fault_at(const DeltaPart& p, const char* what) {
 std::optional<SmallFault> refraction(const Source& source, const std::vector<DeltaPart>& parts, const StreamKey& key) {
     if (!source.traits.eta) return {};
     const Vec3d wo = source.wo, eta = *source.traits.eta;
-    std::vector<const DeltaPart*> across;
+    std::vector<const DeltaPart*> refracted_parts;
     const DeltaPart* off_mirror = nullptr;  // reflected, but not to the mirror direction of a flat boundary
-    bool mirrors = false;
+    bool has_mirror = false;
     for (const DeltaPart& p : parts) {
-        const bool through = p.wi.z * wo.z < 0;
-        if (!through) {
-            if (near(p.wi, mirrored(wo))) mirrors = true;
+        const bool is_transmitted = p.wi.z * wo.z < 0;
+        if (!is_transmitted) {
+            if (near(p.wi, mirrored(wo))) has_mirror = true;
             else if (!near(p.wi, wo)) off_mirror = &p;
-        } else if (std::ranges::none_of(across, [&](const DeltaPart* q) { return near(q->wi, p.wi); })) {
-            across.push_back(&p);
+        } else if (std::ranges::none_of(refracted_parts, [&](const DeltaPart* q) { return near(q->wi, p.wi); })) {
+            refracted_parts.push_back(&p);
         }
     }
     const std::size_t indices = eta.x == eta.y && eta.y == eta.z ? 1 : 3;
-    if (across.size() > indices) return {};  // a boundary of another shape
-    if (off_mirror) {                        // a boundary that refracts as a flat one must also reflect as one
-        const bool flat = std::ranges::any_of(
-            across, [&](const DeltaPart* p) { return !near(p->wi, -wo) && is_refracted(wo, p->wi, eta, false); });
-        if (!flat) return {};
+    if (refracted_parts.size() > indices) return {};  // a boundary of another shape
+    if (off_mirror) {                                 // a boundary that refracts as a flat one must also reflect as one
+        const bool is_flat = std::ranges::any_of(refracted_parts,
+            [&](const DeltaPart* p) { return !near(p->wi, -wo) && is_refracted(wo, p->wi, eta, false); });
+        if (!is_flat) return {};
         return fault_at(*off_mirror,
             "A delta part is not reflected to the mirror direction, although the boundary refracts as a flat one");
     }
-    for (const DeltaPart* p : across) {
+    for (const DeltaPart* p : refracted_parts) {
         if (near(p->wi, -wo) || is_refracted(wo, p->wi, eta, false)) continue;
-        if (!mirrors && !turns_with_wo(source, p->wi, key)) continue;
+        if (!has_mirror && !turns_with_wo(source, p->wi, key)) continue;
         return fault_at(*p,
             is_refracted(wo, p->wi, eta, true) ? "A delta part is refracted by 1 / eta in place of eta"
                                                : "A delta part is not refracted by the stated index");
@@ -120,20 +121,21 @@ std::optional<Vec3d> reverse_power_ratio(const Source& source, Vec3d wi) {
     if (wi.z * wo.z > 0) return near(wi, mirrored(wo)) ? std::optional(Vec3d{1, 1, 1}) : std::nullopt;
     if (!source.traits.eta || near(wi, -wo) || !is_refracted(wo, wi, *source.traits.eta, false)) return {};
     if (source.traits.importance) return Vec3d{1, 1, 1};
-    const auto solid_angle_factor = [up = wo.z > 0](double eta) { return sqr(sqr(up ? eta : 1 / eta)); };
+    const auto solid_angle_factor = [is_above = wo.z > 0](double eta) { return sqr(sqr(is_above ? eta : 1 / eta)); };
     return Vec3d{solid_angle_factor(source.traits.eta->x), solid_angle_factor(source.traits.eta->y),
         solid_angle_factor(source.traits.eta->z)};
 }
 
 /// Compares the power of a part with that of its reverse path, if each is a single part.
-std::optional<SmallFault> reverse_power_fault(
-    const Source& source, const std::vector<DeltaPart>& parts, const DeltaPart& p, const std::vector<Draw>& back) {
-    const std::optional<Vec3d> due = reverse_power_ratio(source, p.wi);
-    const auto in_one_piece = std::ranges::count_if(parts, [&](const DeltaPart& o) { return near(o.wi, p.wi); });
-    if (!due || in_one_piece != 1 || p.otherwise > 0) return {};
-    const Vec3d first = power_of(source, back[0]), forward_power = p.q * p.weight,
-                expected = {forward_power.x * due->x, forward_power.y * due->y, forward_power.z * due->z};
-    if (!std::ranges::all_of(back, [&](const Draw& d) { return alike_power(power_of(source, d), first); })) return {};
+std::optional<SmallFault> reverse_power_fault(const Source& source, const std::vector<DeltaPart>& parts,
+    const DeltaPart& p, const std::vector<Draw>& reverse_draws) {
+    const std::optional<Vec3d> ratio = reverse_power_ratio(source, p.wi);
+    const auto part_count = std::ranges::count_if(parts, [&](const DeltaPart& o) { return near(o.wi, p.wi); });
+    if (!ratio || part_count != 1 || p.other_weights > 0) return {};
+    const Vec3d first = power_of(source, reverse_draws[0]), forward_power = p.q * p.weight,
+                expected = {forward_power.x * ratio->x, forward_power.y * ratio->y, forward_power.z * ratio->z};
+    if (!std::ranges::all_of(reverse_draws, [&](const Draw& d) { return alike_power(power_of(source, d), first); }))
+        return {};
     if (alike_power(first, expected)) return {};
     SmallFault out = fault_at(p, "The reverse path of a delta part has another power: not reciprocal");
     out.first.p = first.x;
@@ -152,14 +154,14 @@ std::optional<SmallFault> reverse_path(
         if (p.wi.z < grazing_cosine && (traits.wo != Traits::WoDomain::both || p.wi.z > -grazing_cosine)) continue;
         // Of the same kind: reflected if w_i is a reflection of w_o, else transmitted.
         const Vec3d wi = normalize(p.wi);
-        std::vector<Draw> back = drawn_at(source, wi, 512, key);
-        std::erase_if(
-            back, [&](const Draw& d) { return !(d.delta > 0) || (d.wi.z * wi.z < 0) != (wi.z * source.wo.z < 0); });
-        const bool often = back.size() >= 8;
-        std::erase_if(back, [&](const Draw& d) { return !near(d.wi, source.wo); });
-        if (!back.empty()) {
-            if (std::optional<SmallFault> fault = reverse_power_fault(source, parts, p, back)) return fault;
-        } else if (often) {
+        std::vector<Draw> reverse_draws = drawn_at(source, wi, 512, key);
+        std::erase_if(reverse_draws,
+            [&](const Draw& d) { return !(d.delta > 0) || (d.wi.z * wi.z < 0) != (wi.z * source.wo.z < 0); });
+        const bool has_many_draws = reverse_draws.size() >= 8;
+        std::erase_if(reverse_draws, [&](const Draw& d) { return !near(d.wi, source.wo); });
+        if (!reverse_draws.empty()) {
+            if (std::optional<SmallFault> fault = reverse_power_fault(source, parts, p, reverse_draws)) return fault;
+        } else if (has_many_draws) {
             return fault_at(p, "No delta part returns from the direction of a delta part to w_o");
         }
     }

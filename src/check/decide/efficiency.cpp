@@ -29,14 +29,14 @@ std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKe
     const std::uint32_t n = check_case.adapter->limited() ? baseline_draws_of_program : baseline_draws;
     for (int t = 0; t < check_case.adapter->techniques(); ++t) {
         Source source(*check_case.adapter, t, check_case.wo, check_case.light);
-        StreamKey draws = key;
-        draws.technique = static_cast<std::uint8_t>(t);
+        StreamKey draw_key = key;
+        draw_key.technique = static_cast<std::uint8_t>(t);
         std::vector<double> x;
         std::vector<PrimarySample> u;
         for (std::uint32_t from = 0; from < n; from += batch_size) {
             u.resize(std::min(batch_size, n - from));
             for (std::uint32_t i = 0; i < u.size(); ++i)
-                u[i] = numbers_at(draws, from + i, source.numbers(), source.resolution());
+                u[i] = numbers_at(draw_key, from + i, source.numbers(), source.resolution());
             std::vector<Draw> batch(u.size());
             source.draw(u, batch);
             std::vector<std::size_t> indices;
@@ -49,7 +49,7 @@ std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKe
             std::vector<double> p(wi.size(), 1);
             std::vector<Vec3d> f(wi.size());
             source.f_cos(wi, f);
-            append_weights(source, batch, {.at = indices, .wi = wi, .p = p, .f_cos = f}, x);
+            append_weights(source, batch, {.rows = indices, .wi = wi, .p = p, .f_cos = f}, x);
         }
         if (out.empty()) out = std::move(x);
         else
@@ -60,7 +60,7 @@ std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKe
 
 void note_variance(const WeightTail& t, Efficiency& e) {
     e.has_weights = t.has_weights;
-    e.whole = t.whole;
+    e.is_over_sphere = t.has_lower_draws;
     e.variance = sqr(t.spread.sd);
     e.relative_se = t.variance_error;
     e.heavy = t.heavy() || t.open() || t.has_unseen();
@@ -101,8 +101,8 @@ std::vector<Efficiency> variances_of(std::span<const CheckCase> check_cases, std
             .part = 3};
         out[i] = variance_of_baseline(check_cases[i], i, key);
     };
-    const bool serial = std::ranges::any_of(check_cases, [](const CheckCase& t) { return t.adapter->serial(); });
-    for_each_index(serial, baselines.size(), run);
+    const bool is_serial = std::ranges::any_of(check_cases, [](const CheckCase& t) { return t.adapter->serial(); });
+    for_each_index(is_serial, baselines.size(), run);
     return out;
 }
 
@@ -126,7 +126,7 @@ std::optional<double> time_once(
 
 void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, std::span<Efficiency> variances,
     const ProgressMonitor& monitor) {
-    constexpr std::size_t turns = 7, batch_draws = 1024, of_a_program = 512;
+    constexpr std::size_t turns = 7, batch_draws = 1024, program_draws = 512;
     std::vector<PrimarySample> u(batch_draws);
     const StreamKey key{.seed = seed, .place = 0, .technique = 0, .stage = 1, .purpose = Purpose::light, .part = 4};
     for (std::uint32_t i = 0; i < batch_draws; ++i)
@@ -138,7 +138,7 @@ void measure_costs(std::span<const CheckCase> check_cases, std::uint32_t seed, s
             monitor.check();
             const CheckCase& check_case = check_cases[variances[i].check_case];
             if (!variances[i].has_weights || times[i].size() < turn || !check_case.adapter->can_draw()) continue;
-            const std::size_t n = check_case.adapter->limited() ? of_a_program : batch_draws;
+            const std::size_t n = check_case.adapter->limited() ? program_draws : batch_draws;
             if (const std::optional<double> ns = time_once(check_case, std::span(u).first(n), draws, variances[i]))
                 times[i].push_back(*ns);
         }
@@ -168,9 +168,9 @@ struct Ranks {
 Ranks ranks_of(const Efficiency& e, std::span<const CheckCase> check_cases, std::span<const Efficiency* const> group) {
     Ranks out;
     for (const Efficiency* o : group) {
-        if (o->check_case == e.check_case || !(o->nanoseconds > 0) || o->whole != e.whole) continue;
-        const bool tied = o->heavy || (o->low() <= e.high() && e.low() <= o->high());
-        (tied ? out.tied : e.high() < o->low() ? out.better : out.worse).push_back(check_cases[o->check_case].arm);
+        if (o->check_case == e.check_case || !(o->nanoseconds > 0) || o->is_over_sphere != e.is_over_sphere) continue;
+        const bool is_tied = o->heavy || (o->low() <= e.high() && e.low() <= o->high());
+        (is_tied ? out.tied : e.high() < o->low() ? out.better : out.worse).push_back(check_cases[o->check_case].arm);
     }
     return out;
 }
@@ -215,9 +215,9 @@ std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std
     std::map<std::string, std::vector<const Efficiency*>> groups;
     for (const Efficiency& e : variances)
         if (e.has_weights) groups[group_of(check_cases[e.check_case])].push_back(&e);
-    std::size_t checked = 0;
+    std::size_t last_case = 0;
     for (const Efficiency& e : variances) {
-        if (!check_cases[e.check_case].baseline) checked = e.check_case;
+        if (!check_cases[e.check_case].baseline) last_case = e.check_case;
         Verdict& v = out[e.check_case];
         v.arm = check_cases[e.check_case].arm;
         v.check_case = check_cases[e.check_case].text();
@@ -228,8 +228,8 @@ std::vector<Verdict> test_efficiency(std::span<const CheckCase> check_cases, std
             test_one_efficiency(e, check_cases, groups[group_of(check_cases[e.check_case])], v);
         // A program failed while its f was evaluated for a baseline: reported where it would be ranked.
         if (check_cases[e.check_case].baseline && !e.fault.empty()) {
-            out[checked].state = State::error;
-            out[checked].sentences = v.sentences;
+            out[last_case].state = State::error;
+            out[last_case].sentences = v.sentences;
         }
     }
     return out;

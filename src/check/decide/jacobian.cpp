@@ -49,13 +49,13 @@ std::vector<Draw> draws_at(Source& source, const std::vector<PrimarySample>& u) 
 /// A value of the choosing number, and whether it selects the branch of the draw at u.
 struct Probe {
     double x = 0;
-    bool same = false;
+    bool selects = false;
 };
 
-/// One end of an interval: between `inside`, which selects the branch, and `outside`.
+/// One end of an interval: between `inner`, which selects the branch, and `outer`.
 struct IntervalEnd {
     std::size_t point = 0;
-    double inside = 0, outside = 0;
+    double inner = 0, outer = 0;
 };
 
 /// Whether each of these draws has the direction of its point if number k is replaced by x.
@@ -82,9 +82,9 @@ std::vector<std::vector<Probe>> probe_branches(
         for (int n = 0; n < probes; ++n) values.emplace_back(i, (n + stream.number()) / probes);
         values.emplace_back(i, 1.0);
     }
-    const std::vector<bool> same = selects_branch(source, points, k, values);
+    const std::vector<bool> selections = selects_branch(source, points, k, values);
     std::vector<std::vector<Probe>> out(points.size());
-    for (std::size_t j = 0; j < values.size(); ++j) out[values[j].first].push_back({values[j].second, same[j]});
+    for (std::size_t j = 0; j < values.size(); ++j) out[values[j].first].push_back({values[j].second, selections[j]});
     for (std::size_t i = 0; i < points.size(); ++i) {
         out[i].push_back({points[i].u[k], true});
         std::ranges::sort(out[i], {}, &Probe::x);
@@ -95,7 +95,7 @@ std::vector<std::vector<Probe>> probe_branches(
 /// Adds one interval for each run of probes that select the branch; its ends are located by bisection. An interval
 /// within the gap between two probes is not found, which `confirm` allows for.
 void find_branches(Source& source, std::vector<Point>& points, int k, const StreamKey& key) {
-    const std::vector<std::vector<Probe>> probed = probe_branches(source, points, k, key);
+    const std::vector<std::vector<Probe>> branch_probes = probe_branches(source, points, k, key);
     std::vector<IntervalEnd> ends;
     struct Run {
         std::size_t point;
@@ -104,13 +104,13 @@ void find_branches(Source& source, std::vector<Point>& points, int k, const Stre
     };
     std::vector<Run> runs;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::vector<Probe>& probes = probed[i];
-        std::vector<Run> mine;
+        const std::vector<Probe>& probes = branch_probes[i];
+        std::vector<Run> point_runs;
         for (std::size_t j = 0; j < probes.size(); ++j) {
-            if (!probes[j].same) continue;
+            if (!probes[j].selects) continue;
             Run run{.point = i, .from = probes[j].x, .to = probes[j].x, .low_end = {}, .high_end = {}};
             const std::size_t first = j;
-            while (j + 1 < probes.size() && probes[j + 1].same) ++j;
+            while (j + 1 < probes.size() && probes[j + 1].selects) ++j;
             run.to = probes[j].x;
             if (first > 0) {
                 run.low_end = ends.size();
@@ -120,19 +120,20 @@ void find_branches(Source& source, std::vector<Point>& points, int k, const Stre
                 run.high_end = ends.size();
                 ends.push_back({i, run.to, probes[j + 1].x});
             }
-            mine.push_back(run);
+            point_runs.push_back(run);
         }
-        runs.insert(runs.end(), mine.begin(), mine.end());
+        runs.insert(runs.end(), point_runs.begin(), point_runs.end());
     }
     for (int step = 0; step < bisections; ++step) {
         std::vector<std::pair<std::size_t, double>> values;
-        for (const IntervalEnd& e : ends) values.emplace_back(e.point, (e.inside + e.outside) / 2);
-        const std::vector<bool> same = selects_branch(source, points, k, values);
-        for (std::size_t j = 0; j < ends.size(); ++j) (same[j] ? ends[j].inside : ends[j].outside) = values[j].second;
+        for (const IntervalEnd& e : ends) values.emplace_back(e.point, (e.inner + e.outer) / 2);
+        const std::vector<bool> selections = selects_branch(source, points, k, values);
+        for (std::size_t j = 0; j < ends.size(); ++j)
+            (selections[j] ? ends[j].inner : ends[j].outer) = values[j].second;
     }
     for (const Run& run : runs)
         points[run.point].branch.intervals.emplace_back(
-            run.low_end ? ends[*run.low_end].inside : run.from, run.high_end ? ends[*run.high_end].inside : run.to);
+            run.low_end ? ends[*run.low_end].inner : run.from, run.high_end ? ends[*run.high_end].inner : run.to);
 }
 
 /// The one of three numbers that only selects a branch; none if every number moves w.
@@ -142,20 +143,20 @@ std::optional<int> chooser(Source& source, const std::vector<PrimarySample>& u, 
         std::vector<PrimarySample> v = u;
         for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? small_move : -small_move;
         const std::vector<Draw> d = draws_at(source, v);
-        int moved = 0, tested = 0;
+        int move_count = 0, test_count = 0;
         for (std::size_t i = 0; i < u.size(); ++i)
             if (has_direction(draws[i])) {
-                ++tested;
-                moved += !same_direction(d[i], draws[i]);
+                ++test_count;
+                move_count += !same_direction(d[i], draws[i]);
             }
-        if (tested >= 16 && moved * 20 <= tested) return k;
+        if (test_count >= 16 && move_count * 20 <= test_count) return k;
     }
     return {};
 }
 
 /// w(u + h) - w(u - h) along both numbers, and the range of the pdf of these draws.
 struct Difference {
-    Vec3d along[2]{};
+    Vec3d changes[2]{};
     double area = -1, least_pdf = 0, most_pdf = 0;  // |dw/du|; -1 if a draw is missing
 };
 using CentralDifferences = std::array<Difference, steps>;
@@ -179,9 +180,11 @@ std::vector<CentralDifferences> differences(Source& source, const std::vector<Po
             const double x = points[i].u[points[i].first], y = points[i].u[points[i].second];
             if (std::min({x, y, 1 - x, 1 - y}) < 2 * h || !std::all_of(q, q + 4, has_direction)) continue;
             const Vec3d a = q[0].wi - q[1].wi, b = q[2].wi - q[3].wi, n = cross(a, b);
-            const auto [least, most] = std::minmax({q[0].pdf, q[1].pdf, q[2].pdf, q[3].pdf});
-            out[i][s] = {
-                .along = {a, b}, .area = std::sqrt(dot(n, n)) / (4 * h * h), .least_pdf = least, .most_pdf = most};
+            const auto [least_pdf, most_pdf] = std::minmax({q[0].pdf, q[1].pdf, q[2].pdf, q[3].pdf});
+            out[i][s] = {.changes = {a, b},
+                .area = std::sqrt(dot(n, n)) / (4 * h * h),
+                .least_pdf = least_pdf,
+                .most_pdf = most_pdf};
         }
     }
     return out;
@@ -194,8 +197,8 @@ bool is_linear_below(const CentralDifferences& d, std::size_t s) {
     for (std::size_t k = s + 1; k < steps; ++k) {
         if (!(d[k].area >= 0)) return false;
         for (int n = 0; n < 2; ++n) {
-            const Vec3d deviation = d[k].along[n] - d[s].along[n] * (step_size(k) / step_size(s));
-            if (dot(deviation, deviation) > sqr(jacobian_error) * dot(d[s].along[n], d[s].along[n])) return false;
+            const Vec3d deviation = d[k].changes[n] - d[s].changes[n] * (step_size(k) / step_size(s));
+            if (dot(deviation, deviation) > sqr(jacobian_error) * dot(d[s].changes[n], d[s].changes[n])) return false;
         }
     }
     return true;
@@ -209,10 +212,11 @@ void differentiate(Source& source, std::vector<Point>& points) {
         for (std::size_t s = steps_used - 2; s-- > 0;) {  // finest first
             const Difference *a = &slopes[i][s], *b = a + 1, *c = a + 2;
             if (!(a->area > 0 && b->area > 0 && c->area > 0)) continue;
-            const double least = std::min({a->least_pdf, b->least_pdf, c->least_pdf});
+            const double smallest_pdf = std::min({a->least_pdf, b->least_pdf, c->least_pdf});
             const double largest_pdf = std::max({a->most_pdf, b->most_pdf, c->most_pdf});
             const double error = std::max(std::fabs(a->area - b->area), std::fabs(b->area - c->area)) / b->area;
-            if (!(largest_pdf <= smooth * least) || !(error < jacobian_error) || !is_linear_below(slopes[i], s + 1))
+            if (!(largest_pdf <= smooth * smallest_pdf) || !(error < jacobian_error) ||
+                !is_linear_below(slopes[i], s + 1))
                 continue;
             points[i].error = error;
             points[i].area = (4 * b->area - a->area) / 3;
@@ -223,23 +227,24 @@ void differentiate(Source& source, std::vector<Point>& points) {
 /// Whether random values of the choosing number within the intervals of a branch all select it. If a share g of the
 /// intervals does not, none of 9 / g values shows it with probability 1.2e-4; g is the shortfall of p that it explains.
 bool is_confirmed(Source& source, const MapDensity& x, double shortfall, Stream& stream) {
-    std::vector<Point> one(1);
-    one[0].u = x.u;
-    one[0].draw = x.draw;
+    std::vector<Point> points(1);
+    points[0].u = x.u;
+    points[0].draw = x.draw;
     const double length = x.branch.length();
     std::vector<std::pair<std::size_t, double>> values(static_cast<std::size_t>(std::ceil(9 / shortfall)));
     for (auto& [point, value] : values) {
-        double along = length * stream.number();
+        double position = length * stream.number();
         for (const auto& [from, to] : x.branch.intervals) {
-            value = from + std::max(along, 0.0);
-            if ((along -= to - from) < 0) break;
+            value = from + std::max(position, 0.0);
+            if ((position -= to - from) < 0) break;
         }
     }
-    return std::ranges::all_of(selects_branch(source, one, x.branch.number, values), [](bool same) { return same; });
+    return std::ranges::all_of(
+        selects_branch(source, points, x.branch.number, values), [](bool selects) { return selects; });
 }
 
 struct Round {
-    int tested = 0, broken = 0;
+    int test_count = 0, fault_count = 0;
     double worst = 1;
     Example first{};
 };
@@ -251,22 +256,22 @@ Round test_points(Source& source, const StreamKey& key) {
     std::vector<std::pair<double, const MapDensity*>> suspects;  // p over its bound
     const std::vector<MapDensity> densities = map_densities(source, key);
     for (const MapDensity& x : densities) {
-        ++out.tested;
-        const double ratio = x.p / x.drawn;
+        ++out.test_count;
+        const double ratio = x.p / x.density;
         if (ratio < 1 - jacobian_tolerance - 4 * x.error) suspects.emplace_back(ratio, &x);
     }
     std::ranges::sort(suspects, {}, &std::pair<double, const MapDensity*>::first);
-    StreamKey confirming = key;
-    confirming.part = static_cast<std::uint16_t>(key.part + 32);
-    Stream stream(confirming);
+    StreamKey confirming_key = key;
+    confirming_key.part = static_cast<std::uint16_t>(key.part + 32);
+    Stream stream(confirming_key);
     double cost = 0;
     for (const auto& [ratio, x] : suspects) {
         if (x->branch.number >= 0) {
             if ((cost += 9 / (1 - ratio)) > most_confirming) break;
             if (!is_confirmed(source, *x, 1 - ratio, stream)) continue;
         }
-        if (out.broken++ == 0) {
-            out.first = {.u = x->u, .draw = x->draw, .p = x->p, .expected = x->drawn};
+        if (out.fault_count++ == 0) {
+            out.first = {.u = x->u, .draw = x->draw, .p = x->p, .expected = x->density};
             out.worst = ratio;
         }
     }
@@ -282,52 +287,53 @@ std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
         return out;
     const std::vector<PrimarySample> u = first_numbers(key, points, source.traits);
     const std::vector<Draw> draws = draws_at(source, u);
-    std::optional<int> choosing;
+    std::optional<int> choosing_number;
     int first = 0, second = 1;
     if (source.traits.numbers == 3) {
-        choosing = chooser(source, u, draws);
-        if (!choosing) return out;
-        first = *choosing == 0 ? 1 : 0;
-        second = *choosing == 2 ? 1 : 2;
+        choosing_number = chooser(source, u, draws);
+        if (!choosing_number) return out;
+        first = *choosing_number == 0 ? 1 : 0;
+        second = *choosing_number == 2 ? 1 : 2;
     }
-    std::vector<Point> derived;
+    std::vector<Point> candidates;
     for (std::size_t i = 0; i < u.size(); ++i)
-        if (has_direction(draws[i])) derived.push_back({.u = u[i], .draw = draws[i], .first = first, .second = second});
-    differentiate(source, derived);
-    std::erase_if(derived, [](const Point& x) { return !(x.error < jacobian_error); });
-    if (choosing) {
-        StreamKey of_probes = key;
-        of_probes.part = static_cast<std::uint16_t>(key.part + 16);
-        find_branches(source, derived, *choosing, of_probes);
+        if (has_direction(draws[i]))
+            candidates.push_back({.u = u[i], .draw = draws[i], .first = first, .second = second});
+    differentiate(source, candidates);
+    std::erase_if(candidates, [](const Point& x) { return !(x.error < jacobian_error); });
+    if (choosing_number) {
+        StreamKey probe_key = key;
+        probe_key.part = static_cast<std::uint16_t>(key.part + 16);
+        find_branches(source, candidates, *choosing_number, probe_key);
     }
     std::vector<Vec3d> w;
-    for (const Point& x : derived) w.push_back(x.draw.wi);
+    for (const Point& x : candidates) w.push_back(x.draw.wi);
     std::vector<double> p(w.size());
     source.density(w, p);
-    for (std::size_t i = 0; i < derived.size(); ++i) {
-        const Point& x = derived[i];
-        const double length = choosing ? x.branch.length() : 1;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const Point& x = candidates[i];
+        const double length = choosing_number ? x.branch.length() : 1;
         if (!(p[i] > 0) || !(length > least_branch)) continue;
         out.push_back(
-            {.u = x.u, .draw = x.draw, .p = p[i], .drawn = length / x.area, .error = x.error, .branch = x.branch});
-        if (choosing) out.back().branch.number = *choosing;
+            {.u = x.u, .draw = x.draw, .p = p[i], .density = length / x.area, .error = x.error, .branch = x.branch});
+        if (choosing_number) out.back().branch.number = *choosing_number;
     }
     return out;
 }
 
-std::optional<SmallFault> jacobian(Source& source, const StreamKey& given) {
+std::optional<SmallFault> jacobian(Source& source, const StreamKey& base_key) {
     if (!source.has_density()) return {};
-    StreamKey key = given;
-    const Round one = test_points(source, key);
-    if (one.broken < jacobian_breaks) return {};
+    StreamKey key = base_key;
+    const Round first_round = test_points(source, key);
+    if (first_round.fault_count < jacobian_breaks) return {};
     key.part = 1;
-    const Round two = test_points(source, key);
-    if (two.broken < jacobian_breaks) return {};
+    const Round second_round = test_points(source, key);
+    if (second_round.fault_count < jacobian_breaks) return {};
     return SmallFault{.family = Family::jacobian,
-        .times = static_cast<double>(one.broken + two.broken),
-        .of = static_cast<double>(one.tested + two.tested),
-        .size = std::min(one.worst, two.worst) - 1,
-        .first = one.first,
+        .times = static_cast<double>(first_round.fault_count + second_round.fault_count),
+        .trials = static_cast<double>(first_round.test_count + second_round.test_count),
+        .size = std::min(first_round.worst, second_round.worst) - 1,
+        .first = first_round.first,
         .what = "p is less than what is drawn"};
 }
 

@@ -30,18 +30,18 @@ ResolutionEffect resolution_effect(Source& source, const Plan& plan, StreamKey k
     key.purpose = Purpose::corners;
     key.part = 24;
     const std::vector<PrimarySample> u = first_numbers(key, moved_draws, source.traits);
-    std::vector<Draw> here(u.size()), beside(u.size());
-    source.draw(u, here);
+    std::vector<Draw> draws(u.size()), shifted_draws(u.size());
+    source.draw(u, draws);
     for (int k = 0; k < source.traits.numbers; ++k) {
         std::vector<PrimarySample> v = u;
         for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? ulp : -ulp;
-        source.draw(v, beside);
+        source.draw(v, shifted_draws);
         for (std::size_t i = 0; i < u.size(); ++i) {
-            if (!(here[i].pdf > 0) || !(beside[i].pdf > 0)) continue;
-            const Vec3d jump = here[i].wi - beside[i].wi;
+            if (!(draws[i].pdf > 0) || !(shifted_draws[i].pdf > 0)) continue;
+            const Vec3d jump = draws[i].wi - shifted_draws[i].wi;
             if (!(dot(jump, jump) > least_jump * least_jump)) continue;
             out.share += 1.0 / moved_draws;
-            const Values a = values_at(source, plan, here[i].wi), b = values_at(source, plan, beside[i].wi);
+            const Values a = values_at(source, plan, draws[i].wi), b = values_at(source, plan, shifted_draws[i].wi);
             for (std::size_t q = 0; q < integrands; ++q) out.sums[q] += std::fabs(a[q] - b[q]) / moved_draws;
         }
     }

@@ -29,10 +29,10 @@ double bennett_difference(double z2, double v, double b) {
 }
 
 /// The difference that one test needs to detect a fault.
-class Needed {
+class Requirement {
 public:
     /// largest: largest single term, for Bennett's inequality.
-    static Needed by_bennett(double floor, double variance, double largest, double freedom, double level) {
+    static Requirement by_bennett(double floor, double variance, double largest, double freedom, double level) {
         const double z2 = -2 * math::log(level / 2) / freedom;
         return {floor, variance, largest, z2 < 500 ? freedom * (math::exp(z2) - 1) : 1e300, 0};
     }
@@ -40,56 +40,56 @@ public:
     static double quantile(double freedom, double level) {
         return student_two_sided_quantile(std::clamp(freedom, 1.0, 1e6), level);
     }
-    static Needed by_student(double floor, double variance, double quantile, double freedom) {
+    static Requirement by_student(double floor, double variance, double quantile, double freedom) {
         return {floor, variance, 0, quantile, 1 / (2 * std::clamp(freedom, 1.0, 1e6))};
     }
 
-    /// `tested`: variance that the fault adds and that the test estimates from its draws; `untested`: variance that the
-    /// test does not include.
-    double difference(double tested = 0, double untested = 0, double errors = power_of_each) const {
-        const double v = variance_ + tested;
+    /// `tested_variance`: variance that the fault adds and that the test estimates from its draws; `untested_variance`:
+    /// variance that the test does not include.
+    double difference(double tested_variance = 0, double untested_variance = 0, double errors = power_of_each) const {
+        const double v = variance_ + tested_variance;
         // A single draw is never significant, for any small expectation: it may be in a region that the points have
         // missed.
         const double critical = largest_ > 0 ? std::max(bennett_difference(critical_, v, largest_), 2 * largest_)
                                              : critical_ * std::sqrt(v);
         // A standard deviation with nu degrees of freedom has a relative error of 1 / sqrt(2 nu). It enters through the
         // critical value, t times, and through the stated size, t + the quantile times.
-        const double more = largest_ > 0 ? 0 : unknown_ * (sqr(critical_) + sqr(critical_ + errors));
-        return floor_ + critical + errors * std::sqrt(v * (1 + more) + untested);
+        const double inflation = largest_ > 0 ? 0 : unknown_ * (sqr(critical_) + sqr(critical_ + errors));
+        return floor_ + critical + errors * std::sqrt(v * (1 + inflation) + untested_variance);
     }
     /// The size of a detectable fault from its effect and its added variances, both per unit of size.
-    double size(double effect, double tested = 0, double untested = 0) const {
+    double size(double effect, double tested_variance = 0, double untested_variance = 0) const {
         if (!(effect > 0)) return 1e300;
         double e = difference() / effect;
-        for (int k = 0; k < 12 && e < 1; ++k) e = difference(e * tested, e * untested) / effect;
+        for (int k = 0; k < 12 && e < 1; ++k) e = difference(e * tested_variance, e * untested_variance) / effect;
         return e;
     }
 
 private:
     double floor_, variance_, largest_, critical_;
     double unknown_;  // relative variance of the standard deviation
-    Needed(double floor, double variance, double largest, double critical, double unknown)
+    Requirement(double floor, double variance, double largest, double critical, double unknown)
         : floor_(floor), variance_(variance), largest_(largest), critical_(critical), unknown_(unknown) {}
 };
 
 struct SumTest {
-    std::size_t of;  // index of the sum
-    Needed needed;
+    std::size_t sum;  // index of the sum
+    Requirement requirement;
     double draws;
     double visible;  // part of a fault of one of two samplers that the difference shows; 1 for one sampler
 };
 
 /// The tests of whole sums, with both kinds of draws.
-std::vector<SumTest> whole_sums(const Evidence& e, double of_family) {
+std::vector<SumTest> whole_sums(const Evidence& e, double family_level) {
     std::vector<SumTest> out;
     const std::array<WholeSum, integrands> sums = compare_sums(e);
     for (std::size_t q = 0; q < integrands; ++q) {
         const auto add = [&](const SumComparison& s, double draws) {
-            const double level = of_family / (q >= centre_x ? 3 : 1);
+            const double level = family_level / (q >= centre_x ? 3 : 1);
             out.push_back({q,
-                s.largest > 0
-                    ? Needed::by_bennett(s.floor, s.variance(), s.largest, s.freedom, level)
-                    : Needed::by_student(s.floor, s.variance(), Needed::quantile(s.freedom, level), s.freedom),
+                s.largest > 0 ? Requirement::by_bennett(s.floor, s.variance(), s.largest, s.freedom, level)
+                              : Requirement::by_student(
+                                    s.floor, s.variance(), Requirement::quantile(s.freedom, level), s.freedom),
                 draws, s.visible});
         };
         add(sums[q].by_draws, e.observations.independent);
@@ -102,32 +102,32 @@ struct NodeTest {
     std::size_t node;
     double share;  // of h p in the first half
     double h;      // weight of one draw
-    Needed needed;
+    Requirement requirement;
     double draws;    // 0: the variance is predicted from the claimed density, not estimated from draws
     double visible;  // as for a sum
 };
 
 /// The nodes that are tested, with both kinds of draws.
 std::vector<NodeTest> node_tests(const Evidence& e, const std::vector<NodeSums>& sums, double level) {
-    std::vector<Answer> tested;
+    std::vector<Answer> answers;
     test_nodes(e, [&](const Answer& a) {
-        if (a.family == Family::node || a.family == Family::node_sets) tested.push_back(a);
+        if (a.family == Family::node || a.family == Family::node_sets) answers.push_back(a);
     });
-    const auto by_sets = static_cast<double>(
-        std::ranges::count_if(tested, [](const Answer& a) { return a.family == Family::node_sets; }));
-    const double level_of_one = level / std::max(static_cast<double>(tested.size()) - by_sets, 1.0);
-    const double t = Needed::quantile(replicate_sets - 1, level / std::max(by_sets, 1.0));
+    const auto set_count = static_cast<double>(
+        std::ranges::count_if(answers, [](const Answer& a) { return a.family == Family::node_sets; }));
+    const double node_level = level / std::max(static_cast<double>(answers.size()) - set_count, 1.0);
+    const double t = Requirement::quantile(replicate_sets - 1, level / std::max(set_count, 1.0));
     std::vector<NodeTest> out;
-    out.reserve(tested.size());
-    for (const Answer& a : tested) {
+    out.reserve(answers.size());
+    for (const Answer& a : answers) {
         const auto i = static_cast<std::size_t>(a.member);
         const NodeSplit s = split_of(e, sums, i);
         if (a.family == Family::node)
             out.push_back({i, s.share, s.one_draw,
-                Needed::by_bennett(s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt), level_of_one), 0,
-                s.visible});
+                Requirement::by_bennett(s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt), node_level),
+                0, s.visible});
         else
-            out.push_back({i, s.share, s.one_draw, Needed::by_student(a.floor, a.sd * a.sd, t, replicate_sets - 1),
+            out.push_back({i, s.share, s.one_draw, Requirement::by_student(a.floor, a.sd * a.sd, t, replicate_sets - 1),
                 e.observations.scrambled, 1});
     }
     return out;
@@ -150,49 +150,51 @@ template <class Test, class ChangeOf>
 void take_detected(const std::vector<Test>& tests, double n, const ChangeOf& change_of, std::optional<double>& size) {
     for (const Test& t : tests) {
         const FaultChange change = change_of(t);
-        const double added = change.square / (t.draws > 0 ? t.draws : n);
-        const bool estimated = t.draws > 0;
-        take_less(size, t.needed.size(change.mean * t.visible, estimated ? added : 0, estimated ? 0 : added));
+        const double added_variance = change.square / (t.draws > 0 ? t.draws : n);
+        const bool is_estimated = t.draws > 0;
+        take_less(size,
+            t.requirement.size(
+                change.mean * t.visible, is_estimated ? added_variance : 0, is_estimated ? 0 : added_variance));
     }
 }
 
 /// p is (1 + e) times the density of the draws.
-std::optional<double> constant_of(const Evidence& e, const std::vector<SumTest>& whole) {
+std::optional<double> constant_of(const Evidence& e, const std::vector<SumTest>& sum_tests) {
     std::optional<double> out;
-    const auto of_sum = [&](const SumTest& t) {
-        const bool grows = t.of == mass || t.of == bridge;
-        return FaultChange{grows ? e.integrals.sums[t.of].value : 0};
+    const auto change_of_sum = [&](const SumTest& t) {
+        const bool grows = t.sum == mass || t.sum == bridge;
+        return FaultChange{grows ? e.integrals.sums[t.sum].value : 0};
     };
-    take_detected(whole, e.observations.independent, of_sum, out);
+    take_detected(sum_tests, e.observations.independent, change_of_sum, out);
     return out;
 }
 
 /// A share e of the draws is uniform.
-std::optional<double> leak_of(const Evidence& e, const std::vector<SumTest>& whole, const std::vector<NodeSums>& sums,
-    const std::vector<NodeTest>& nodes) {
+std::optional<double> leak_of(const Evidence& e, const std::vector<SumTest>& sum_tests,
+    const std::vector<NodeSums>& sums, const std::vector<NodeTest>& nodes) {
     std::optional<double> out;
     const double domain = e.integrals.domain, n = e.observations.independent;
-    const auto of_sum = [&](const SumTest& t) {
-        const double mean = std::fabs(e.integrals.even[t.of] / domain - e.observations.sums[t.of].sum / n);
-        return FaultChange{mean, e.integrals.even_square[t.of] / domain + mean * mean};
+    const auto change_of_sum = [&](const SumTest& t) {
+        const double mean = std::fabs(e.integrals.uniform_sums[t.sum] / domain - e.observations.sums[t.sum].sum / n);
+        return FaultChange{mean, e.integrals.uniform_squares[t.sum] / domain + mean * mean};
     };
-    const auto of_node = [&](const NodeTest& t) {
+    const auto change_of_node = [&](const NodeTest& t) {
         const auto first = static_cast<std::size_t>(e.plan.tree.nodes()[t.node].child);
         const double a = sums[first].solid_angle / domain, b = sums[first + 1].solid_angle / domain;
         return FaultChange{std::fabs((1 - t.share) * a - t.share * b),
             t.h * ((1 - t.share) * (1 - t.share) * a + t.share * t.share * b)};
     };
-    take_detected(whole, n, of_sum, out);
-    take_detected(nodes, n, of_node, out);
+    take_detected(sum_tests, n, change_of_sum, out);
+    take_detected(nodes, n, change_of_node, out);
     return out;
 }
 
 /// Total variation between p and a uniform density, from the leaves.
-double distance_from_even(const Evidence& e) {
+double distance_from_uniform(const Evidence& e) {
     double sum = 0;
     for (const Leaf& leaf : e.plan.tree.leaves()) {
         const double area = e.plan.tree.rect(leaf).area();
-        if (leaf.met) sum += std::max(0.0, leaf.q * area - area / e.integrals.domain);
+        if (leaf.has_mass) sum += std::max(0.0, leaf.q * area - area / e.integrals.domain);
     }
     return std::min(sum, 1.0);
 }
@@ -201,9 +203,9 @@ double distance_from_even(const Evidence& e) {
 struct Sample {
     std::vector<Vec3d> w;
     std::vector<double> p;
-    double of = 0;
+    double draw_count = 0;
 };
-Sample drawn(Source& source, std::uint32_t count, const StreamKey& key) {
+Sample draw_sample(Source& source, std::uint32_t count, const StreamKey& key) {
     const std::vector<PrimarySample> u = first_numbers(key, count, source.traits);
     std::vector<Draw> draws(u.size());
     source.draw(u, draws);
@@ -229,8 +231,8 @@ public:
         : e_(e),
           sums_(sums),
           parent_(sums.size(), -1),
-          removed_(sums.size()),
-          least_(sums.size(), 1e300),
+          removed_mass_(sums.size()),
+          least_difference_(sums.size(), 1e300),
           variance_(sums.size()),
           shift_(static_cast<std::size_t>(e.plan.tree.depth()) + 1),
           least_shift_(shift_.size(), 1e300) {
@@ -240,9 +242,10 @@ public:
             if (nodes[i].child >= 0)
                 for (int half : {0, 1}) parent_[static_cast<std::size_t>(nodes[i].child + half)] = static_cast<int>(i);
         for (const NodeTest& t : tests) {
-            least_[t.node] = std::min(least_[t.node], t.needed.difference(0, 0, 0) / t.visible);
+            least_difference_[t.node] =
+                std::min(least_difference_[t.node], t.requirement.difference(0, 0, 0) / t.visible);
             const NodeSplit split = split_of(e, sums, t.node);
-            if (t.draws > 0 || split.smaller_half < e.least) continue;
+            if (t.draws > 0 || split.smaller_half < e.fewest_draws) continue;
             variance_[t.node] = split.variance / sqr(t.visible);
             ++degrees[static_cast<std::size_t>(nodes[t.node].depth)];
         }
@@ -251,8 +254,8 @@ public:
             if (degrees[d] > 0) least_shift_[d] = noncentrality(degrees[d], level / depths);
         for (const Leaf& leaf : e.plan.tree.leaves()) {
             const NodeSums& s = sums[static_cast<std::size_t>(leaf.node)];
-            if (!(s.claimed > 0)) continue;
-            leaves_.push_back({leaf.node, s.claimed, s.claimed * s.claimed / std::max(s.second, 1e-300)});
+            if (!(s.claim > 0)) continue;
+            leaves_.push_back({leaf.node, s.claim, s.claim * s.claim / std::max(s.second, 1e-300)});
             const Vec3d middle = without_azimuth(from_chart(e.plan.tree.rect(leaf).at(0.5, 0.5)));
             x_.push_back(middle.x);
             y_.push_back(middle.y);
@@ -261,50 +264,50 @@ public:
         cosine_.resize(leaves_.size());
     }
     /// p: the density at the centre. It sets the width of the first ring to about that of a detectable cap.
-    double mass_about(Vec3d about, double p) {
-        const Vec3d centre = without_azimuth(about);
+    double mass_about(Vec3d cap_centre, double p) {
+        const Vec3d centre = without_azimuth(cap_centre);
         constexpr double first = 2e-3;
         for (std::size_t l = 0; l < leaves_.size(); ++l)
             cosine_[l] = centre.x * x_[l] + centre.y * y_[l] + centre.z * z_[l];
         std::vector<std::pair<double, std::size_t>> ring;
-        std::vector<int> touched;
-        double mass = 0, inner = 2, wide = first / (two_pi * std::max(p, 1e-3));
-        bool found = false;
-        for (; !found && inner > -1; wide *= 4) {
-            const double outer = 1 - wide;
+        std::vector<int> touched_nodes;
+        double mass = 0, inner = 2, width = first / (two_pi * std::max(p, 1e-3));
+        bool is_found = false;
+        for (; !is_found && inner > -1; width *= 4) {
+            const double outer = 1 - width;
             ring.clear();
             for (std::size_t l = 0; l < leaves_.size(); ++l)
                 if (cosine_[l] < inner && cosine_[l] >= outer) ring.push_back({cosine_[l], l});
             std::sort(ring.begin(), ring.end(), std::greater<>());
-            for (std::size_t k = 0; k < ring.size() && !found; ++k) {
+            for (std::size_t k = 0; k < ring.size() && !is_found; ++k) {
                 const Piece& leaf = leaves_[ring[k].second];
                 mass += leaf.mass;
                 for (int node = leaf.node; node >= 0; node = parent_[static_cast<std::size_t>(node)]) {
                     const auto i = static_cast<std::size_t>(node);
-                    const double before = variance_[i] > 0 ? sqr(difference(i)) : 0;
-                    removed_[i] += leaf.claimed;
-                    touched.push_back(node);
-                    found = found || shows(i, before);
+                    const double last_square = variance_[i] > 0 ? sqr(difference(i)) : 0;
+                    removed_mass_[i] += leaf.claim;
+                    touched_nodes.push_back(node);
+                    is_found = is_found || shows(i, last_square);
                 }
             }
             inner = outer;
         }
-        for (int i : touched) removed_[static_cast<std::size_t>(i)] = 0;
+        for (int i : touched_nodes) removed_mass_[static_cast<std::size_t>(i)] = 0;
         std::ranges::fill(shift_, 0);
-        return found ? std::min(mass, 1.0) : 1;
+        return is_found ? std::min(mass, 1.0) : 1;
     }
 
 private:
     struct Piece {
         int node;
-        double claimed, mass;
+        double claim, mass;
     };
     const Evidence& e_;
     const std::vector<NodeSums>& sums_;
     std::vector<int> parent_;
-    std::vector<double> removed_, least_;      // by node: removed mass of h p; least detectable difference
-    std::vector<double> variance_;             // by node, for nodes that enter the sum of a depth
-    std::vector<double> shift_, least_shift_;  // by depth: shift of chi^2, and the least detectable one
+    std::vector<double> removed_mass_, least_difference_;  // by node: removed mass of h p; least detectable difference
+    std::vector<double> variance_;                         // by node, for nodes that enter the sum of a depth
+    std::vector<double> shift_, least_shift_;              // by depth: shift of chi^2, and the least detectable one
     std::vector<Piece> leaves_;
     std::vector<double> x_, y_, z_, cosine_;  // centres of the leaves; their cosines to the centre of the cap
 
@@ -315,17 +318,19 @@ private:
         const int child = e_.plan.tree.nodes()[i].child;
         if (child < 0) return 0;
         const auto a = static_cast<std::size_t>(child);
-        return std::fabs(removed_[a] - sums_[a].claimed / sums_[i].claimed * removed_[i]);
+        return std::fabs(removed_mass_[a] - sums_[a].claim / sums_[i].claim * removed_mass_[i]);
     }
-    /// Whether node i, whose squared difference was `before`, detects the cap. The remaining draws have less variance.
-    bool shows(std::size_t i, double before) {
-        const double now = difference(i), remaining = std::max(1 - removed_[i] / sums_[i].claimed, 1e-3);
+    /// Whether node i, whose squared difference was `last_square`, detects the cap. The remaining draws have less
+    /// variance.
+    bool shows(std::size_t i, double last_square) {
+        const double node_difference = difference(i),
+                     remaining_share = std::max(1 - removed_mass_[i] / sums_[i].claim, 1e-3);
         if (variance_[i] > 0) {
             double& shift = shift_[static_cast<std::size_t>(e_.plan.tree.nodes()[i].depth)];
-            shift += (sqr(now) - before) / variance_[i];
+            shift += (sqr(node_difference) - last_square) / variance_[i];
             if (shift >= least_shift_[static_cast<std::size_t>(e_.plan.tree.nodes()[i].depth)]) return true;
         }
-        return least_[i] < 1 && now >= least_[i] * std::sqrt(remaining);
+        return least_difference_[i] < 1 && node_difference >= least_difference_[i] * std::sqrt(remaining_share);
     }
 };
 
@@ -346,13 +351,13 @@ std::optional<double> cap_of(const Evidence& e, const std::vector<NodeSums>& sum
 
 /// A place on the chart with the values of h.
 struct Place {
-    ChartPoint at;
+    ChartPoint point;
     Values values{};
 };
 Place place_of(const Evidence& e, Vec3d w, double p) {
     Place out{to_chart(w)};
     // The estimator ignores draws where p is 0.
-    if (p > 0) out.values = e.plan.values(e.plan.tree.leaves()[e.plan.tree.find(out.at)], w, p);
+    if (p > 0) out.values = e.plan.values(e.plan.tree.leaves()[e.plan.tree.find(out.point)], w, p);
     return out;
 }
 
@@ -364,30 +369,34 @@ struct Estimated {
 /// computed twice: from the moved draws, and from the ratio of p at the moved and the original directions, which gives
 /// the same except for the sign. The first is exact at edges of p, the second has less noise where p is smooth. Each
 /// effect is the larger of the lower bounds of both.
-class Turned {
+class Turn {
 public:
-    /// `axis` is one of two; `about`: it, for directions.
-    Turned(Source& source, const Evidence& e, const Sample& sample, const std::vector<Place>& places, std::size_t axis,
-        Vec3d about, double angle)
-        : e_(e), of_(sample.of), moved_(e.plan.tree.nodes().size()), weighted_(moved_) {
-        std::vector<Vec3d> turned;
+    /// `axis` is one of two; `axis_direction`: it, for directions.
+    Turn(Source& source, const Evidence& e, const Sample& sample, const std::vector<Place>& places, std::size_t axis,
+        Vec3d axis_direction, double angle)
+        : e_(e),
+          draw_count_(sample.draw_count),
+          moved_change_(e.plan.tree.nodes().size()),
+          weighted_change_(moved_change_) {
+        std::vector<Vec3d> turned_directions;
         const double c = math::cos(angle), s = math::sin(angle);
         for (Vec3d w : sample.w)
-            turned.push_back(source.traits.domain
+            turned_directions.push_back(source.traits.domain
                     ? source.traits.domain->shifted(w, axis, angle)
-                    : normalize(w * c + cross(about, w) * s + about * (dot(about, w) * (1 - c))));
-        std::vector<double> p(turned.size());
-        source.density(turned, p);
+                    : normalize(
+                          w * c + cross(axis_direction, w) * s + axis_direction * (dot(axis_direction, w) * (1 - c))));
+        std::vector<double> p(turned_directions.size());
+        source.density(turned_directions, p);
         const double n = static_cast<double>(sample.w.size());
-        for (std::size_t i = 0; i < turned.size(); ++i) {
-            const Place here = places[i], target = place_of(e, turned[i], p[i]);
-            add(moved_, target, here);
+        for (std::size_t i = 0; i < turned_directions.size(); ++i) {
+            const Place origin = places[i], target = place_of(e, turned_directions[i], p[i]);
+            add(moved_change_, target, origin);
             if (!(sample.p[i] > 0)) continue;
             const double change = p[i] / sample.p[i] - 1;
-            Place times = here;
-            for (double& v : times.values) v *= change;
+            Place weighted_place = origin;
+            for (double& v : weighted_place.values) v *= change;
             // At the end of a domain the ratio has no bound, and a few draws would decide.
-            if (!source.traits.domain) add(weighted_, times, {here.at, {}});
+            if (!source.traits.domain) add(weighted_change_, weighted_place, {origin.point, {}});
             distance += std::min(1.0, std::fabs(change)) / n / 2;
         }
     }
@@ -397,31 +406,33 @@ public:
 
     /// The change of the mean of a test, with its standard error, by both methods.
     struct Effect {
-        Estimated moved, weighted;
+        Estimated moved_mean, weighted_mean;
     };
     /// The effects on all whole sums, then on all nodes.
-    std::vector<Effect> effects(const std::vector<SumTest>& whole, const std::vector<NodeTest>& nodes) const {
+    std::vector<Effect> effects(const std::vector<SumTest>& sum_tests, const std::vector<NodeTest>& nodes) const {
         std::vector<Effect> out;
-        for (const SumTest& t : whole) out.push_back({mean_of(moved_.sums[t.of]), mean_of(weighted_.sums[t.of])});
+        for (const SumTest& t : sum_tests)
+            out.push_back({mean_of(moved_change_.sums[t.sum]), mean_of(weighted_change_.sums[t.sum])});
         for (const NodeTest& t : nodes) {
             const TreeNode& x = e_.plan.tree.nodes()[t.node];
             if (x.depth >= depth) continue;
             const auto split = [&](const Change& change) {
-                const Sums &half = change.nodes[static_cast<std::size_t>(x.child)], &whole_node = change.nodes[t.node];
-                return mean_of(
-                    {half.sum - t.share * whole_node.sum, half.square + t.share * t.share * whole_node.square});
+                const Sums &half_sums = change.nodes[static_cast<std::size_t>(x.child)],
+                           &parent_sums = change.nodes[t.node];
+                return mean_of({half_sums.sum - t.share * parent_sums.sum,
+                    half_sums.square + t.share * t.share * parent_sums.square});
             };
-            out.push_back({split(moved_), split(weighted_)});
+            out.push_back({split(moved_change_), split(weighted_change_)});
         }
         return out;
     }
     /// The differences that these tests need, in the same order.
-    static std::vector<double> needed(
-        const Tree& tree, const std::vector<SumTest>& whole, const std::vector<NodeTest>& nodes) {
+    static std::vector<double> requirements(
+        const Tree& tree, const std::vector<SumTest>& sum_tests, const std::vector<NodeTest>& nodes) {
         std::vector<double> out;
-        for (const SumTest& t : whole) out.push_back(t.needed.difference());
+        for (const SumTest& t : sum_tests) out.push_back(t.requirement.difference());
         for (const NodeTest& t : nodes)
-            if (tree.nodes()[t.node].depth < depth) out.push_back(t.needed.difference());
+            if (tree.nodes()[t.node].depth < depth) out.push_back(t.requirement.difference());
         return out;
     }
 
@@ -433,22 +444,22 @@ private:
         explicit Change(std::size_t count) : nodes(count) {}
     };
     const Evidence& e_;
-    double of_;
-    Change moved_, weighted_;
+    double draw_count_;
+    Change moved_change_, weighted_change_;
 
     /// Adds the gain at one place and the loss at another, as one difference in each node that contains both.
     void add(Change& to, const Place& gain, const Place& loss) const {
         for (std::size_t q = 0; q < integrands; ++q) to.sums[q].add(gain.values[q] - loss.values[q]);
         std::size_t i = 0, j = 0;
-        for (bool in_a = true, in_b = true; in_a || in_b;) {
+        for (bool has_gain = true, has_loss = true; has_gain || has_loss;) {
             if (i == j) {
                 to.nodes[i].add(gain.values[bridge] - loss.values[bridge]);
             } else {
-                if (in_a) to.nodes[i].add(gain.values[bridge]);
-                if (in_b) to.nodes[j].add(-loss.values[bridge]);
+                if (has_gain) to.nodes[i].add(gain.values[bridge]);
+                if (has_loss) to.nodes[j].add(-loss.values[bridge]);
             }
-            in_a = in_a && step(i, gain.at);
-            in_b = in_b && step(j, loss.at);
+            has_gain = has_gain && step(i, gain.point);
+            has_loss = has_loss && step(j, loss.point);
         }
     }
     /// Descends to the half that contains the place; false at the end.
@@ -459,26 +470,27 @@ private:
         return true;
     }
     Estimated mean_of(const Sums& change) const {
-        const double mean = change.sum / of_;
-        return {mean, std::max(change.square / of_ - mean * mean, 0.0) / of_};
+        const double mean = change.sum / draw_count_;
+        return {mean, std::max(change.square / draw_count_ - mean * mean, 0.0) / draw_count_};
     }
 };
 
-/// Ratios of the effects to the needed differences for a rotation about c times one axis plus s times another: to first
-/// order in the angle, the sum of both rotations.
-std::vector<double> ratios_about(const std::vector<Turned::Effect>& one, const std::vector<Turned::Effect>& other,
-    double c, double s, const std::vector<double>& needed, std::size_t whole) {
+/// Ratios of the effects to the required differences for a rotation about c times one axis plus s times another: to
+/// first order in the angle, the sum of both rotations.
+std::vector<double> ratios_about(const std::vector<Turn::Effect>& first_effects,
+    const std::vector<Turn::Effect>& second_effects, double c, double s, const std::vector<double>& requirements,
+    std::size_t sum_count) {
     // One-sided 90 %; the largest error among hundreds of nodes is three standard errors.
-    constexpr double of_one = 1.2816, of_largest = 3.0;
+    constexpr double single_errors = 1.2816, largest_errors = 3.0;
     const auto low_end = [&](const Estimated& a, const Estimated& b, double errors) {
         return std::fabs(c * a.mean + s * b.mean) - errors * std::sqrt(c * c * a.variance + s * s * b.variance);
     };
     std::vector<double> out;
-    for (std::size_t t = 0; t < one.size(); ++t) {
-        const double errors = t < whole ? of_one : of_largest;
-        const double largest = std::max(
-            low_end(one[t].moved, other[t].moved, errors), low_end(one[t].weighted, other[t].weighted, errors));
-        out.push_back(std::max(largest, 0.0) / needed[t]);
+    for (std::size_t t = 0; t < first_effects.size(); ++t) {
+        const double errors = t < sum_count ? single_errors : largest_errors;
+        const double largest = std::max(low_end(first_effects[t].moved_mean, second_effects[t].moved_mean, errors),
+            low_end(first_effects[t].weighted_mean, second_effects[t].weighted_mean, errors));
+        out.push_back(std::max(largest, 0.0) / requirements[t]);
     }
     return out;
 }
@@ -492,11 +504,11 @@ double least_angle(double first, const std::vector<std::vector<double>>& ratios)
     for (std::size_t t = 0; t < ratios[0].size(); ++t) {
         double angle = first;
         for (std::size_t k = 0; k < ratios.size(); ++k, angle *= growth) {
-            const double here = ratios[k][t];
-            if (here < 1) continue;
+            const double ratio = ratios[k][t];
+            if (ratio < 1) continue;
             const std::size_t low = std::max<std::size_t>(k, 1) - 1;
-            const double steeper = math::log(ratios[low + 1][t] / std::max(ratios[low][t], 1e-3)) / math::log(growth);
-            out = std::min(out, angle * math::exp(-math::log(here) / std::max(1.0, steeper)));
+            const double exponent = math::log(ratios[low + 1][t] / std::max(ratios[low][t], 1e-3)) / math::log(growth);
+            out = std::min(out, angle * math::exp(-math::log(ratio) / std::max(1.0, exponent)));
             break;
         }
     }
@@ -505,69 +517,70 @@ double least_angle(double first, const std::vector<std::vector<double>>& ratios)
 
 /// The detectable rotation: of eight axes across the mean direction, those about which a rotation changes the density
 /// are used.
-void by_turning(Source& source, const Evidence& e, const std::vector<SumTest>& whole,
+void set_rotation(Source& source, const Evidence& e, const std::vector<SumTest>& sum_tests,
     const std::vector<NodeTest>& nodes, const Sample& sample, Sizes& out) {
     const DomainChart* domain = source.traits.domain.get();
     if (sample.w.size() < 64 || (domain && domain->is_discrete())) return;
     constexpr int axes = 8;
     const Vec3d axis_of_lobe = dot(e.plan.middle, e.plan.middle) > 1e-4 ? normalize(e.plan.middle) : Vec3d{0, 0, 1};
     const Frame<double> frame = frame_about(axis_of_lobe);
-    const std::vector<double> needed = Turned::needed(e.plan.tree, whole, nodes);
+    const std::vector<double> requirements = Turn::requirements(e.plan.tree, sum_tests, nodes);
     std::vector<Place> places;
     for (std::size_t i = 0; i < sample.w.size(); ++i) places.push_back(place_of(e, sample.w[i], sample.p[i]));
     std::array<std::vector<std::vector<double>>, axes> ratios;
-    std::array<double, axes> changed{};
+    std::array<double, axes> changes{};
     for (double multiple : {1.0, growth, growth * growth, growth * growth * growth}) {
-        const auto shown = [](const std::vector<std::vector<double>>& of_axis) {
-            return of_axis.empty() || std::ranges::any_of(of_axis, [](const std::vector<double>& r) {
+        const auto is_detected = [](const std::vector<std::vector<double>>& axis_ratios) {
+            return axis_ratios.empty() || std::ranges::any_of(axis_ratios, [](const std::vector<double>& r) {
                 return std::ranges::any_of(r, [](double x) { return x >= 1; });
             });
         };
-        if (multiple > growth && std::ranges::all_of(ratios, shown)) break;
-        const Turned one(source, e, sample, places, 0, frame.t, multiple * target_rotation),
-            other(source, e, sample, places, 1, frame.b, multiple * target_rotation);
-        const auto of_one = one.effects(whole, nodes), of_other = other.effects(whole, nodes);
+        if (multiple > growth && std::ranges::all_of(ratios, is_detected)) break;
+        const Turn first_turn(source, e, sample, places, 0, frame.t, multiple * target_rotation),
+            second_turn(source, e, sample, places, 1, frame.b, multiple * target_rotation);
+        const auto first_effects = first_turn.effects(sum_tests, nodes),
+                   second_effects = second_turn.effects(sum_tests, nodes);
         // Shifts are along one axis or the other.
         const int step = domain ? axes / 2 : 1;
         for (int k = 0; k < (source.is_line() ? 1 : axes); k += step) {
             const double angle = k * two_pi / 2 / axes, c = math::cos(angle), s = math::sin(angle);
             const auto index = static_cast<std::size_t>(k);
-            ratios[index].push_back(ratios_about(of_one, of_other, c, s, needed, whole.size()));
-            if (multiple == 1) changed[index] = math::hypot(c * one.distance, s * other.distance);
+            ratios[index].push_back(ratios_about(first_effects, second_effects, c, s, requirements, sum_tests.size()));
+            if (multiple == 1) changes[index] = math::hypot(c * first_turn.distance, s * second_turn.distance);
         }
     }
     // About an axis of symmetry, or near it, a rotation changes nothing.
-    const double least_change = std::max(detection_floor, 0.1 * *std::ranges::max_element(changed));
+    const double least_change = std::max(detection_floor, 0.1 * *std::ranges::max_element(changes));
     struct Size {
-        double angle, changed;
+        double angle, change;
     };
     std::vector<Size> sizes;
     for (std::size_t k = 0; k < axes; ++k)
-        if (!ratios[k].empty() && changed[k] >= least_change)
-            sizes.push_back({least_angle(target_rotation, ratios[k]), changed[k]});
+        if (!ratios[k].empty() && changes[k] >= least_change)
+            sizes.push_back({least_angle(target_rotation, ratios[k]), changes[k]});
     if (sizes.empty()) return;
     // The effect of a rotation on a single test vanishes about some axis, so the stated size covers about seven of
     // eight axes.
     std::ranges::sort(sizes, std::greater<>(), &Size::angle);
-    const Size& stated = sizes[sizes.size() > axes / 2 ? 1 : 0];
-    out.rotation = stated.angle;
-    out.by_rotation = stated.changed / target_rotation;
+    const Size& stated_size = sizes[sizes.size() > axes / 2 ? 1 : 0];
+    out.rotation = stated_size.angle;
+    out.rotation_change = stated_size.change / target_rotation;
 }
 
 /// Draws by p^(1 + e) in place of p move E[h] by e times the covariance of h and ln p. They are modelled as draws of p
 /// that are kept with probability (p / c)^e: about 3 e standard deviations of ln p are drawn again. spread: variance of
 /// ln p.
-std::optional<double> exponent_of(const Evidence& e, const std::vector<SumTest>& whole, double spread) {
+std::optional<double> exponent_of(const Evidence& e, const std::vector<SumTest>& sum_tests, double spread) {
     const Observations& o = e.observations;
     const double n = o.independent;
     const double covariance = o.slope_log_p / n - o.sums[slope].sum / n * o.log_p.sum / n;
     std::optional<double> out;
     if (!(covariance > 0)) return out;
-    const double again = 3 * std::sqrt(spread), square = 2 * o.sums[slope].square / n;
-    const auto of_sum = [&](const SumTest& t) {
-        return t.of == slope ? FaultChange{covariance, again * square} : FaultChange{};
+    const double redrawn_share = 3 * std::sqrt(spread), square = 2 * o.sums[slope].square / n;
+    const auto change_of_sum = [&](const SumTest& t) {
+        return t.sum == slope ? FaultChange{covariance, redrawn_share * square} : FaultChange{};
     };
-    take_detected(whole, n, of_sum, out);
+    take_detected(sum_tests, n, change_of_sum, out);
     return out;
 }
 
@@ -588,10 +601,10 @@ std::optional<double> bias_of(const Evidence& e, double level) {
     return errors * std::sqrt(v) / expected.value + detection_floor;
 }
 
-/// Of an integral that points resolve up to `rest`; none if it is 0.
-std::optional<double> relative_error(const Estimate& resolved, double rest) {
+/// Of an integral that points resolve up to `unresolved`; none if it is 0.
+std::optional<double> relative_error(const Estimate& resolved, double unresolved) {
     if (!(resolved.value > 0)) return {};
-    return (half_interval(resolved) + rest) / resolved.value;
+    return (half_interval(resolved) + unresolved) / resolved.value;
 }
 
 }  // namespace
@@ -600,27 +613,27 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
     Sizes out;
     if (source.traits.reciprocal_weight) out.bias = bias_of(e, level);
     if (!e.source.has_density()) return out;
-    const std::vector<SumTest> whole = whole_sums(e, level);
+    const std::vector<SumTest> sum_tests = whole_sums(e, level);
     const std::vector<NodeSums> sums = node_sums(e);
     const std::vector<NodeTest> nodes = node_tests(e, sums, level);
     out.integral = error_of_integral(e.integrals, e.observations);
-    out.constant = constant_of(e, whole);
+    out.constant = constant_of(e, sum_tests);
     // No density is uniform over an infinite line, and powers of p per length are not those of p over the chart.
     if (!source.traits.domain || !source.traits.domain->domain().is_infinite()) {
-        out.leak = leak_of(e, whole, sums, nodes);
-        out.by_leak = distance_from_even(e);
+        out.leak = leak_of(e, sum_tests, sums, nodes);
+        out.leak_change = distance_from_uniform(e);
         constexpr double least_spread_of_log_p = 1e-4;
         if (const double spread = spread_of_log_p(e.observations); spread > least_spread_of_log_p) {
-            out.parameter = exponent_of(e, whole, spread);
-            out.by_parameter = std::sqrt(spread) / 2;
+            out.parameter = exponent_of(e, sum_tests, spread);
+            out.parameter_change = std::sqrt(spread) / 2;
         }
     }
-    const Sample sample = drawn(source, draws, key);
+    const Sample sample = draw_sample(source, draws, key);
     out.cap = cap_of(e, sums, nodes, sample, level);
     // A gap is a box of the domain: it has longer edges than a cap of the same mass, so that it cuts more leaves.
     constexpr double box_over_cap = 4.0 / 3;
     if (out.cap && source.traits.domain && !source.is_line()) out.cap = std::min(*out.cap * box_over_cap, 1.0);
-    by_turning(source, e, whole, nodes, sample, out);
+    set_rotation(source, e, sum_tests, nodes, sample, out);
     return out;
 }
 
@@ -628,7 +641,7 @@ DifferenceSizes sizes_between(const Evidence& e, double level, std::span<const V
     DifferenceSizes out;
     const double h = e.plan.largest_h();
     for (const SumTest& t : whole_sums(e, level))
-        if (t.of >= centre_x) take_less(out.distance, t.needed.difference() / (t.visible * h));
+        if (t.sum >= centre_x) take_less(out.distance, t.requirement.difference() / (t.visible * h));
     const std::vector<NodeSums> sums = node_sums(e);
     Sample sample;
     for (Vec3d w : centres) {
@@ -640,9 +653,10 @@ DifferenceSizes sizes_between(const Evidence& e, double level, std::span<const V
 }
 
 std::optional<double> error_of_integral(const Integrals& integrals, const Observations& o) {
-    const double drawn = o.share_unresolved(), held = integrals.unresolved.value;
+    const double draw_share = o.share_unresolved(), point_share = integrals.unresolved.value;
     return relative_error(integrals.sums[mass],
-        std::min(std::max(drawn, held), std::fabs(drawn - held) + half_interval(integrals.unresolved)));
+        std::min(std::max(draw_share, point_share),
+            std::fabs(draw_share - point_share) + half_interval(integrals.unresolved)));
 }
 
 std::optional<double> error_in_reach(const Integrals& integrals, const Observations& o) {
@@ -657,16 +671,16 @@ double half_interval(const Estimate& integral) {
 
 double worst_ratio(const Sizes& s) {
     double worst = 0;
-    const auto look = [&](const std::optional<double>& size, double target, double changed) {
-        if (size) worst = std::max(worst, std::min(*size / target, *size * changed / target_leak));
+    const auto take_ratio = [&](const std::optional<double>& size, double target, double change) {
+        if (size) worst = std::max(worst, std::min(*size / target, *size * change / target_leak));
     };
-    look(s.bias, target_bias_of_weights, 1e300);
-    look(s.integral, target_constant, 1e300);
-    look(s.constant, target_constant, 1e300);
-    look(s.cap, target_cap, 1e300);
-    look(s.leak, target_leak, s.by_leak);
-    look(s.rotation, target_rotation, s.by_rotation);
-    look(s.parameter, target_parameter, s.by_parameter);
+    take_ratio(s.bias, target_bias_of_weights, 1e300);
+    take_ratio(s.integral, target_constant, 1e300);
+    take_ratio(s.constant, target_constant, 1e300);
+    take_ratio(s.cap, target_cap, 1e300);
+    take_ratio(s.leak, target_leak, s.leak_change);
+    take_ratio(s.rotation, target_rotation, s.rotation_change);
+    take_ratio(s.parameter, target_parameter, s.parameter_change);
     return worst;
 }
 

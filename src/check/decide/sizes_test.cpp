@@ -22,10 +22,10 @@ TEST(SizesOfFaults, AreComparedWithTheirTargets) {
     EXPECT_DOUBLE_EQ(worst_ratio(s), 2);
     s.leak = 3 * target_leak;
     EXPECT_DOUBLE_EQ(worst_ratio(s), 3);
-    s.by_leak = 0.1;  // the density is nearly uniform: such a leak changes a tenth of that
+    s.leak_change = 0.1;  // the density is nearly uniform: such a leak changes a tenth of that
     EXPECT_DOUBLE_EQ(worst_ratio(s), 2);
     s.rotation = 100 * target_rotation;
-    s.by_rotation = 0;  // a rotation changes nothing
+    s.rotation_change = 0;  // a rotation changes nothing
     EXPECT_DOUBLE_EQ(worst_ratio(s), 2);
     s.cap = 5 * target_cap;
     EXPECT_DOUBLE_EQ(worst_ratio(s), 5);
@@ -46,9 +46,9 @@ TEST(SizesOfFaults, FallWithTheDraws) {
 TEST(SizesOfFaults, OfARotationFollowTheWidthOfTheLobe) {
     const Sizes wide = sizes_at(power_sampler(5), 1u << 15), sharp = sizes_at(power_sampler(500), 1u << 15);
     EXPECT_NEAR(std::log10(*wide.rotation / *sharp.rotation), 1, 0.3);  // sqrt(500 / 5) = 10
-    EXPECT_NEAR(sharp.by_rotation / wide.by_rotation, 10, 4);
-    EXPECT_GT(sharp.by_leak, 0.95);
-    EXPECT_LT(wide.by_leak, sharp.by_leak);
+    EXPECT_NEAR(sharp.rotation_change / wide.rotation_change, 10, 4);
+    EXPECT_GT(sharp.leak_change, 0.95);
+    EXPECT_LT(wide.leak_change, sharp.leak_change);
 }
 
 }  // namespace sizes_test

@@ -17,16 +17,16 @@ std::optional<const char*> fault_of(const Draw& d, const Traits& traits) {
     if (std::isinf(d.pdf)) return "pdf is infinite";
     if (std::isnan(d.wi.x + d.wi.y + d.wi.z))
         return traits.domain ? "A point is outside the domain" : "The direction is NaN";
-    const bool finite_weight = !d.weight || std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z);
+    const bool has_finite_weight = !d.weight || std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z);
     if (d.pdf == 0 && d.delta == 0) {
-        if (!finite_weight) return "pdf is 0 and the weight is not finite";
+        if (!has_finite_weight) return "pdf is 0 and the weight is not finite";
         return {};
     }
     if (!(d.delta >= 0 && d.delta <= 1)) return "A delta part is chosen with a probability outside (0, 1]";
     if (d.delta > 0 && !d.weight) return "A draw of a delta part comes without its weight";
     if (!(std::fabs(std::sqrt(dot(d.wi, d.wi)) - 1) <= unit_length)) return "The direction is not of length 1";
     if (!d.weight) return {};
-    if (!finite_weight) return "The weight is not finite";
+    if (!has_finite_weight) return "The weight is not finite";
     if (std::min({*d.weight, d.weights.x, d.weights.y, d.weights.z}) < -negative_weight)
         return "The weight is negative";
     return {};
@@ -35,10 +35,10 @@ std::optional<const char*> fault_of(const Draw& d, const Traits& traits) {
 namespace {
 
 std::vector<PrimarySample> corner_numbers(int count) {
-    constexpr double ends[] = {0, ulp, 0.25, 0.5, 0.75, 1 - ulp}, elsewhere = 95.0 / 256;
+    constexpr double ends[] = {0, ulp, 0.25, 0.5, 0.75, 1 - ulp}, interior = 95.0 / 256;
     const int n = std::max(count, 2);
     PrimarySample middle;
-    for (int k = 0; k < n; ++k) middle[k] = elsewhere;
+    for (int k = 0; k < n; ++k) middle[k] = interior;
     std::vector<PrimarySample> out;
     for (int i = 0; i < n; ++i)
         for (int j = i + 1; j < n; ++j)
@@ -68,25 +68,25 @@ bool same_to(double a, double b) {
 
 /// Whether two draws are equal to the rounding of a text format of seven digits, including pdf and weight unless they
 /// are random estimates.
-bool same_draw(const Draw& a, const Draw& b, bool random = false) {
-    constexpr double near = 1e-6;
+bool same_draw(const Draw& a, const Draw& b, bool is_random = false) {
+    constexpr double tolerance = 1e-6;
     if ((a.pdf > 0) != (b.pdf > 0) || (a.delta != 0) != (b.delta != 0)) return false;
     if (!(a.pdf > 0) && a.delta == 0) return true;
     const auto is_near = [](double x, double y) {
-        return std::isfinite(x) && std::isfinite(y) ? std::fabs(x - y) <= near : same_to(x, y);
+        return std::isfinite(x) && std::isfinite(y) ? std::fabs(x - y) <= tolerance : same_to(x, y);
     };
     return is_near(a.wi.x, b.wi.x) && is_near(a.wi.y, b.wi.y) && is_near(a.wi.z, b.wi.z) &&
-        (random || (same_to(a.pdf, b.pdf) && same_to(a.weight.value_or(0), b.weight.value_or(0))));
+        (is_random || (same_to(a.pdf, b.pdf) && same_to(a.weight.value_or(0), b.weight.value_or(0))));
 }
 
 /// Whether rounding explains that p at w is once a and once b: p over a few roundings of w has as wide a range. Next to
 /// w_i = -w_o, for example, the half vector is a difference of nearly equal numbers.
 bool differ_by_rounding(Source& source, Vec3d w, double a, double b) {
     if (!source.has_density() || !std::isfinite(a + b + w.x + w.y + w.z)) return false;
-    std::vector<Vec3d> around = of_other_lengths(source, w);
-    for (const Vec3d v : neighbours(w)) around.push_back(v);
-    std::vector<double> p(around.size());
-    source.stated_pdf(around, p);
+    std::vector<Vec3d> directions = of_other_lengths(source, w);
+    for (const Vec3d v : neighbours(w)) directions.push_back(v);
+    std::vector<double> p(directions.size());
+    source.stated_pdf(directions, p);
     std::erase_if(p, [](double v) { return !std::isfinite(v); });
     if (p.empty()) return false;
     const auto [low, high] = std::ranges::minmax(p);
@@ -146,28 +146,28 @@ template <class Call> void in_blocks(const Call& call) {
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
     if (source.traits.own_random || !source.declaration.can_draw) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, rows_in_blocks);
-    std::vector<Draw> together(u.size()), again(u.size()), backwards(u.size());
-    source.draw(u, together);
+    std::vector<Draw> draws(u.size()), block_draws(u.size()), reversed_draws(u.size());
+    source.draw(u, draws);
     in_blocks([&](std::size_t first, std::size_t n) {
-        source.draw(std::span(u).subspan(first, n), std::span(again).subspan(first, n));
+        source.draw(std::span(u).subspan(first, n), std::span(block_draws).subspan(first, n));
     });
-    std::vector<PrimarySample> reversed(u.rbegin(), u.rend());
-    source.draw(reversed, backwards);
-    std::reverse(backwards.begin(), backwards.end());
+    std::vector<PrimarySample> reversed_numbers(u.rbegin(), u.rend());
+    source.draw(reversed_numbers, reversed_draws);
+    std::reverse(reversed_draws.begin(), reversed_draws.end());
     SmallFault out{Family::state, 0, static_cast<double>(u.size())};
-    const bool random = source.estimates || source.f_estimates;
-    const auto same = [&](const Draw& a, const Draw& b) {
-        if (same_draw(a, b, random)) return true;
-        Draw with_pdf = b;  // the weight is f cos / pdf
-        with_pdf.pdf = a.pdf;
-        with_pdf.weight = a.weight;
-        return same_draw(a, with_pdf) && a.delta == 0 && a.pdf > 0 && b.pdf > 0 &&
+    const bool is_random = source.estimates || source.f_estimates;
+    const auto are_same = [&](const Draw& a, const Draw& b) {
+        if (same_draw(a, b, is_random)) return true;
+        Draw adjusted_draw = b;  // the weight is f cos / pdf
+        adjusted_draw.pdf = a.pdf;
+        adjusted_draw.weight = a.weight;
+        return same_draw(a, adjusted_draw) && a.delta == 0 && a.pdf > 0 && b.pdf > 0 &&
             differ_by_rounding(source, a.wi, a.pdf, b.pdf);
     };
     for (std::size_t i = 0; i < u.size(); ++i)
-        if (!same(together[i], again[i]) || !same(together[i], backwards[i]))
+        if (!are_same(draws[i], block_draws[i]) || !are_same(draws[i], reversed_draws[i]))
             if (out.times++ == 0) {
-                out.first = {.u = u[i], .draw = together[i], .p = 0, .expected = 0};
+                out.first = {.u = u[i], .draw = draws[i], .p = 0, .expected = 0};
                 out.what = "The same u gives another draw";
             }
     return out.times > 0 ? std::optional(out) : std::nullopt;
@@ -182,20 +182,20 @@ std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& ke
     std::vector<Vec3d> w;
     for (std::size_t i = 0; i < u.size(); ++i) {
         const double k = static_cast<double>(i), n = static_cast<double>(u.size());
-        const Vec3d drawn = draws[i].wi;
-        const bool usable = draws[i].pdf > 0 && std::isfinite(drawn.x + drawn.y + drawn.z);
-        w.push_back(usable ? drawn : from_chart({2 * (k + 0.5) / n, std::fmod(golden * k, two_pi)}));
+        const Vec3d wi = draws[i].wi;
+        const bool is_usable = draws[i].pdf > 0 && std::isfinite(wi.x + wi.y + wi.z);
+        w.push_back(is_usable ? wi : from_chart({2 * (k + 0.5) / n, std::fmod(golden * k, two_pi)}));
     }
     SmallFault out{Family::state, 0, static_cast<double>(u.size())};
     const auto compare = [&](auto evaluate, auto differ, const char* what) {
         using Value = std::decay_t<decltype(evaluate.value)>;
-        std::vector<Value> together(w.size()), again(w.size());
-        evaluate(w, together);
+        std::vector<Value> answers(w.size()), block_answers(w.size());
+        evaluate(w, answers);
         in_blocks([&](std::size_t first, std::size_t n) {
-            evaluate(std::span(w).subspan(first, n), std::span(again).subspan(first, n));
+            evaluate(std::span(w).subspan(first, n), std::span(block_answers).subspan(first, n));
         });
         for (std::size_t i = 0; i < w.size(); ++i)
-            if (differ(w[i], together[i], again[i]) && out.times++ == 0) {
+            if (differ(w[i], answers[i], block_answers[i]) && out.times++ == 0) {
                 out.first.u = u[i];
                 out.first.draw.wi = w[i];
                 out.what = what;
@@ -236,9 +236,9 @@ std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
         std::vector<PrimarySample> v = u;
         for (std::size_t i = 0; i < v.size(); ++i) v[i][k] = u[(i + 1) % u.size()][k];
         source.draw(v, others);
-        bool same = true;
-        for (std::size_t i = 0; i < v.size(); ++i) same = same && same_draw(draws[i], others[i]);
-        if (same) out.push_back(k);
+        bool has_no_effect = true;
+        for (std::size_t i = 0; i < v.size(); ++i) has_no_effect = has_no_effect && same_draw(draws[i], others[i]);
+        if (has_no_effect) out.push_back(k);
     }
     return out;
 }
@@ -247,40 +247,40 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     // With more than two numbers, one may choose a texel and others the place in it.
     if (source.traits.numbers > 2 || source.traits.own_random || !source.declaration.can_draw) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, 64);
-    const auto draws_moved_by = [&](int k, double shift) {
+    const auto draw_shifted = [&](int k, double shift) {
         std::vector<PrimarySample> v = u;
         for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? shift : -shift;
         std::vector<Draw> out(v.size());
         source.draw(v, out);
         return out;
     };
-    std::vector<Draw> here(u.size());
-    source.draw(u, here);
-    const auto moved = [&](const Draw& a, const Draw& b) {
+    std::vector<Draw> draws(u.size());
+    source.draw(u, draws);
+    const auto distance_of = [&](const Draw& a, const Draw& b) {
         const Vec3d d = a.wi - b.wi;
         return a.pdf > 0 && b.pdf > 0 ? std::sqrt(dot(d, d)) : -1;
     };
     for (int k = 0; k < source.traits.numbers; ++k) {
-        const std::vector<Draw> far = draws_moved_by(k, 0x1p-10), near = draws_moved_by(k, 0x1p-11),
-                                least = draws_moved_by(k, few_bits_step);
+        const std::vector<Draw> far_draws = draw_shifted(k, 0x1p-10), near_draws = draw_shifted(k, 0x1p-11),
+                                nearest_draws = draw_shifted(k, few_bits_step);
         SmallFault out{.family = Family::repeats, .what = "Only the first bits of a random number move the draw"};
         for (std::size_t i = 0; i < u.size(); ++i) {
-            const double a = moved(here[i], far[i]), b = moved(here[i], near[i]);
-            const bool smooth = b > 0 && a > 1.5 * b && a < 3 * b;
-            if (!smooth || a * few_bits_step / 0x1p-10 < few_bits_move) continue;
-            ++out.of;
-            if (moved(here[i], least[i]) == 0 && out.times++ == 0) {
-                out.first = {.u = u[i], .draw = here[i], .p = 0, .expected = 0};
+            const double a = distance_of(draws[i], far_draws[i]), b = distance_of(draws[i], near_draws[i]);
+            const bool is_smooth = b > 0 && a > 1.5 * b && a < 3 * b;
+            if (!is_smooth || a * few_bits_step / 0x1p-10 < few_bits_move) continue;
+            ++out.trials;
+            if (distance_of(draws[i], nearest_draws[i]) == 0 && out.times++ == 0) {
+                out.first = {.u = u[i], .draw = draws[i], .p = 0, .expected = 0};
                 out.size = k;
             }
         }
-        if (out.of >= 16 && out.times > few_bits_share * out.of) return out;
+        if (out.trials >= 16 && out.times > few_bits_share * out.trials) return out;
     }
     return {};
 }
 
-std::vector<SmallFault> small_tests(Source& source, const StreamKey& given) {
-    StreamKey key = given;
+std::vector<SmallFault> small_tests(Source& source, const StreamKey& base_key) {
+    StreamKey key = base_key;
     std::vector<SmallFault> out;
     const auto add = [&](std::optional<SmallFault> fault) {
         if (fault) out.push_back(*fault);

@@ -17,8 +17,8 @@ std::optional<const char*> fault_of(const Draw& d, const Traits& traits);
 /// A small test that failed.
 struct SmallFault {
     Family family = Family::corners;
-    double times = 0, of = 0;  // number of failures, number of tests
-    double size = 0;           // relative, if it has one
+    double times = 0, trials = 0;  // number of failures, number of tests
+    double size = 0;               // relative, if it has one
     Example first{};
     const char* what = "";      // begins a sentence
     std::optional<Vec3d> wo{};  // of the first, if it is not a w_o of the call
@@ -45,11 +45,11 @@ struct Branch {
     }
 };
 /// The density of the map at a few points where its derivatives are known to `jacobian_error`, and p there, both in
-/// 1/sr. Other u may map to the same direction, so `drawn` is a part of the density there.
+/// 1/sr. Other u may map to the same direction, so `density` is a part of the density there.
 struct MapDensity {
     PrimarySample u;
     Draw draw;
-    double p = 0, drawn = 0, error = 0;  // error: relative error of `drawn`
+    double p = 0, density = 0, error = 0;  // error: relative error of `density`
     Branch branch{};
 };
 std::vector<MapDensity> map_densities(Source& source, const StreamKey& key);

@@ -63,7 +63,7 @@ TEST(CornersOfU, AreTestedForEveryPairOfNumbers) {
     const auto fault = tested(s, corners);
     ASSERT_TRUE(fault);
     EXPECT_EQ(fault->times, 3);  // with the first number elsewhere, at 0 and next to 1
-    EXPECT_EQ(fault->of, 3 * 36 + 8);
+    EXPECT_EQ(fault->trials, 3 * 36 + 8);
     EXPECT_EQ(fault->family, Family::corners);
 }
 
@@ -193,7 +193,7 @@ TEST(MapOfU, HasTheDensityOfTheDraws) {
     };
     for (const FunctionSampler& s : {FunctionSampler(), power_sampler(30)}) {
         EXPECT_GT(densities(s).size(), 20u);
-        for (const MapDensity& m : densities(s)) EXPECT_NEAR(m.drawn / m.p, 1, 4 * m.error + 1e-4);
+        for (const MapDensity& m : densities(s)) EXPECT_NEAR(m.density / m.p, 1, 4 * m.error + 1e-4);
         EXPECT_FALSE(tested(s, map));
     }
     FunctionSampler two;  // the third number chooses between two lobes
@@ -202,7 +202,7 @@ TEST(MapOfU, HasTheDensityOfTheDraws) {
     two.draw = [a, b](Vec3d, const PrimarySample& u) { return power_draw(u[2] < 0.3 ? a : b, 40, u); };
     two.p = [a, b](Vec3d, Vec3d w) { return 0.3 * power_pdf(a, 40, w) + 0.7 * power_pdf(b, 40, w); };
     EXPECT_FALSE(densities(two).empty());
-    for (const MapDensity& m : densities(two)) EXPECT_LE(m.drawn, m.p * (1 + 1e-3));
+    for (const MapDensity& m : densities(two)) EXPECT_LE(m.density, m.p * (1 + 1e-3));
     EXPECT_FALSE(tested(two, map));
 }
 
@@ -213,7 +213,7 @@ TEST(MapOfU, ADensityBelowThatOfTheMapIsFound) {
     const auto fault = tested(low, map);
     ASSERT_TRUE(fault);
     EXPECT_NEAR(fault->size, -0.1, 2e-3);
-    EXPECT_EQ(fault->times, fault->of);
+    EXPECT_EQ(fault->times, fault->trials);
     EXPECT_FALSE(tested(high, map));  // other u may map to the same direction
 }
 
@@ -277,7 +277,7 @@ TEST(MapOfU, ABranchMayBeSeveralIntervalsOfTheChoosingNumber) {
     const FunctionSampler two = alias_lights({3, 1});  // [0, 1/2) and [3/4, 1), and [1/2, 3/4)
     const std::vector<MapDensity> all = tested(two, [](Source& source) { return map_densities(source, key); });
     EXPECT_GT(all.size(), 20u);
-    for (const MapDensity& m : all) EXPECT_NEAR(m.drawn / m.p, 1, 1e-3);
+    for (const MapDensity& m : all) EXPECT_NEAR(m.density / m.p, 1, 1e-3);
     EXPECT_FALSE(tested(two, map));
     FunctionSampler low = two;  // and a p that is too low is still found
     low.p = [p = two.p](Vec3d o, Vec3d w) { return 0.98 * p(o, w); };

@@ -13,15 +13,15 @@ namespace {
 
 std::size_t times_of_largest(std::span<const double> x) {
     if (x.empty()) return 0;
-    const double least = *std::ranges::max_element(x) * (1 - alike_values);
-    return static_cast<std::size_t>(std::ranges::count_if(x, [&](double v) { return v >= least; }));
+    const double threshold = *std::ranges::max_element(x) * (1 - alike_values);
+    return static_cast<std::size_t>(std::ranges::count_if(x, [&](double v) { return v >= threshold; }));
 }
 
 bool is_of_few_values(std::span<const double> falling) {
     std::size_t values = 0;
     for (std::size_t i = 0; i < falling.size() && values <= few_values; ++values) {
-        const double least = falling[i] * (1 - alike_values);
-        while (i < falling.size() && falling[i] >= least) ++i;
+        const double threshold = falling[i] * (1 - alike_values);
+        while (i < falling.size() && falling[i] >= threshold) ++i;
     }
     return values <= few_values;
 }
@@ -115,7 +115,7 @@ void describe_unseen(const WeightTail& t, Verdict& v) {
     else v.next.kind = NextStep::Kind::heavier_pdf;
 }
 
-bool draws_below(const CheckAt& c) {
+bool has_lower_draws(const CheckAt& c) {
     if (!c.plan) return false;
     const std::vector<Leaf>& leaves = c.plan->tree.leaves();
     for (std::size_t l = 0; l < std::min(leaves.size(), c.observations.counts.size()); ++l)
@@ -168,7 +168,7 @@ WeightTail tail_of(std::span<const CheckAt> techniques) {
     std::vector<WeightedPoint> unseen;
     for (const CheckAt& c : techniques) out.integral += find_unseen(c, unseen);
     note_unseen(std::move(unseen), out);
-    out.whole = std::ranges::any_of(techniques, draws_below);
+    out.has_lower_draws = std::ranges::any_of(techniques, has_lower_draws);
     return out;
 }
 

@@ -20,7 +20,7 @@ using Least = LeastOf<Answer>;
 /// draws that cause the difference. The member with the least p may have two draws where none was expected; the next
 /// stage has none of these with a probability of 13 %. draws: number of independent draws.
 std::vector<Least> suspects_of(
-    const VisitAll& visit_all, const std::map<Family, Least>& least, double level, double draws);
+    const VisitAll& visit_all, const std::map<Family, Least>& least_answers, double level, double draws);
 
 /// Tests the same member again, one-sided in the direction of the first result. Unusable numbers are a fault by
 /// themselves and need no second test.

@@ -39,13 +39,14 @@ void note(
 }  // namespace
 
 std::vector<Vec3d> special_directions() {
-    std::vector<Vec3d> on, out;
+    std::vector<Vec3d> exact_directions, out;
     constexpr double c = 0.6, s = 0.8;
     for (double a : {-1.0, 1.0}) {
-        on.insert(on.end(), {{a, 0, 0}, {0, a, 0}, {0, 0, a}});
-        for (double b : {-1.0, 1.0}) on.insert(on.end(), {{c * a, s * b, 0}, {c * a, 0, s * b}, {0, c * a, s * b}});
+        exact_directions.insert(exact_directions.end(), {{a, 0, 0}, {0, a, 0}, {0, 0, a}});
+        for (double b : {-1.0, 1.0})
+            exact_directions.insert(exact_directions.end(), {{c * a, s * b, 0}, {c * a, 0, s * b}, {0, c * a, s * b}});
     }
-    for (Vec3d w : on) {
+    for (Vec3d w : exact_directions) {
         out.push_back(w);
         for (double e : {-ulp, ulp}) {
             if (w.x == 0) out.push_back({e, w.y, w.z});
@@ -71,8 +72,9 @@ std::vector<Vec3d> smooth_directions(const Traits& traits, Vec3d wo) {
     if (traits.delta) out.push_back(-wo);
     for (int c = 0; traits.eta && c < 3; ++c) {
         const double e = wo.z > 0 ? channel_of(*traits.eta, c) : 1 / channel_of(*traits.eta, c);
-        const double rest = 1 - (sqr(wo.x) + sqr(wo.y)) / sqr(e);
-        if (rest > 0) out.push_back({-wo.x / e, -wo.y / e, wo.z > 0 ? -std::sqrt(rest) : std::sqrt(rest)});
+        const double squared_cosine = 1 - (sqr(wo.x) + sqr(wo.y)) / sqr(e);
+        if (squared_cosine > 0)
+            out.push_back({-wo.x / e, -wo.y / e, wo.z > 0 ? -std::sqrt(squared_cosine) : std::sqrt(squared_cosine)});
     }
     return out;
 }
@@ -92,7 +94,7 @@ std::optional<SmallFault> special_places(
         if (!answers_for(traits, wo) || traits.wo == Traits::WoDomain::none) continue;
         std::fill(draws.begin(), draws.end(), Draw{});
         adapter.sample(technique, wo, u, draws);
-        out.of += static_cast<double>(u.size());
+        out.trials += static_cast<double>(u.size());
         for (std::size_t i = 0; i < u.size(); ++i) {
             if (const auto fault = fault_of(draws[i], traits)) note(out, u[i], draws[i], 0, *fault, wo);
             else if (draws[i].pdf > 0) pairs.push_back({wo, draws[i].wi});
@@ -109,7 +111,7 @@ std::optional<SmallFault> special_places(
     std::vector<double> p(pairs.size()), f(pairs.size());
     if (traits.has_pdf) adapter.pdf(technique, pairs, p);
     if (adapter.has_f()) adapter.f(pairs, f);
-    out.of += static_cast<double>(pairs.size());
+    out.trials += static_cast<double>(pairs.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) {  // a density may have a pole in a single direction
         Draw draw;
         draw.wi = pairs[i].wi;
@@ -153,27 +155,28 @@ bool differ(double a, double b, double tolerance) { return std::fabs(a - b) > to
 std::optional<SmallFault> reciprocity(const SamplerAdapter& adapter, const StreamKey& key) {
     const Traits traits = adapter.traits();
     if (!adapter.has_f() || !traits.reciprocal || !traits.has_surface()) return {};
-    const bool both = traits.wo == Traits::WoDomain::both;
+    const bool is_two_sided = traits.wo == Traits::WoDomain::both;
     Stream stream(key);
-    const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };
-    std::vector<Pair> forth, back;
+    const auto draw_direction = [&](bool is_below) { return random_direction(stream, is_below, 0.02); };
+    std::vector<Pair> forward_pairs, reverse_pairs;
     for (int i = 0; i < 256; ++i) {
-        const Pair p{direction(both && (i & 1)), direction(both && (i & 2))};
-        forth.push_back(p);
-        back.push_back({p.wi, p.wo});
+        const Pair p{draw_direction(is_two_sided && (i & 1)), draw_direction(is_two_sided && (i & 2))};
+        forward_pairs.push_back(p);
+        reverse_pairs.push_back({p.wi, p.wo});
     }
-    const std::vector<Vec3d> f = f_of(adapter, forth), g = f_of(adapter, back), again = f_of(adapter, forth);
+    const std::vector<Vec3d> f = f_of(adapter, forward_pairs), g = f_of(adapter, reverse_pairs),
+                             repeated_f = f_of(adapter, forward_pairs);
     const int channels = traits.channels == 3 ? 3 : 1;
-    SmallFault out{.family = Family::reciprocity, .of = 256.0 * channels, .what = "f(a, b) differs from f(b, a)"};
-    for (std::size_t i = 0; i < forth.size(); ++i)
+    SmallFault out{.family = Family::reciprocity, .trials = 256.0 * channels, .what = "f(a, b) differs from f(b, a)"};
+    for (std::size_t i = 0; i < forward_pairs.size(); ++i)
         for (int c = 0; c < channels; ++c) {
-            const Pair& p = forth[i];
+            const Pair& p = forward_pairs[i];
             const double a = channel_of(f[i], c), b = channel_of(g[i], c);
-            if (differ(a, channel_of(again[i], c), same_number)) return {};  // a random estimate
-            const bool across = p.wo.z * p.wi.z < 0;
+            if (differ(a, channel_of(repeated_f[i], c), same_number)) return {};  // a random estimate
+            const bool is_across = p.wo.z * p.wi.z < 0;
             Draw draw;
             draw.wi = p.wi;
-            if ((!across || traits.eta) && differ(a * reciprocal_ratio(traits, p, c), b, reciprocity_tolerance)) {
+            if ((!is_across || traits.eta) && differ(a * reciprocal_ratio(traits, p, c), b, reciprocity_tolerance)) {
                 note(out, {}, draw, a, out.what);
                 out.first.expected = b;
             }
@@ -191,24 +194,24 @@ constexpr const char* without_density =
 
 /// Directions that one technique draws, with the weights of all techniques there.
 struct WeightedDraws {
-    std::vector<Pair> at;
-    std::vector<std::size_t> of;  // indices of the draws
+    std::vector<Pair> pairs;
+    std::vector<std::size_t> rows;  // indices of the draws
     std::vector<double> sum;
     std::vector<int> empty;  // a technique whose density is 0 there; -1: none
 
     WeightedDraws(const SamplerAdapter& adapter, Vec3d wo, const std::vector<Draw>& draws) {
         for (std::size_t i = 0; i < draws.size(); ++i)
             if (draws[i].pdf > 0 && draws[i].wi.z > 0) {
-                at.push_back({wo, draws[i].wi});
-                of.push_back(i);
+                pairs.push_back({wo, draws[i].wi});
+                rows.push_back(i);
             }
-        sum.resize(at.size());
-        empty.assign(at.size(), -1);
-        std::vector<double> w(at.size()), p(at.size());
+        sum.resize(pairs.size());
+        empty.assign(pairs.size(), -1);
+        std::vector<double> w(pairs.size()), p(pairs.size());
         for (int k = 0; k < adapter.techniques(); ++k) {
-            adapter.mis_weight(k, at, w);
-            adapter.exact_pdf(k, at, p);
-            for (std::size_t i = 0; i < at.size(); ++i) {
+            adapter.mis_weight(k, pairs, w);
+            adapter.exact_pdf(k, pairs, p);
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
                 sum[i] += w[i];
                 if (p[i] == 0) empty[i] = k;
             }
@@ -222,25 +225,25 @@ std::optional<SmallFault> mis_weights(const SamplerAdapter& adapter, Vec3d wo, c
     if (adapter.techniques() < 2) return {};
     const Traits traits = adapter.traits();
     SmallFault out{.family = Family::mis};
-    double too_small = 0;  // number of draws where a density is 0 and the weights sum to less than 1
+    double small_sums = 0;  // number of draws where a density is 0 and the weights sum to less than 1
     for (int t = 0; t < adapter.techniques(); ++t) {
         const std::vector<PrimarySample> u = first_numbers(key, 512, traits);
         std::vector<Draw> draws(u.size());
         adapter.sample(t, wo, u, draws);
         const WeightedDraws w(adapter, wo, draws);
-        out.of += static_cast<double>(w.at.size());
-        for (std::size_t i = 0; i < w.at.size(); ++i) {
+        out.trials += static_cast<double>(w.pairs.size());
+        for (std::size_t i = 0; i < w.pairs.size(); ++i) {
             if (std::fabs(w.sum[i] - 1) <= reciprocity_tolerance) continue;
-            note(out, u[w.of[i]], draws[w.of[i]], w.sum[i], "", wo);
+            note(out, u[w.rows[i]], draws[w.rows[i]], w.sum[i], "", wo);
             if (!(std::fabs(w.sum[i] - 1) <= std::fabs(out.size))) out.size = w.sum[i] - 1;
             if (w.empty[i] < 0 || !(w.sum[i] < 1)) continue;
-            if (too_small++ == 0)
-                out.first = {.u = u[w.of[i]], .draw = draws[w.of[i]], .p = w.sum[i], .expected = w.empty[i] + 1.0};
+            if (small_sums++ == 0)
+                out.first = {.u = u[w.rows[i]], .draw = draws[w.rows[i]], .p = w.sum[i], .expected = w.empty[i] + 1.0};
         }
     }
     if (!(out.times > tolerated_breaks)) return {};
-    out.what = too_small == out.times ? without_density : not_one;
-    if (too_small < out.times) out.first.expected = 0;
+    out.what = small_sums == out.times ? without_density : not_one;
+    if (small_sums < out.times) out.first.expected = 0;
     return out;
 }
 

@@ -109,7 +109,7 @@ TEST(WeightsOfTechniques, SumToOne) {
     const auto fault = mis_weights(s, {0, 0, 1}, key);
     ASSERT_TRUE(fault);
     EXPECT_NEAR(fault->size, 0.1, 1e-9);
-    EXPECT_EQ(fault->times, fault->of);
+    EXPECT_EQ(fault->times, fault->trials);
     EXPECT_FALSE(mis_weights(FunctionSampler(), {0, 0, 1}, key));
 }
 

@@ -55,7 +55,7 @@ struct CheckBudget {
     /// Pilot draws, used only to shape the tree.
     std::uint32_t pilot() const { return part(73); }
     /// Pilot draws at which the step of the arithmetic is measured, with 1 to 18 draws for each number.
-    std::uint32_t of_steps() const { return part(1172); }
+    std::uint32_t step_draws() const { return part(1172); }
     /// Least number of leaves; more are made until the integrals are known to a quarter of the detection floor. A leaf
     /// costs 8 evaluations.
     int leaves() const { return static_cast<int>(part(293)); }
@@ -63,11 +63,11 @@ struct CheckBudget {
     /// Approximate number of points of the integrals.
     std::uint32_t points() const { return part(4.8); }
     /// Draws at which f is evaluated.
-    std::uint32_t of_f() const { return part(18.3); }
+    std::uint32_t f_draws() const { return part(18.3); }
     /// Draws that are rotated to compute the stated sizes. With half as many, the effect of a rotation of a lobe on
     /// both sides has an error of more than a third.
-    std::uint32_t of_sizes() const { return std::max(part(335), 1024u); }
-    double cost_of_sizes() const { return 8.0 * of_sizes(); }
+    std::uint32_t size_draws() const { return std::max(part(335), 1024u); }
+    double cost_of_sizes() const { return 8.0 * size_draws(); }
 
     /// For samplers in process.
     static CheckBudget quick() { return {}; }

@@ -32,8 +32,8 @@ TEST(CheckBudgets, PartsAreFixedShares) {
     const CheckBudget quick = CheckBudget::quick();
     EXPECT_NEAR(quick.pilot(), 0x1p14, 100);
     EXPECT_NEAR(quick.leaves(), 4096, 10);
-    EXPECT_NEAR(quick.of_f(), 0x1p16, 100);
-    EXPECT_EQ(CheckBudget::limited(1e4).of_sizes(), 1024u);
+    EXPECT_NEAR(quick.f_draws(), 0x1p16, 100);
+    EXPECT_EQ(CheckBudget::limited(1e4).size_draws(), 1024u);
     EXPECT_EQ(CheckBudget::limited(12e5).points(), 250000u);
 }
 

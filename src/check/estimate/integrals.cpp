@@ -13,10 +13,10 @@
 namespace crescent::check {
 
 void LightIntegrals::scale(double factor) {
-    for (auto* by_channel : {&all, &mean, &albedo})
+    for (auto* by_channel : {&integral, &mean, &albedo})
         for (Estimate& e : *by_channel) e.scale(factor);
     lost.scale(factor);
-    lost_again.scale(factor);
+    separate_lost.scale(factor);
     lit.scale(factor);
     largest_lost *= factor;
     for (auto& by_channel : leaves)
@@ -29,12 +29,12 @@ void LightIntegrals::scale(double factor) {
 
 void LightIntegrals::add(const LightIntegrals& o) {
     for (std::size_t c = 0; c < 3; ++c) {
-        all[c].add(o.all[c]);
+        integral[c].add(o.integral[c]);
         mean[c].add(o.mean[c]);
         albedo[c].add(o.albedo[c]);
     }
     lost.add(o.lost);
-    lost_again.add(o.lost_again);
+    separate_lost.add(o.separate_lost);
     lit.add(o.lit);
     largest_lost = std::max(largest_lost, o.largest_lost);
     for (std::size_t l = 0; l < leaves.size(); ++l)
@@ -66,14 +66,14 @@ struct Grid {
 std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
     const std::vector<Leaf>& leaves = plan.tree.leaves();
     const std::vector<double> shares = plan.tree.shares_of_points();
-    const int least = points < 8 * leaves.size() ? 1 : 2;  // pairs in each leaf
-    const double rest = std::max(points / 2.0 - least * static_cast<double>(leaves.size()), 0.0);
+    const int least_pairs = points < 8 * leaves.size() ? 1 : 2;  // pairs in each leaf
+    const double further_pairs = std::max(points / 2.0 - least_pairs * static_cast<double>(leaves.size()), 0.0);
     std::vector<Grid> out(leaves.size());
     double carry = 0;  // accumulated fractions of a pair
     for (std::size_t l = 0; l < leaves.size(); ++l) {
         const ChartRect& rect = plan.tree.rect(leaves[l]);
-        carry += rest * shares[l];
-        const int pairs = least + static_cast<int>(carry);
+        carry += further_pairs * shares[l];
+        const int pairs = least_pairs + static_cast<int>(carry);
         carry -= static_cast<int>(carry);
         Grid& g = out[l];
         g.leaf = static_cast<std::uint32_t>(l);
@@ -88,12 +88,12 @@ std::vector<Grid> grids_of(const Plan& plan, std::uint32_t points) {
 
 class Pass {
 public:
-    /// lost_in: leaves in which lost light was found before.
-    Pass(Source& source, const Plan& plan, bool of_f, const StreamKey& key, std::vector<std::size_t> lost_in)
-        : source_(source), plan_(plan), of_f_(of_f && source.has_f()), stream_(key) {
-        out_.light.lost_in = std::move(lost_in);
+    /// lost_leaves: leaves in which lost light was found before.
+    Pass(Source& source, const Plan& plan, bool uses_f, const StreamKey& key, std::vector<std::size_t> lost_leaves)
+        : source_(source), plan_(plan), uses_f_(uses_f && source.has_f()), stream_(key) {
+        out_.light.lost_leaves = std::move(lost_leaves);
         out_.leaves.resize(plan.tree.leaves().size());
-        if (of_f_ && !source.has_density()) out_.light.leaves.resize(plan.tree.leaves().size());
+        if (uses_f_ && !source.has_density()) out_.light.leaves.resize(plan.tree.leaves().size());
     }
 
     Integrals run(const std::vector<Grid>& grids) {
@@ -107,22 +107,22 @@ public:
             p_.resize(w_.size());
             f_.assign(w_.size(), {});
             source_.density(w_, p_);
-            if (of_f_) source_.f_cos(w_, f_, source_.declaration.has_true_f);
+            if (uses_f_) source_.f_cos(w_, f_, source_.declaration.has_true_f);
             mis_.assign(w_.size(), 1);
-            if (of_f_ && source_.adapter.techniques() > 1) source_.mis_weights(w_, mis_);
+            if (uses_f_ && source_.adapter.techniques() > 1) source_.mis_weights(w_, mis_);
             measure_rounding(std::span(grids).subspan(first, last - first));
             std::size_t index = 0;
             for (std::size_t g = first; g < last; ++g) add_points(grids[g], rounding_[g - first], index);
             first = last;
         }
-        if (of_f_) measure_lost();
+        if (uses_f_) measure_lost();
         return std::move(out_);
     }
 
 private:
     Source& source_;
     const Plan& plan_;
-    bool of_f_, tabulated_ = !source_.declaration.can_draw;
+    bool uses_f_, is_tabulated_ = !source_.declaration.can_draw;
     Stream stream_;
     Integrals out_;
     std::vector<ChartPoint> chart_;  // of w_
@@ -135,16 +135,16 @@ private:
     /// difference of nearly equal numbers.
     void measure_rounding(std::span<const Grid> grids) {
         rounding_.assign(grids.size(), 0);
-        if (tabulated_ || !source_.has_density() || source_.estimates || !plan_.in_single(source_)) return;
+        if (is_tabulated_ || !source_.has_density() || source_.estimates || !plan_.in_single(source_)) return;
         std::vector<std::size_t> first;  // point of each grid
         std::size_t offset = 0;
         for (const Grid& g : grids) {
             first.push_back(offset);
             offset += g.points();
         }
-        const std::vector<double> at_first = rounding_at(first);
+        const std::vector<double> first_rounding = rounding_at(first);
         for (std::size_t g = 0; g < grids.size(); ++g) {
-            if (!(at_first[g] > same_number)) continue;
+            if (!(first_rounding[g] > same_number)) continue;
             std::vector<std::size_t> points(grids[g].points());
             std::iota(points.begin(), points.end(), first[g]);
             const std::vector<double> rounding = rounding_at(points);
@@ -160,18 +160,18 @@ private:
         constexpr double longer = 1 + 2 * ulp;
         std::vector<Vec3d> w;
         for (std::size_t index : points) w.push_back(w_[index]);
-        std::vector<double> of_wo(w.size()), of_wi(w.size()), out;
-        source_.density_from(source_.wo * longer, w, of_wo);
+        std::vector<double> wo_density(w.size()), wi_density(w.size()), out;
+        source_.density_from(source_.wo * longer, w, wo_density);
         for (Vec3d& v : w) v = v * longer;
-        source_.density_from(source_.wo, w, of_wi);
+        source_.density_from(source_.wo, w, wi_density);
         for (std::size_t i = 0; i < points.size(); ++i) {
-            double least = p_[points[i]], greatest = least;
-            for (const double p : {of_wo[i], of_wi[i]})
+            double smallest = p_[points[i]], greatest = smallest;
+            for (const double p : {wo_density[i], wi_density[i]})
                 if (p >= 0 && std::isfinite(p)) {
-                    least = std::min(least, p);
+                    smallest = std::min(smallest, p);
                     greatest = std::max(greatest, p);
                 }
-            out.push_back(greatest > 0 ? std::min(1.0, (greatest / least - 1) / 4) : 0);
+            out.push_back(greatest > 0 ? std::min(1.0, (greatest / smallest - 1) / 4) : 0);
         }
         return out;
     }
@@ -191,13 +191,13 @@ private:
     /// A thin region where p is 0 contains only a few points, too few for a test. Separate points measure the lost
     /// light in the leaves that have a point with p = 0.
     void measure_lost() {
-        std::vector<std::size_t>& in = out_.light.lost_in;
-        std::sort(in.begin(), in.end());
-        in.erase(std::unique(in.begin(), in.end()), in.end());
-        const auto pairs = static_cast<int>(std::max(points_of_lost / 2 / static_cast<double>(in.size() + 1), 1.0));
+        std::vector<std::size_t>& leaves = out_.light.lost_leaves;
+        std::sort(leaves.begin(), leaves.end());
+        leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+        const auto pairs = static_cast<int>(std::max(points_of_lost / 2 / static_cast<double>(leaves.size() + 1), 1.0));
         std::vector<double> per_point;
         w_.clear();
-        for (std::size_t l : in) {
+        for (std::size_t l : leaves) {
             const ChartRect& rect = plan_.tree.rect(plan_.tree.leaves()[l]);
             for (int j = 0; j < 2 * pairs; ++j) {
                 const double x = stream_.number(), y = stream_.number();
@@ -213,7 +213,7 @@ private:
         LightIntegrals& l = out_.light;
         for (std::size_t j = 0; j < per_point.size(); ++j) {
             const double a = lost_at(2 * j), b = lost_at(2 * j + 1), k = per_point[j];
-            l.lost_again.add_pair(a, b, k);
+            l.separate_lost.add_pair(a, b, k);
             l.largest_lost = std::max(l.largest_lost, k * std::max(a, b));
         }
     }
@@ -233,17 +233,17 @@ private:
         const Leaf& leaf = plan_.tree.leaves()[g.leaf];
         LeafIntegral& to = out_.leaves[g.leaf];
         const double k = to.per_point = g.per_point;
-        double least = 1e300, greatest = 0;
-        bool lit = false;
+        double smallest = 1e300, greatest = 0;
+        bool is_lit = false;
         for (int j = 0; j < g.cells(); ++j, index += 2) {
             Values h[2];
             double second[2], unresolved[2];
             for (std::size_t a = 0; a < 2; ++a) {
                 const double p = p_[index + a];
                 h[a] = plan_.values(leaf, w_[index + a], p);
-                least = std::min(least, p);
+                smallest = std::min(smallest, p);
                 greatest = std::max(greatest, p);
-                lit = lit || (of_f_ && light_at(index + a) > 0);
+                is_lit = is_lit || (uses_f_ && light_at(index + a) > 0);
                 if (k * p > heavy_point) out_.heavy.push_back({chart_[index + a], p});
                 second[a] = k * h[a][bridge] * h[a][bridge] * p;
                 to.second += second[a];
@@ -251,11 +251,11 @@ private:
                 if (p > 0) {
                     to.solid_angle += k * h[a][bridge];
                     for (std::size_t q = 0; q < integrands; ++q) {
-                        out_.even[q] += k * h[a][q];
-                        out_.even_square[q] += k * h[a][q] * h[a][q];
+                        out_.uniform_sums[q] += k * h[a][q];
+                        out_.uniform_squares[q] += k * h[a][q] * h[a][q];
                     }
                 }
-                if (tabulated_) allow_tabulation(h[a], w_[index + a], k, to);
+                if (is_tabulated_) allow_tabulation(h[a], w_[index + a], k, to);
                 for (double& v : h[a]) v *= p;
                 unresolved[a] = plan_.resolves(leaf, p) ? 0 : std::exchange(h[a][mass], 0);
             }
@@ -264,13 +264,13 @@ private:
             to.mass.add_pair(h[0][mass], h[1][mass], k);
             to.bridge.add_pair(h[0][bridge], h[1][bridge], k);
             if (source_.has_density()) add_to_bands(index, {h[0][bridge], h[1][bridge]}, second, k);
-            if (of_f_) take_light(g.leaf, index, k);
+            if (uses_f_) take_light(g.leaf, index, k);
         }
-        if (of_f_ && least == 0 && lit) out_.light.lost_in.push_back(g.leaf);
+        if (uses_f_ && smallest == 0 && is_lit) out_.light.lost_leaves.push_back(g.leaf);
         to.top = greatest;
         out_.points += static_cast<double>(g.points());
         to.rounding = rounding;
-        if (leaf.edge && greatest <= alike * least) allow_strip(leaf, to);
+        if (leaf.edge && greatest <= alike * smallest) allow_strip(leaf, to);
     }
 
     /// For a pair of points: values of h p, and of h^2 p times k.
@@ -290,8 +290,8 @@ private:
 
     void allow_tabulation(const Values& h, Vec3d w, double k, LeafIntegral& to) {
         const double unknown = k * source_.adapter.tabulation_error(w);
-        to.known_to += unknown * h[bridge];
-        for (std::size_t q = 0; q < integrands; ++q) out_.known_to[q] += unknown * std::fabs(h[q]);
+        to.tabulation_error += unknown * h[bridge];
+        for (std::size_t q = 0; q < integrands; ++q) out_.tabulation_error[q] += unknown * std::fabs(h[q]);
     }
 
     /// If the points of a leaf have similar values and the leaf is next to another density, their pairs cannot show a
@@ -301,9 +301,9 @@ private:
         const Vec3d middle = from_chart(plan_.tree.rect(leaf).at(0.5, 0.5)), offset = middle - plan_.middle;
         const double log_q = Plan::log_of(leaf.q) - plan_.median_log_p;
         to.bridge.variance += v;
-        const double times[integrands] = {
+        const double factors[integrands] = {
             4, 1, log_q * log_q, offset.x * offset.x, offset.y * offset.y, offset.z * offset.z};
-        for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].variance += v * times[q];
+        for (std::size_t q = 0; q < integrands; ++q) out_.sums[q].variance += v * factors[q];
     }
 
     void take_light(std::size_t leaf, std::size_t index, double k) {
@@ -313,10 +313,10 @@ private:
             double f[2], mean[2], flux[2];
             for (std::size_t a = 0; a < 2; ++a) {
                 f[a] = channel_of(f_[index + a], c);
-                mean[a] = f[a] * mean_bridge(f[a], p_[index + a], plan_.usual[channel], is_bridged(source_));
+                mean[a] = f[a] * mean_bridge(f[a], p_[index + a], plan_.mean_weight[channel], is_bridged(source_));
                 flux[a] = f[a] * flux_factor(source_, w_[index + a], c);
             }
-            l.all[channel].add_pair(f[0], f[1], k);
+            l.integral[channel].add_pair(f[0], f[1], k);
             l.mean[channel].add_pair(mean[0], mean[1], k);
             l.albedo[channel].add_pair(flux[0], flux[1], k);
             if (!l.leaves.empty()) l.leaves[leaf][channel].add_pair(f[0], f[1], k);
@@ -342,44 +342,45 @@ void scale(Integrals& x, double factor) {
     for (Estimate& e : x.bridge_by_band) e.scale(factor);
     for (double& v : x.second_by_band) v *= factor;
     x.domain *= factor;
-    for (double& v : x.known_to) v *= factor;
-    for (double& v : x.even) v *= factor;
-    for (double& v : x.even_square) v *= factor;
+    for (double& v : x.tabulation_error) v *= factor;
+    for (double& v : x.uniform_sums) v *= factor;
+    for (double& v : x.uniform_squares) v *= factor;
     for (LeafIntegral& leaf : x.leaves) {
         leaf.mass.scale(factor);
         leaf.bridge.scale(factor);
         leaf.second *= factor;
         leaf.solid_angle *= factor;
         leaf.per_point *= factor;
-        leaf.known_to *= factor;
+        leaf.tabulation_error *= factor;
         leaf.rounding *= factor;
     }
 }
 
 }  // namespace
 
-void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f, const StreamKey& key, Integrals& to) {
-    Integrals pass = Pass(source, plan, of_f, key, to.light.lost_in).run(grids_of(plan, points));
+void integrate(
+    Source& source, const Plan& plan, std::uint32_t points, bool uses_f, const StreamKey& key, Integrals& to) {
+    Integrals pass = Pass(source, plan, uses_f, key, to.light.lost_leaves).run(grids_of(plan, points));
     if (to.points == 0) {
         to = std::move(pass);
         return;
     }
     const double total = to.points + pass.points;
     if (pass.light.points > 0) {
-        const double lit = to.light.points + pass.light.points;
-        to.light.scale(to.light.points / lit);
-        pass.light.scale(pass.light.points / lit);
+        const double light_points = to.light.points + pass.light.points;
+        to.light.scale(to.light.points / light_points);
+        pass.light.scale(pass.light.points / light_points);
         to.light.add(pass.light);
-        to.light.points = lit;
+        to.light.points = light_points;
     }
     scale(to, to.points / total);
     scale(pass, pass.points / total);
     to.unresolved.add(pass.unresolved);
     for (std::size_t q = 0; q < integrands; ++q) {
         to.sums[q].add(pass.sums[q]);
-        to.known_to[q] += pass.known_to[q];
-        to.even[q] += pass.even[q];
-        to.even_square[q] += pass.even_square[q];
+        to.tabulation_error[q] += pass.tabulation_error[q];
+        to.uniform_sums[q] += pass.uniform_sums[q];
+        to.uniform_squares[q] += pass.uniform_squares[q];
     }
     for (std::size_t l = 0; l < to.leaves.size(); ++l) {
         LeafIntegral &a = to.leaves[l], &b = pass.leaves[l];
@@ -387,7 +388,7 @@ void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f
         a.bridge.add(b.bridge);
         a.second += b.second;
         a.solid_angle += b.solid_angle;
-        a.known_to += b.known_to;
+        a.tabulation_error += b.tabulation_error;
         a.rounding += b.rounding;
         a.top = std::max(a.top, b.top);
         a.per_point = std::max(a.per_point, b.per_point);

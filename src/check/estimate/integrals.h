@@ -35,13 +35,13 @@ struct Estimate {
 
 /// The integrals over one leaf.
 struct LeafIntegral {
-    Estimate mass, bridge;   // of p and of h p
-    double second = 0;       // integral of h^2 p: weight of one draw in the variance
-    double solid_angle = 0;  // integral of h where p > 0: for draws spread uniformly
-    double top = 0;          // largest p at its points
-    double per_point = 0;    // weight of one point
-    double known_to = 0;     // largest effect of the error of a tabulated p
-    double rounding = 0;     // relative error of p by the sampler's arithmetic, at most 1
+    Estimate mass, bridge;        // of p and of h p
+    double second = 0;            // integral of h^2 p: weight of one draw in the variance
+    double solid_angle = 0;       // integral of h where p > 0: for draws spread uniformly
+    double top = 0;               // largest p at its points
+    double per_point = 0;         // weight of one point
+    double tabulation_error = 0;  // largest effect of the error of a tabulated p
+    double rounding = 0;          // relative error of p by the sampler's arithmetic, at most 1
 };
 
 /// A point with light: the weight X = f L cos / p of a draw there (the luminance for three channels), with the MIS
@@ -52,14 +52,14 @@ struct WeightedPoint {
 
 /// Integrals of f |cos| by channel.
 struct LightIntegrals {
-    std::array<Estimate, 3> all, mean, albedo;    // plain; bridged with p for `mean`; as flux
-    Estimate lost;                                // times the light, where p is 0
-    Estimate lit;                                 // times the light
-    std::vector<std::array<Estimate, 3>> leaves;  // f cos by leaf, if no density divides the draws
-    std::vector<WeightedPoint> weighted_points;   // where p > 0 and X > 0
-    Estimate lost_again;                          // of the leaves with p = 0 at a point, from separate points
-    double largest_lost = 0;                      // largest contribution of one of these points
-    std::vector<std::size_t> lost_in;             // these leaves, including those given before a pass
+    std::array<Estimate, 3> integral, mean, albedo;  // plain; bridged with p for `mean`; as flux
+    Estimate lost;                                   // times the light, where p is 0
+    Estimate lit;                                    // times the light
+    std::vector<std::array<Estimate, 3>> leaves;     // f cos by leaf, if no density divides the draws
+    std::vector<WeightedPoint> weighted_points;      // where p > 0 and X > 0
+    Estimate separate_lost;                          // of the leaves with p = 0 at a point, from separate points
+    double largest_lost = 0;                         // largest contribution of one of these points
+    std::vector<std::size_t> lost_leaves;            // these leaves, including those given before a pass
     double points = 0;
     void scale(double factor);
     void add(const LightIntegrals& other);
@@ -72,20 +72,21 @@ struct Integrals {
     ByBand<Estimate> bridge_by_band;  // of h p
     ByBand<double> second_by_band{};  // of h^2 p
     LightIntegrals light;
-    std::array<double, integrands> even{}, even_square{};  // integrals of h and h^2 where p > 0
-    std::array<double, integrands> known_to{};             // largest effect of the error of a tabulated p on `sums`
+    std::array<double, integrands> uniform_sums{}, uniform_squares{};  // integrals of h and h^2 where p > 0
+    std::array<double, integrands> tabulation_error{};  // largest effect of the error of a tabulated p on `sums`
     double domain = 0;  // solid angle of the upper hemisphere, and of the lower where p > 0
     double points = 0;
     std::vector<DensityPoint> heavy;  // points with a large share of the mass, which the tree does not resolve
 };
 
-/// Adds a pass of about `points` points. of_f: also evaluates f at them.
-void integrate(Source& source, const Plan& plan, std::uint32_t points, bool of_f, const StreamKey& key, Integrals& to);
+/// Adds a pass of about `points` points. uses_f: also evaluates f at them.
+void integrate(
+    Source& source, const Plan& plan, std::uint32_t points, bool uses_f, const StreamKey& key, Integrals& to);
 
 /// h of the mean: f cos bridged with p, so that no weight exceeds the usual one; 1 if that is not possible.
-inline double mean_bridge(double f_cos, double p, double usual, bool bridged) {
-    if (!bridged) return 1;
-    return p > 0 && usual > 0 ? usual * p / (usual * p + f_cos) : 0;
+inline double mean_bridge(double f_cos, double p, double mean_weight, bool has_bridge) {
+    if (!has_bridge) return 1;
+    return p > 0 && mean_weight > 0 ? mean_weight * p / (mean_weight * p + f_cos) : 0;
 }
 /// Whether the mean is bridged: not without a density, and not if h would depend on random estimates.
 inline bool is_bridged(const Source& source) {

@@ -130,7 +130,7 @@ TEST(CheckLight, HasTheAlbedoAndTheLightOfAFill) {
     const LightIntegrals l = light_of(s, light).light;
     EXPECT_NEAR(l.albedo[0].value, 0.6, 5 * std::sqrt(l.albedo[0].variance) + 1e-6);
     EXPECT_NEAR(l.lit.value, 1.8, 5 * std::sqrt(l.lit.variance) + 1e-6);
-    EXPECT_NEAR(l.all[0].value / l.lit.value, 1.0 / 3, 1e-2);
+    EXPECT_NEAR(l.integral[0].value / l.lit.value, 1.0 / 3, 1e-2);
     EXPECT_EQ(l.lost.value, 0);
     for (const WeightedPoint& point : l.weighted_points) EXPECT_NEAR(point.x, 1.8, 1e-9);  // f L cos / p
 }
@@ -141,7 +141,7 @@ TEST(CheckLight, IsLostWherePIsZero) {
     s.p = [](Vec3d o, Vec3d w) { return w.x > 0 && w.y > 0 ? 0 : cosine_pdf(o, w); };
     const LightIntegrals l = light_of(s, {}).light;
     EXPECT_NEAR(l.lost.value, 0.25, 0.01);
-    EXPECT_NEAR(l.lost_again.value, 0.25, 0.02);
+    EXPECT_NEAR(l.separate_lost.value, 0.25, 0.02);
 }
 
 TEST(CheckLight, IsScaledAcrossTheSurface) {

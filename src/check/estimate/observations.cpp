@@ -49,11 +49,11 @@ void append_weights(
     to.resize(first + batch.size(), 0);
     std::vector<double> mis(directions.wi.size(), 1);
     if (source.adapter.techniques() > 1) source.mis_weights(directions.wi, mis);
-    for (std::size_t k = 0; k < directions.at.size(); ++k) {
-        const Draw& d = batch[directions.at[k]];
+    for (std::size_t k = 0; k < directions.rows.size(); ++k) {
+        const Draw& d = batch[directions.rows[k]];
         if (!is_direction(source.traits, d, directions.p[k])) continue;
         const double x = own_weight(source, d, directions.f_cos.empty() ? nullptr : &directions.f_cos[k]);
-        if (std::isfinite(x)) to[first + directions.at[k]] = mis[k] * x * source.radiance(d.wi);
+        if (std::isfinite(x)) to[first + directions.rows[k]] = mis[k] * x * source.radiance(d.wi);
     }
     for (std::size_t i = 0; i < batch.size(); ++i)
         if (batch[i].delta > 0 && batch[i].weight && std::isfinite(*batch[i].weight))
@@ -75,24 +75,24 @@ std::uint64_t key_of(Vec3d w) {
 
 class Observer {
 public:
-    /// integrals: completed by the draws; none for draws that are compared with draws. below: as in `observe_draws`, or
-    /// none.
-    Observer(Source& source, const Plan& plan, Integrals* integrals, Source* below, Observations& to)
-        : source_(source), plan_(plan), integrals_(integrals), below_(below), to_(to) {}
+    /// integrals: completed by the draws; none for draws that are compared with draws. lower_source: as in
+    /// `observe_draws`, or none.
+    Observer(Source& source, const Plan& plan, Integrals* integrals, Source* lower_source, Observations& to)
+        : source_(source), plan_(plan), integrals_(integrals), lower_source_(lower_source), to_(to) {}
 
     /// Whether the pdf of every independent draw so far equals pdf(w): then scrambled draws need no evaluation of
     /// pdf(w).
     bool pdf_is_confirmed() const {
         const DrawChecks& c = to_.checks;
-        return !below_ && source_.has_density() && !plan_.estimates && to_.independent > 0 &&
+        return !lower_source_ && source_.has_density() && !plan_.estimates && to_.independent > 0 &&
             c.pointwise.times + c.zero.times + c.null_below == 0;
     }
 
     /// Adds independent draws.
-    void batch(const StreamKey& key, std::uint32_t from, std::span<PrimarySample> u, bool with_f) {
+    void batch(const StreamKey& key, std::uint32_t from, std::span<PrimarySample> u, bool uses_f) {
         draws_.assign(u.size(), {});
         source_.draw(key, from, u, draws_);
-        process(u, -1, with_f);
+        process(u, -1, uses_f);
     }
     /// Adds draws `first` to `last` of one scrambled set.
     void set(const StreamKey& key, int number, std::uint32_t first, std::uint32_t last) {
@@ -115,28 +115,28 @@ private:
     Source& source_;
     const Plan& plan_;
     Integrals* integrals_;
-    Source* below_;
+    Source* lower_source_;
     Observations& to_;
     std::vector<Draw> draws_;
     std::vector<Vec3d> w_, f_, true_f_;
-    std::vector<std::size_t> at_;  // indices of the draws of w_
+    std::vector<std::size_t> indices_;  // indices of the draws of w_
     std::vector<double> p_;
     std::vector<ChartPoint> points_;
     std::vector<std::uint32_t> leaf_;
     std::vector<double> rows_;  // the column of node_by_set of one set
 
-    void process(std::span<const PrimarySample> u, int set, bool with_f) {
+    void process(std::span<const PrimarySample> u, int set, bool uses_f) {
         w_.clear();
-        at_.clear();
+        indices_.clear();
         for (std::size_t i = 0; i < u.size(); ++i)
             if (usable(u[i], draws_[i], set)) {
                 w_.push_back(draws_[i].wi);
-                at_.push_back(i);
+                indices_.push_back(i);
             }
         p_.resize(w_.size());
-        if (below_ || (set >= 0 && pdf_is_confirmed())) {
-            for (std::size_t k = 0; k < w_.size(); ++k) p_[k] = draws_[at_[k]].pdf;
-            if (below_) evaluate_below(*below_, w_, p_);
+        if (lower_source_ || (set >= 0 && pdf_is_confirmed())) {
+            for (std::size_t k = 0; k < w_.size(); ++k) p_[k] = draws_[indices_[k]].pdf;
+            if (lower_source_) evaluate_below(*lower_source_, w_, p_);
         } else {
             source_.density(w_, p_);
             if (source_.estimates) restore_zeros();
@@ -146,15 +146,15 @@ private:
         leaf_.resize(w_.size());
         for (std::size_t k = 0; k < w_.size(); ++k) points_[k] = to_chart(w_[k]);
         plan_.tree.find(points_, leaf_);
-        if (with_f) compare_weights(u, set);
-        if (with_f && set < 0)
-            append_weights(source_, draws_, {.at = at_, .wi = w_, .p = p_, .f_cos = f_}, to_.weights);
+        if (uses_f) compare_weights(u, set);
+        if (uses_f && set < 0)
+            append_weights(source_, draws_, {.rows = indices_, .wi = w_, .p = p_, .f_cos = f_}, to_.weights);
         for (std::size_t k = 0; k < w_.size(); ++k) {
             fetch_leaf(k + fetched_before, set);
-            if (is_direction(source_.traits, draws_[at_[k]], p_[k])) add_direction(k, set, u[at_[k]]);
+            if (is_direction(source_.traits, draws_[indices_[k]], p_[k])) add_direction(k, set, u[indices_[k]]);
             else if (set < 0) {
                 ++to_.checks.nothing;
-                to_.checks.outside += source_.traits.has_surface();
+                to_.checks.draws_below += source_.traits.has_surface();
             }
         }
     }
@@ -171,24 +171,25 @@ private:
 
     /// Restores draws below the surface whose estimated p happens to be 0, if other draws there have p > 0.
     void restore_zeros() {
-        bool below = false;
-        for (std::size_t k = 0; k < w_.size(); ++k) below = below || (w_[k].z <= 0 && p_[k] > 0);
-        for (std::size_t k = 0; below && k < w_.size(); ++k)
-            if (w_[k].z <= 0 && p_[k] == 0) p_[k] = draws_[at_[k]].pdf;
+        bool has_density_below = false;
+        for (std::size_t k = 0; k < w_.size(); ++k)
+            has_density_below = has_density_below || (w_[k].z <= 0 && p_[k] > 0);
+        for (std::size_t k = 0; has_density_below && k < w_.size(); ++k)
+            if (w_[k].z <= 0 && p_[k] == 0) p_[k] = draws_[indices_[k]].pdf;
     }
 
     /// Whether the draw is a direction of the density with finite numbers; counts the others.
     bool usable(const PrimarySample& u, const Draw& d, int set) {
         DrawChecks& c = to_.checks;
-        if (set < 0) ++c.tested;
+        if (set < 0) ++c.draws;
         if (d.delta != 0) {
             if (set < 0) {
                 ++c.deltas;
                 take_delta(d);
             }
-            const bool chosen = d.delta > 0 && d.delta <= 1;
+            const bool is_probability = d.delta > 0 && d.delta <= 1;
             const double squared = dot(d.wi, d.wi);
-            if (!chosen || !d.weight || !std::isfinite(*d.weight) || *d.weight < -negative_weight ||
+            if (!is_probability || !d.weight || !std::isfinite(*d.weight) || *d.weight < -negative_weight ||
                 !(std::fabs(squared - 1) <= 2 * unit_length))
                 c.invalid.add({.u = u, .draw = d, .p = 0, .expected = 0});
             return false;
@@ -200,23 +201,23 @@ private:
             if (set < 0) ++c.unusable;
             return false;
         }
-        const bool finite_weight = !d.weight || std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z);
+        const bool has_finite_weight = !d.weight || std::isfinite(*d.weight + d.weights.x + d.weights.y + d.weights.z);
         if (!(d.pdf > 0)) {
-            if (!finite_weight) c.invalid.add({.u = u, .draw = d, .p = 0, .expected = 0});
+            if (!has_finite_weight) c.invalid.add({.u = u, .draw = d, .p = 0, .expected = 0});
             if (set < 0) ++c.nothing;
             return false;
         }
-        const bool bad_weight = !finite_weight ||
+        const bool has_bad_weight = !has_finite_weight ||
             (d.weight && std::min({*d.weight, d.weights.x, d.weights.y, d.weights.z}) < -negative_weight);
-        if (!(std::fabs(squared - 1) <= 2 * unit_length) || bad_weight)
+        if (!(std::fabs(squared - 1) <= 2 * unit_length) || has_bad_weight)
             c.invalid.add({.u = u, .draw = d, .p = 0, .expected = 0});
-        if (set < 0) c.bad_weights += bad_weight;
+        if (set < 0) c.bad_weights += has_bad_weight;
         return squared > 0;
     }
 
     void take_delta(const Draw& d) {
-        const double one = d.weight.value_or(0);
-        if (d.delta > 0) to_.deltas.add(d, source_.channels() == 3 ? d.weights : Vec3d{one, one, one});
+        const double weight = d.weight.value_or(0);
+        if (d.delta > 0) to_.deltas.add(d, source_.channels() == 3 ? d.weights : Vec3d{weight, weight, weight});
     }
 
     /// Tests that the pdf of a draw is within the range of p over a few roundings of w, and that p is not 0 at all of
@@ -225,90 +226,90 @@ private:
         if (!source_.has_density() || plan_.estimates) return;
         std::vector<std::size_t> differing;
         for (std::size_t k = 0; k < w_.size(); ++k)
-            if (!(std::fabs(p_[k] - draws_[at_[k]].pdf) <=
+            if (!(std::fabs(p_[k] - draws_[indices_[k]].pdf) <=
                     same_number * p_[k] + 2 * source_.adapter.tabulation_error(w_[k])))
                 differing.push_back(k);
-        to_.checks.followed += w_.size();
-        to_.checks.differing += differing.size();
-        if (to_.checks.differing_compared >= most_compared) return;
-        differing.resize(std::min<std::size_t>(differing.size(), most_compared - to_.checks.differing_compared));
+        to_.checks.evaluated_draws += w_.size();
+        to_.checks.differing_draws += differing.size();
+        if (to_.checks.compared_draws >= most_compared) return;
+        differing.resize(std::min<std::size_t>(differing.size(), most_compared - to_.checks.compared_draws));
         if (differing.empty()) return;
-        to_.checks.differing_compared += differing.size();
-        std::vector<Vec3d> around, here;
+        to_.checks.compared_draws += differing.size();
+        std::vector<Vec3d> neighbour_directions, scaled_directions;
         for (std::size_t k : differing) {
-            for (Vec3d v : of_other_lengths(source_, w_[k])) here.push_back(v);
-            for (Vec3d v : neighbours(w_[k])) around.push_back(v);
+            for (Vec3d v : of_other_lengths(source_, w_[k])) scaled_directions.push_back(v);
+            for (Vec3d v : neighbours(w_[k])) neighbour_directions.push_back(v);
         }
-        std::vector<double> q(around.size()), stated(here.size());
-        source_.density(around, q);
-        source_.stated_pdf(here, stated);
+        std::vector<double> q(neighbour_directions.size()), stated_p(scaled_directions.size());
+        source_.density(neighbour_directions, q);
+        source_.stated_pdf(scaled_directions, stated_p);
         for (std::size_t j = 0; j < differing.size(); ++j) {
             const std::size_t k = differing[j];
-            const Draw& d = draws_[at_[k]];
+            const Draw& d = draws_[indices_[k]];
             const auto first = q.begin() + static_cast<std::ptrdiff_t>(8 * j), last = first + 8;
             double low = std::min(*std::min_element(first, last), p_[k]);
             double high = std::max(*std::max_element(first, last), p_[k]);
-            const std::size_t lengths = here.size() / differing.size();
-            for (const double p : std::span(stated).subspan(j * lengths, lengths)) {
+            const std::size_t lengths = scaled_directions.size() / differing.size();
+            for (const double p : std::span(stated_p).subspan(j * lengths, lengths)) {
                 if (!std::isfinite(p)) continue;  // an arc cosine, say, of more than 1
                 low = std::min(low, p);
                 high = std::max(high, p);
             }
             const bool no_surface = !source_.traits.has_surface();
-            const bool null_below = d.wi.z <= 0 && high == 0 && !no_surface;  // no density there
-            to_.checks.null_below += null_below;
-            if (null_below) continue;
+            const bool is_ignored = d.wi.z <= 0 && high == 0 && !no_surface;  // no density there
+            to_.checks.null_below += is_ignored;
+            if (is_ignored) continue;
             // At an edge beyond which p is 0 the density may have a pole, such as that of a sphere sampled by area.
-            const bool at_edge = high > 0 && *std::min_element(first, last) == 0;
-            if (d.pdf < low * (1 - same_number) || (d.pdf > high * (1 + same_number) && !at_edge))
-                to_.checks.pointwise.add({.u = u[at_[k]], .draw = d, .p = p_[k], .expected = 0});
+            const bool is_at_edge = high > 0 && *std::min_element(first, last) == 0;
+            if (d.pdf < low * (1 - same_number) || (d.pdf > high * (1 + same_number) && !is_at_edge))
+                to_.checks.pointwise.add({.u = u[indices_[k]], .draw = d, .p = p_[k], .expected = 0});
             if (p_[k] > 0) continue;
-            if (high == 0) to_.checks.zero.add({.u = u[at_[k]], .draw = d, .p = 0, .expected = 0});
+            if (high == 0) to_.checks.zero.add({.u = u[indices_[k]], .draw = d, .p = 0, .expected = 0});
             else if (d.wi.z > 0 || no_surface) p_[k] = d.pdf;
         }
     }
 
     /// Weights of the draws: returned by the sampler, else f cos / pdf. Compares both and adds to the mean.
     void compare_weights(std::span<const PrimarySample> u, int set) {
-        const bool evaluated = source_.has_f(), truth = evaluated && source_.declaration.has_true_f;
+        const bool has_f = source_.has_f(), has_true_f = has_f && source_.declaration.has_true_f;
         f_.assign(w_.size(), {});
-        if (evaluated) source_.f_cos(w_, f_);
-        if (truth) {
+        if (has_f) source_.f_cos(w_, f_);
+        if (has_true_f) {
             true_f_.assign(w_.size(), {});
             source_.f_cos(w_, true_f_, true);
         }
         if (set < 0) to_.weighted_draws += static_cast<double>(u.size());
         for (std::size_t k = 0; k < w_.size(); ++k) {
-            const Draw& d = draws_[at_[k]];
+            const Draw& d = draws_[indices_[k]];
             if (!is_direction(source_.traits, d, p_[k])) continue;
-            if (!evaluated && d.f) f_[k] = Vec3d{1, 1, 1} * (*d.f * source_.traits.cosine(d.wi));
-            if (!d.weight && (!source_.has_density() || !(evaluated || d.f))) {
+            if (!has_f && d.f) f_[k] = Vec3d{1, 1, 1} * (*d.f * source_.traits.cosine(d.wi));
+            if (!d.weight && (!source_.has_density() || !(has_f || d.f))) {
                 ++to_.weightless;
                 continue;
             }
-            if (evaluated) compare_weight(u[at_[k]], d, k, truth ? true_f_[k] : f_[k], set);
+            if (has_f) compare_weight(u[indices_[k]], d, k, has_true_f ? true_f_[k] : f_[k], set);
         }
     }
 
     void compare_weight(const PrimarySample& u, const Draw& d, std::size_t k, Vec3d expected, int set) {
         const Vec3d f = f_[k];
-        const bool derived = source_.has_density();
+        const bool has_density = source_.has_density();
         // The weight may be an estimate too; its mean is tested.
-        const bool random = source_.estimates || source_.f_estimates || source_.traits.own_random;
-        bool wrong = false, untrue = false;
+        const bool is_random = source_.estimates || source_.f_estimates || source_.traits.own_random;
+        bool is_wrong = false, is_untrue = false;
         for (int c = 0; c < source_.channels(); ++c) {
             const auto channel = static_cast<std::size_t>(c);
             const double x = channel_of(f, c), weight = x / d.pdf, y = channel_of(expected, c);
             const double w = !d.weight ? weight : source_.channels() == 3 ? channel_of(d.weights, c) : *d.weight;
-            wrong = wrong || (derived && std::fabs(weight - w) > same_number * std::max(weight, 1e-6) + 1e-9);
-            untrue = untrue || std::fabs(x - y) > same_number * std::max(y, 1e-6);
+            is_wrong = is_wrong || (has_density && std::fabs(weight - w) > same_number * std::max(weight, 1e-6) + 1e-9);
+            is_untrue = is_untrue || std::fabs(x - y) > same_number * std::max(y, 1e-6);
             if (set >= 0) continue;
-            to_.mean[channel].add(w * mean_bridge(y, p_[k], plan_.usual[channel], is_bridged(source_)));
-            if (!derived) to_.weight_leaves[leaf_[k]][channel].add(w);
+            to_.mean[channel].add(w * mean_bridge(y, p_[k], plan_.mean_weight[channel], is_bridged(source_)));
+            if (!has_density) to_.weight_leaves[leaf_[k]][channel].add(w);
         }
         ++to_.checks.weights;
-        if (wrong && !random) to_.checks.weight.add({.u = u, .draw = d, .p = p_[k], .expected = f.x / d.pdf});
-        if (untrue && !source_.f_estimates)
+        if (is_wrong && !is_random) to_.checks.weight.add({.u = u, .draw = d, .p = p_[k], .expected = f.x / d.pdf});
+        if (is_untrue && !source_.f_estimates)
             to_.checks.reference_f.add({.u = u, .draw = d, .p = f.x, .expected = expected.x});
     }
 
@@ -335,8 +336,8 @@ private:
             return;
         }
         ++to_.checks.directions;
-        const bool resolved = plan_.resolves(leaf, p);
-        to_.unresolved += !resolved;
+        const bool is_resolved = plan_.resolves(leaf, p);
+        to_.unresolved += !is_resolved;
         for (std::size_t q = 0; q < integrands; ++q) to_.sums[q].add(v[q]);
         to_.leaves[l] += v[bridge];
         for (std::size_t axis = 0; axis < chart_axes; ++axis) to_.bands[band_of(points_[k], axis)] += v[bridge];
@@ -353,16 +354,16 @@ private:
             to_.log_p.add(log_p);
             to_.slope_log_p += v[slope] * log_p;
         }
-        to_.met.push_back({key_of(w), density});
+        to_.direction_keys.push_back({key_of(w), density});
         if (!integrals_) return;
         LeafIntegral& integral = integrals_->leaves[l];
-        if (p > alike * integral.top) complete(integral, points_[k], v, p, resolved);
+        if (p > alike * integral.top) complete(integral, points_[k], v, p, is_resolved);
     }
 
     /// The variance of C for random points is k integral of g^2 = k E[g^2 / p]. The integral of p is that where it is
     /// resolved.
-    void complete(LeafIntegral& leaf, ChartPoint point, const Values& v, double p, bool resolved) {
-        if (to_.unmet++ < batch_size) to_.unmet_at.push_back({point, p});
+    void complete(LeafIntegral& leaf, ChartPoint point, const Values& v, double p, bool is_resolved) {
+        if (to_.excess_draws++ < batch_size) to_.excess_points.push_back({point, p});
         const double draws = to_.independent;
         const auto add = [&](Estimate& e, double h) {
             const double x = leaf.per_point * p * h * h / draws;
@@ -372,7 +373,7 @@ private:
         leaf.second += v[bridge] * v[bridge] / draws;
         add(leaf.bridge, v[bridge]);
         for (std::size_t q = 0; q < integrands; ++q)
-            add(q == mass && !resolved ? integrals_->unresolved : integrals_->sums[q], v[q]);
+            add(q == mass && !is_resolved ? integrals_->unresolved : integrals_->sums[q], v[q]);
     }
 };
 
@@ -393,33 +394,34 @@ void evaluate_below(Source& source, std::span<const Vec3d> w, std::span<double> 
 
 namespace {
 
-void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t of_f, const StreamKey& key,
-    Integrals* integrals, Source* below, Observations& to) {
+void observe(Source& source, const Plan& plan, const Look& target, std::uint32_t f_draws, const StreamKey& key,
+    Integrals* integrals, Source* lower_source, Observations& to) {
     if (to.leaves.empty()) {
         to.leaves.resize(plan.tree.leaves().size());
         to.counts.resize(plan.tree.leaves().size());
         to.node_by_set.resize(plan.tree.rows());
         if (!source.has_density()) to.weight_leaves.resize(plan.tree.leaves().size());
     }
-    Observer observer(source, plan, integrals, below, to);
-    const bool with_weights = source.has_f() || source.declaration.has_drawn_f;
+    Observer observer(source, plan, integrals, lower_source, to);
+    const bool has_weights = source.has_f() || source.declaration.has_drawn_f;
     std::vector<PrimarySample> u;
     StreamKey draws = key;
     draws.purpose = Purpose::draws;
-    const auto before = static_cast<std::uint32_t>(to.independent);
-    const std::uint32_t last_draw = source.available(draws, look.independent);
-    to.independent = std::max(last_draw, before);
-    to.met.reserve(last_draw);
-    for (std::uint32_t from = before; from < last_draw; from += static_cast<std::uint32_t>(u.size())) {
-        const bool with_f = with_weights && from < of_f;
-        u.resize(std::min(with_f ? batch_size : source.batch_rows(), last_draw - from));
-        observer.batch(draws, from, u, with_f);
+    const auto first_draw = static_cast<std::uint32_t>(to.independent);
+    const std::uint32_t last_draw = source.available(draws, target.independent);
+    to.independent = std::max(last_draw, first_draw);
+    to.direction_keys.reserve(last_draw);
+    for (std::uint32_t from = first_draw; from < last_draw; from += static_cast<std::uint32_t>(u.size())) {
+        const bool uses_f = has_weights && from < f_draws;
+        u.resize(std::min(uses_f ? batch_size : source.batch_rows(), last_draw - from));
+        observer.batch(draws, from, u, uses_f);
     }
     if (integrals && !to.deltas.empty()) to.delta_power = delta_flux(source, to.deltas.parts(to.independent));
     if (source.traits.own_random || !source.declaration.can_draw) return;
-    const std::uint32_t evaluations_each = below || observer.pdf_is_confirmed() || !source.has_density() ? 1 : 2;
+    const std::uint32_t evaluations_per_draw =
+        lower_source || observer.pdf_is_confirmed() || !source.has_density() ? 1 : 2;
     const std::uint32_t first = static_cast<std::uint32_t>(to.scrambled) / replicate_sets,
-                        last = std::max(first, look.scrambled / replicate_sets / evaluations_each);
+                        last = std::max(first, target.scrambled / replicate_sets / evaluations_per_draw);
     for (int set = 0; set < replicate_sets; ++set) {
         StreamKey scramble = key;
         scramble.purpose = Purpose::scrambles;
@@ -431,22 +433,22 @@ void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t o
 
 }  // namespace
 
-void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t of_f, const StreamKey& key,
+void observe(Source& source, const Plan& plan, const Look& target, std::uint32_t f_draws, const StreamKey& key,
     Integrals& integrals, Observations& to) {
-    observe(source, plan, look, of_f, key, &integrals, nullptr, to);
+    observe(source, plan, target, f_draws, key, &integrals, nullptr, to);
 }
 
-void observe_draws(Source& source, Source& below, const Plan& plan, const Look& look, std::uint32_t of_f,
+void observe_draws(Source& source, Source& lower_source, const Plan& plan, const Look& target, std::uint32_t f_draws,
     const StreamKey& key, Observations& to) {
-    observe(source, plan, look, of_f, key, nullptr, &below, to);
+    observe(source, plan, target, f_draws, key, nullptr, &lower_source, to);
 }
 
 void add_technique(const Observations& technique, Observations& to) {
-    const auto add = [](auto& sums, const auto& more) {
-        if (sums.size() < more.size()) {
-            if constexpr (requires { sums.resize(0); }) sums.resize(more.size());
+    const auto add = [](auto& sums, const auto& terms) {
+        if (sums.size() < terms.size()) {
+            if constexpr (requires { sums.resize(0); }) sums.resize(terms.size());
         }
-        for (std::size_t i = 0; i < more.size(); ++i) sums[i] += more[i];
+        for (std::size_t i = 0; i < terms.size(); ++i) sums[i] += terms[i];
     };
     to.independent += technique.independent;
     to.scrambled += technique.scrambled;
@@ -474,14 +476,14 @@ bool same_value(double a, double b) { return std::fabs(a - b) <= same_number * s
 bool same_weight(Vec3d a, Vec3d b) { return same_value(a.x, b.x) && same_value(a.y, b.y) && same_value(a.z, b.z); }
 
 /// Returns false if there are too many.
-bool add_to(std::vector<DeltaPart>& parts, const Draw& d, Vec3d weight, bool by_weight) {
+bool add_to(std::vector<DeltaPart>& parts, const Draw& d, Vec3d weight, bool compares_weight) {
     const auto part = std::ranges::find_if(parts, [&](const DeltaPart& p) {
         return length(p.wi - d.wi) < same_number && same_value(p.q, d.delta) &&
-            (!by_weight || same_weight(p.weight, weight));
+            (!compares_weight || same_weight(p.weight, weight));
     });
     if (part != parts.end()) {
-        ++part->drawn;
-        part->otherwise += !same_weight(part->weight, weight);
+        ++part->draws;
+        part->other_weights += !same_weight(part->weight, weight);
         return true;
     }
     if (parts.size() >= most_delta_parts) return false;
@@ -492,20 +494,21 @@ bool add_to(std::vector<DeltaPart>& parts, const Draw& d, Vec3d weight, bool by_
 /// Whether each part is drawn as often as its q, within six standard deviations.
 bool all_come_by_q(const std::vector<DeltaPart>& parts, double n) {
     return std::ranges::all_of(parts, [n](const DeltaPart& p) {
-        return std::fabs(static_cast<double>(p.drawn) - n * p.q) <= 6 * std::sqrt(n * p.q * (1 - p.q)) + 2;
+        return std::fabs(static_cast<double>(p.draws) - n * p.q) <= 6 * std::sqrt(n * p.q * (1 - p.q)) + 2;
     });
 }
 
 }  // namespace
 
 void DeltaParts::add(const Draw& d, Vec3d weight) {
-    scattered_ = !add_to(alike_, d, weight, false) || scattered_;
-    many_weights_ = many_weights_ || !add_to(apart_, d, weight, true);
+    scattered_ = !add_to(parts_, d, weight, false) || scattered_;
+    many_weights_ = many_weights_ || !add_to(parts_by_weight_, d, weight, true);
 }
 
 const std::vector<DeltaPart>& DeltaParts::parts(double draws) const {
-    const bool even = std::ranges::all_of(alike_, [](const DeltaPart& p) { return p.otherwise == 0; });
-    return even || many_weights_ || !all_come_by_q(apart_, draws) ? alike_ : apart_;
+    const bool has_uniform_weights =
+        std::ranges::all_of(parts_, [](const DeltaPart& p) { return p.other_weights == 0; });
+    return has_uniform_weights || many_weights_ || !all_come_by_q(parts_by_weight_, draws) ? parts_ : parts_by_weight_;
 }
 
 namespace {
@@ -515,15 +518,16 @@ constexpr double near_normal = 0.01;         // radians; refraction bends less t
 
 /// Power of the first delta part that is transmitted straight at an oblique w_o, where refraction would bend it.
 Vec3d through_holes(Source& source) {
-    constexpr std::uint32_t tried = 512;
-    Source slanted(source.adapter, source.technique, tilt(source.wo.z > 0 ? 30 : 150), source.light);
+    constexpr std::uint32_t draw_count = 512;
+    Source oblique_source(source.adapter, source.technique, tilt(source.wo.z > 0 ? 30 : 150), source.light);
     std::vector<PrimarySample> u;
     const StreamKey key{.seed = 1, .place = 0, .technique = 0, .stage = 1, .purpose = Purpose::light, .part = 1};
-    for (std::uint32_t i = 0; i < tried; ++i) u.push_back(numbers_at(key, i, source.numbers(), source.resolution()));
-    std::vector<Draw> draws(tried);
-    slanted.draw(u, draws);
+    for (std::uint32_t i = 0; i < draw_count; ++i)
+        u.push_back(numbers_at(key, i, source.numbers(), source.resolution()));
+    std::vector<Draw> draws(draw_count);
+    oblique_source.draw(u, draws);
     for (const Draw& d : draws) {
-        if (!(d.delta > 0) || !(length(d.wi + slanted.wo) < straight_on)) continue;
+        if (!(d.delta > 0) || !(length(d.wi + oblique_source.wo) < straight_on)) continue;
         const double w = d.weight.value_or(0);
         return (source.channels() == 3 ? d.weights : Vec3d{w, w, w}) * d.delta;
     }
@@ -533,25 +537,25 @@ Vec3d through_holes(Source& source) {
 }  // namespace
 
 std::array<double, 3> delta_flux(Source& source, const std::vector<DeltaPart>& parts) {
-    std::array<double, 3> out{}, onward{};
+    std::array<double, 3> out{}, straight_power{};
     const auto channels = static_cast<std::size_t>(source.channels());
     for (const DeltaPart& p : parts)
         for (std::size_t c = 0; c < channels; ++c) {
             const int channel = static_cast<int>(c);
-            const double carried = p.q * channel_of(p.weight, channel);
-            if (length(p.wi + source.wo) < straight_on) onward[c] += carried;
-            else out[c] += carried * flux_factor(source, p.wi, channel);
+            const double power = p.q * channel_of(p.weight, channel);
+            if (length(p.wi + source.wo) < straight_on) straight_power[c] += power;
+            else out[c] += power * flux_factor(source, p.wi, channel);
         }
-    if (std::ranges::all_of(onward, [](double v) { return v == 0; })) return out;
-    const bool at_normal = math::hypot(source.wo.x, source.wo.y) < near_normal && source.declaration.can_draw;
-    const Vec3d slanted = at_normal ? through_holes(source) : Vec3d{};
+    if (std::ranges::all_of(straight_power, [](double v) { return v == 0; })) return out;
+    const bool is_at_normal = math::hypot(source.wo.x, source.wo.y) < near_normal && source.declaration.can_draw;
+    const Vec3d hole_powers = is_at_normal ? through_holes(source) : Vec3d{};
     for (std::size_t c = 0; c < channels; ++c) {
         const int channel = static_cast<int>(c);
-        const double through_hole = channel_of(slanted, channel);
+        const double hole_power = channel_of(hole_powers, channel);
         // A pane transmits other shares at other angles: all of it counts as a hole if half of it is transmitted
         // straight there.
-        const double holes = !at_normal || through_hole > onward[c] / 2 ? onward[c] : through_hole;
-        out[c] += holes + (onward[c] - holes) * flux_factor(source, -source.wo, channel);
+        const double holes = !is_at_normal || hole_power > straight_power[c] / 2 ? straight_power[c] : hole_power;
+        out[c] += holes + (straight_power[c] - holes) * flux_factor(source, -source.wo, channel);
     }
     return out;
 }

@@ -16,13 +16,13 @@ namespace crescent::check {
 
 // ---- Delta parts of the draws: single directions with a stated probability each.
 
-/// q: the probability stated with its draws. otherwise: number of its draws whose weight differs from that of the
+/// q: the probability stated with its draws. other_weights: number of its draws whose weight differs from that of the
 /// first.
 struct DeltaPart {
     Vec3d wi{};
     double q = 0;
     Vec3d weight{};
-    std::uint64_t drawn = 0, otherwise = 0;
+    std::uint64_t draws = 0, other_weights = 0;
 };
 
 /// Collects delta parts from draws.
@@ -35,10 +35,10 @@ public:
     const std::vector<DeltaPart>& parts(double draws) const;
     /// Whether there are more than `most_delta_parts`, as for a distribution that has a density.
     bool scattered() const { return scattered_; }
-    bool empty() const { return alike_.empty(); }
+    bool empty() const { return parts_.empty(); }
 
 private:
-    std::vector<DeltaPart> alike_, apart_;  // by direction and q; also by weight
+    std::vector<DeltaPart> parts_, parts_by_weight_;  // by direction and q; also by weight
     bool scattered_ = false, many_weights_ = false;
 };
 
@@ -67,7 +67,7 @@ struct Count {
 
 /// Tests of each draw, for independent draws; `invalid` for all.
 struct DrawChecks {
-    std::uint64_t tested = 0, directions = 0, deltas = 0, nothing = 0;
+    std::uint64_t draws = 0, directions = 0, deltas = 0, nothing = 0;
     std::uint64_t unusable = 0;     // pdf or direction is not a number
     std::uint64_t bad_weights = 0;  // of directions
     Count invalid;                  // not finite, negative, not unit
@@ -78,9 +78,9 @@ struct DrawChecks {
     std::uint64_t weights = 0;
     // Draws with an evaluation of pdf(w); those whose pdf differs; the number of these that were compared with
     // neighbours of w.
-    std::uint64_t followed = 0, differing = 0, differing_compared = 0;
-    std::uint64_t outside = 0;     // counted in `nothing`: draws below the surface with a pdf, at which p is 0
-    std::uint64_t null_below = 0;  // draws below the surface at which p is 0, which the estimator ignores
+    std::uint64_t evaluated_draws = 0, differing_draws = 0, compared_draws = 0;
+    std::uint64_t draws_below = 0;  // counted in `nothing`: draws below the surface with a pdf, at which p is 0
+    std::uint64_t null_below = 0;   // draws below the surface at which p is 0, which the estimator ignores
 };
 
 /// Sum and sum of squares of a value per draw.
@@ -120,27 +120,27 @@ struct Observations {
     std::array<Replicates, integrands> by_set{};
     std::vector<Replicates> node_by_set;  // sum of h, by row of the coarse node that contains a leaf
     DrawChecks checks;
-    struct Met {
+    struct DirectionKey {
         std::uint64_t key;  // hash of the direction
         double p;
     };
-    std::vector<Met> met;                 // of the independent draws
-    double mean_p = 0;                    // sum of p over the independent draws
-    Sums log_p;                           // ln p less its median
-    double slope_log_p = 0;               // sum of the h of the slope times (ln p less its median)
-    std::vector<double> weights;          // X of the first independent draws in their order
-    DeltaParts deltas;                    // of independent draws
-    std::array<Sums, 3> mean;             // bridged weights by channel
-    std::array<double, 3> delta_power{};  // power returned by delta parts, by channel
-    double weighted_draws = 0;            // number of draws in `mean` and `weights`
-    std::uint64_t weightless = 0;         // directions among them without a weight, because there is no p
+    std::vector<DirectionKey> direction_keys;  // of the independent draws
+    double mean_p = 0;                         // sum of p over the independent draws
+    Sums log_p;                                // ln p less its median
+    double slope_log_p = 0;                    // sum of the h of the slope times (ln p less its median)
+    std::vector<double> weights;               // X of the first independent draws in their order
+    DeltaParts deltas;                         // of independent draws
+    std::array<Sums, 3> mean;                  // bridged weights by channel
+    std::array<double, 3> delta_power{};       // power returned by delta parts, by channel
+    double weighted_draws = 0;                 // number of draws in `mean` and `weights`
+    std::uint64_t weightless = 0;              // directions among them without a weight, because there is no p
     /// Without a density: weights by leaf and channel, and draws by rings of 5 degrees about n.
     std::vector<std::array<WeightSums, 3>> weight_leaves;
     std::array<double, 36> rings{};
     std::uint64_t unresolved = 0;  // draws at which p exceeds what the points of its leaf resolve
     double share_unresolved() const { return static_cast<double>(unresolved) / std::max(independent, 1.0); }
-    std::uint64_t unmet = 0;             // draws whose p exceeds that of every point of the leaf
-    std::vector<DensityPoint> unmet_at;  // the first of them
+    std::uint64_t excess_draws = 0;           // draws whose p exceeds that of every point of the leaf
+    std::vector<DensityPoint> excess_points;  // the first of them
 };
 
 /// Eight directions within a few roundings of w: moved by 2 and by 8 ulp. The range of p over them is how well p is
@@ -154,12 +154,12 @@ std::vector<Vec3d> of_other_lengths(const Source& source, Vec3d w);
 /// Adds the draws from the previous look up to this one. Completes the integrals where their points missed something: a
 /// draw with p > 2 top lies in a part of its leaf without points, and its contribution to both variances follows from
 /// (1).
-void observe(Source& source, const Plan& plan, const Look& look, std::uint32_t of_f, const StreamKey& key,
+void observe(Source& source, const Plan& plan, const Look& target, std::uint32_t f_draws, const StreamKey& key,
     Integrals& integrals, Observations& to);
 
 /// The same for draws that are compared with those of another sampler. They need no density: p is evaluated only below
-/// the surface, by `below`, to decide which draws count.
-void observe_draws(Source& source, Source& below, const Plan& plan, const Look& look, std::uint32_t of_f,
+/// the surface, by `lower_source`, to decide which draws count.
+void observe_draws(Source& source, Source& lower_source, const Plan& plan, const Look& target, std::uint32_t f_draws,
     const StreamKey& key, Observations& to);
 /// Replaces p by that of `source` at directions below the surface.
 void evaluate_below(Source& source, std::span<const Vec3d> w, std::span<double> p);
@@ -171,7 +171,7 @@ void add_technique(const Observations& technique, Observations& to);
 /// Draws of a batch that belong to the density: their indices in the batch, their directions, p there, and f |cos| if
 /// the sampler has f.
 struct DrawnDirections {
-    std::span<const std::size_t> at;
+    std::span<const std::size_t> rows;
     std::span<const Vec3d> wi;
     std::span<const double> p;
     std::span<const Vec3d> f_cos;

@@ -44,7 +44,7 @@ TEST(CheckDraws, EveryFaultIsCounted) {
         if (u.x > 0.9) d.pdf = std::numeric_limits<double>::quiet_NaN();
     };
     const DrawChecks c = observed(s).checks;
-    EXPECT_EQ(c.tested, 4096u);
+    EXPECT_EQ(c.draws, 4096u);
     EXPECT_NEAR(static_cast<double>(c.pointwise.times), 1024, 4 * 28);
     // Also of the scrambled draws, half as many because each is followed by a pdf(w) after the first fault.
     EXPECT_NEAR(static_cast<double>(c.invalid.times), 410 + 205, 4 * 25);
@@ -129,8 +129,8 @@ TEST(DeltaParts, AreTheDirectionsWithTheirProbability) {
     all.add(part({0, 1e-6, 1}, 0.25), {2, 2, 2});  // equal to the rounding of a direction
     const auto& parts = all.parts(40);
     ASSERT_EQ(parts.size(), 2u);
-    EXPECT_EQ(parts[0].drawn, 11u);
-    EXPECT_EQ(parts[0].otherwise, 0u);
+    EXPECT_EQ(parts[0].draws, 11u);
+    EXPECT_EQ(parts[0].other_weights, 0u);
     EXPECT_EQ(parts[1].q, 0.75);
     EXPECT_FALSE(all.scattered());
 }
@@ -145,7 +145,7 @@ TEST(DeltaParts, WithSeveralWeightsAreApartIfEachIsDrawnAsStated) {
         two.add(part({0, 0, -1}, 1), {2, 2, 2});
     }  // each half as often as q
     ASSERT_EQ(two.parts(300).size(), 1u);
-    EXPECT_EQ(two.parts(300)[0].otherwise, 150u);
+    EXPECT_EQ(two.parts(300)[0].other_weights, 150u);
 }
 
 TEST(DeltaParts, OfManyDirectionsAreScattered) {

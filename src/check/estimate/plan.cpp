@@ -28,7 +28,7 @@ class TreeGrowth {
         std::vector<DensityPoint> points;
         std::size_t first = 0, last = 0;  // its pilot draws
         double spread = 0, score = 0, q = 0;
-        bool met = false;
+        bool has_mass = false;
     };
 
 public:
@@ -37,7 +37,7 @@ public:
         : tree_(tree),
           source_(source),
           pilots_(std::move(pilots)),
-          of_(draws),
+          draw_count_(draws),
           step_(step),
           budget_(budget),
           stream_(key) {}
@@ -62,7 +62,7 @@ public:
             leaf.q = g.q;
             leaf.spread = g.spread;
             leaf.score = g.score;
-            leaf.met = g.met;
+            leaf.has_mass = g.has_mass;
         }
     }
 
@@ -70,7 +70,7 @@ private:
     Tree& tree_;
     Source& source_;
     std::vector<DensityPoint> pilots_;
-    std::uint32_t of_;
+    std::uint32_t draw_count_;
     double step_;
     const CheckBudget& budget_;
     Stream stream_;
@@ -79,7 +79,7 @@ private:
     /// One round of best-first growth; false at the end.
     bool grow_round(std::vector<int>& open) {
         double spread = 0;
-        for (int i : open) spread += at(i).spread;
+        for (int i : open) spread += growth_of(i).spread;
         const auto limit = static_cast<std::size_t>(
             spread / std::sqrt(static_cast<double>(budget_.points())) > detection_floor / 4 ? budget_.most_leaves()
                                                                                             : budget_.leaves());
@@ -87,54 +87,54 @@ private:
         std::size_t count = std::min(std::max(open.size() / round_share, std::size_t{16}), limit - open.size());
         count = std::min(count, open.size());
         const auto chosen_end = open.begin() + static_cast<std::ptrdiff_t>(count);
-        const auto before = [&](int a, int b) {
-            return at(a).score != at(b).score ? at(a).score > at(b).score : a < b;
+        const auto precedes = [&](int a, int b) {
+            return growth_of(a).score != growth_of(b).score ? growth_of(a).score > growth_of(b).score : a < b;
         };
-        std::nth_element(open.begin(), chosen_end, open.end(), before);
-        std::sort(open.begin(), chosen_end, before);
+        std::nth_element(open.begin(), chosen_end, open.end(), precedes);
+        std::sort(open.begin(), chosen_end, precedes);
         std::vector<int> chosen(open.begin(), chosen_end);
-        std::erase_if(chosen, [&](int i) { return at(i).score <= least_score; });
+        std::erase_if(chosen, [&](int i) { return growth_of(i).score <= least_score; });
         if (chosen.empty()) return false;
         const std::vector<int> fresh = cut(chosen);
         for (int i : chosen)
-            if (tree_.nodes_[static_cast<std::size_t>(i)].child < 0) at(i).score = 0;  // too narrow
+            if (tree_.nodes_[static_cast<std::size_t>(i)].child < 0) growth_of(i).score = 0;  // too narrow
         std::erase_if(open, [&](int i) { return tree_.nodes_[static_cast<std::size_t>(i)].child >= 0; });
         open.insert(open.end(), fresh.begin(), fresh.end());
         return true;
     }
 
-    Growing& at(int node) { return growing_[static_cast<std::size_t>(node)]; }
+    Growing& growth_of(int node) { return growing_[static_cast<std::size_t>(node)]; }
 
     /// The side to cut, by the difference of the halves; none if both sides are too narrow.
     std::optional<bool> side_to_cut(const TreeNode& node, const Growing& g) const {
         const ChartRect& rect = node.rect;
-        const double least = std::max(least_width, 4 * node.step);
+        const double limit = std::max(least_width, 4 * node.step);
         double gain[2] = {};
         for (bool along_phi : {false, true}) {
             if (along_phi && source_.is_line()) continue;
             const double middle = rect.middle(along_phi);
             const auto is_below = [&](ChartPoint point) { return (along_phi ? point.phi : point.t) < middle; };
-            double sum[2] = {}, count[2] = {}, drawn = 0;
+            double sum[2] = {}, count[2] = {}, draws_below = 0;
             for (const DensityPoint& e : g.points) {
-                sum[!is_below(e.at)] += e.p;
-                ++count[!is_below(e.at)];
+                sum[!is_below(e.place)] += e.p;
+                ++count[!is_below(e.place)];
             }
-            for (std::size_t k = g.first; k < g.last; ++k) drawn += is_below(pilots_[k].at);
+            for (std::size_t k = g.first; k < g.last; ++k) draws_below += is_below(pilots_[k].place);
             double& to = gain[along_phi];
-            to = std::fabs(2 * drawn - static_cast<double>(g.last - g.first)) / of_ + 1e-12;
+            to = std::fabs(2 * draws_below - static_cast<double>(g.last - g.first)) / draw_count_ + 1e-12;
             if (count[0] > 0 && count[1] > 0) to += rect.area() * std::fabs(sum[0] / count[0] - sum[1] / count[1]) / 2;
             if (rect.width(along_phi) > rect.width(!along_phi)) to *= wider_side;
-            if (rect.width(along_phi) < least) to = 0;
+            if (rect.width(along_phi) < limit) to = 0;
         }
         if (gain[0] == 0 && gain[1] == 0) return {};
         return gain[1] > gain[0];
     }
 
     /// Cuts these leaves in two if possible, and rates the halves.
-    std::vector<int> cut(const std::vector<int>& which) {
+    std::vector<int> cut(const std::vector<int>& nodes) {
         std::vector<int> fresh;
-        for (int i : which) {
-            const std::optional<bool> side = side_to_cut(tree_.nodes_[static_cast<std::size_t>(i)], at(i));
+        for (int i : nodes) {
+            const std::optional<bool> side = side_to_cut(tree_.nodes_[static_cast<std::size_t>(i)], growth_of(i));
             if (!side) continue;
             TreeNode& parent = tree_.nodes_[static_cast<std::size_t>(i)];
             const double middle = parent.rect.middle(*side), step = parent.step;
@@ -143,17 +143,17 @@ private:
             TreeNode halves[2] = {{parent.rect, -1, parent.depth + 1}, {parent.rect, -1, parent.depth + 1}};
             (*side ? halves[0].rect.phi1 : halves[0].rect.t1) = middle;
             (*side ? halves[1].rect.phi0 : halves[1].rect.t0) = middle;
-            const auto is_below = [&](const DensityPoint& e) { return (*side ? e.at.phi : e.at.t) < middle; };
+            const auto is_below = [&](const DensityPoint& e) { return (*side ? e.place.phi : e.place.t) < middle; };
             Growing parts[2];
-            const Growing whole = std::move(at(i));
-            for (Growing& part : parts) part.points.reserve(whole.points.size() + points_per_leaf);
-            for (const DensityPoint& e : whole.points) parts[!is_below(e)].points.push_back(e);
-            const auto begin = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.first);
-            const auto end = pilots_.begin() + static_cast<std::ptrdiff_t>(whole.last);
+            const Growing state = std::move(growth_of(i));
+            for (Growing& part : parts) part.points.reserve(state.points.size() + points_per_leaf);
+            for (const DensityPoint& e : state.points) parts[!is_below(e)].points.push_back(e);
+            const auto begin = pilots_.begin() + static_cast<std::ptrdiff_t>(state.first);
+            const auto end = pilots_.begin() + static_cast<std::ptrdiff_t>(state.last);
             const auto split = static_cast<std::size_t>(std::partition(begin, end, is_below) - pilots_.begin());
-            parts[0].first = whole.first;
+            parts[0].first = state.first;
             parts[0].last = parts[1].first = split;
-            parts[1].last = whole.last;
+            parts[1].last = state.last;
             for (int k : {0, 1}) {
                 fresh.push_back(static_cast<int>(tree_.nodes_.size()));
                 halves[k].step = step_in(parts[k], step);
@@ -167,7 +167,7 @@ private:
     }
 
     /// The mean step over the draws with a measured step; that of the parent if they are too few.
-    double step_in(const Growing& g, double of_whole) const {
+    double step_in(const Growing& g, double parent_step) const {
         double sum = 0;
         int count = 0;
         for (std::size_t k = g.first; k < g.last; ++k)
@@ -175,7 +175,7 @@ private:
                 sum += pilots_[k].step;
                 ++count;
             }
-        return count < fewest_steps ? of_whole : std::max(step_, sum / count);
+        return count < fewest_steps ? parent_step : std::max(step_, sum / count);
     }
 
     static int sampled(const Growing& g) {
@@ -183,11 +183,11 @@ private:
     }
 
     /// Evaluates p until each leaf has its points, in one batch, and scores them.
-    void rate(const std::vector<int>& which) {
+    void rate(const std::vector<int>& nodes) {
         std::vector<ChartPoint> places;
         std::vector<Vec3d> w;
-        for (int i : which)
-            for (int k = sampled(at(i)); k < points_per_leaf; ++k) {
+        for (int i : nodes)
+            for (int k = sampled(growth_of(i)); k < points_per_leaf; ++k) {
                 const double x = stream_.number(), y = stream_.number();
                 places.push_back(tree_.nodes_[static_cast<std::size_t>(i)].rect.at(x, (k + y) / points_per_leaf));
                 w.push_back(from_chart(places.back()));
@@ -195,8 +195,8 @@ private:
         std::vector<double> p(w.size());
         source_.density(w, p);
         std::size_t next = 0;
-        for (int i : which) {
-            Growing& g = at(i);
+        for (int i : nodes) {
+            Growing& g = growth_of(i);
             for (int k = sampled(g); k < points_per_leaf; ++k, ++next) g.points.push_back({places[next], p[next]});
             score(tree_.nodes_[static_cast<std::size_t>(i)].rect.area(), g);
         }
@@ -204,46 +204,47 @@ private:
 
     /// Without a density only the draws decide where leaves are needed.
     void score_by_draws(double area, Growing& g) const {
-        const double drawn = static_cast<double>(g.last - g.first);
-        g.score = drawn < fewest_pilots ? 0 : drawn / of_;
-        g.met = drawn > 0;
-        g.q = std::max(drawn, 0.5) / of_ / area;
+        const double draws = static_cast<double>(g.last - g.first);
+        g.score = draws < fewest_pilots ? 0 : draws / draw_count_;
+        g.has_mass = draws > 0;
+        g.q = std::max(draws, 0.5) / draw_count_ / area;
     }
 
     void score(double area, Growing& g) const {
         if (!source_.has_density()) return score_by_draws(area, g);
         const double n = sampled(g);
-        double mean = 0, square = 0, top = 0, largest_known = 0;
+        double mean = 0, square = 0, top = 0, peak = 0;
         for (const DensityPoint& e : g.points) {
             if (e.hint) {
-                largest_known = std::max(largest_known, e.p);
+                peak = std::max(peak, e.p);
                 continue;
             }
             mean += e.p / n;
             square += e.p * e.p / n;
             top = std::max(top, e.p);
         }
-        for (std::size_t k = g.first; k < g.last; ++k) largest_known = std::max(largest_known, pilots_[k].p);
-        const double drawn = static_cast<double>(g.last - g.first) / of_, claimed = area * mean;
-        const bool missed = largest_known > alike * top;
-        const double hidden = missed ? std::max(drawn, area * std::min(largest_known, 1 / area) / n) : 0;
+        for (std::size_t k = g.first; k < g.last; ++k) peak = std::max(peak, pilots_[k].p);
+        const double draw_share = static_cast<double>(g.last - g.first) / draw_count_, claim = area * mean;
+        const bool is_missed = peak > alike * top;
+        const double hidden = is_missed ? std::max(draw_share, area * std::min(peak, 1 / area) / n) : 0;
         g.spread = area * std::sqrt(std::max(0.0, square - mean * mean));
-        g.score = g.spread + std::fabs(drawn - claimed) + worth_of_mass * std::max(drawn, claimed) + hidden;
+        g.score = g.spread + std::fabs(draw_share - claim) + worth_of_mass * std::max(draw_share, claim) + hidden;
         // Not from the draws alone: their noise would make h vary from leaf to leaf, and replicates would gain nothing.
-        g.q = missed ? (mean + drawn / area) / 2 : mean;
-        g.met = g.q > 0;
-        if (!g.met) g.q = std::max(drawn, 0.5 / of_) / area;
+        g.q = is_missed ? (mean + draw_share / area) / 2 : mean;
+        g.has_mass = g.q > 0;
+        if (!g.has_mass) g.q = std::max(draw_share, 0.5 / draw_count_) / area;
     }
 };
 
 void Tree::number_leaves() {
-    std::vector<int> up(nodes_.size());
+    std::vector<int> ancestor_rows(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         TreeNode& x = nodes_[i];
-        if (x.depth <= replicated_depth) up[i] = x.row = static_cast<int>(rows_++);
+        if (x.depth <= replicated_depth) ancestor_rows[i] = x.row = static_cast<int>(rows_++);
         if (x.child >= 0) {
             const TreeNode& c = nodes_[static_cast<std::size_t>(x.child)];
-            up[static_cast<std::size_t>(x.child)] = up[static_cast<std::size_t>(x.child) + 1] = up[i];
+            ancestor_rows[static_cast<std::size_t>(x.child)] = ancestor_rows[static_cast<std::size_t>(x.child) + 1] =
+                ancestor_rows[i];
             cuts_.push_back(
                 {x.along_phi ? c.rect.phi1 : c.rect.t1, static_cast<std::uint32_t>(x.child), x.along_phi, 0});
             continue;
@@ -252,7 +253,7 @@ void Tree::number_leaves() {
         cuts_.push_back({NAN, static_cast<std::uint32_t>(i), false, static_cast<std::uint32_t>(x.leaf)});
         Leaf leaf;
         leaf.node = static_cast<int>(i);
-        leaf.coarse = up[i];
+        leaf.coarse = ancestor_rows[i];
         leaf.step = x.step;
         leaves_.push_back(leaf);
     }
@@ -308,11 +309,11 @@ private:
 
 Tree::Tree(Source& source, std::vector<DensityPoint> pilots, std::uint32_t draws, std::vector<DensityPoint> hints,
     double step, const CheckBudget& budget, const StreamKey& key) {
-    const double drawn = static_cast<double>(pilots.size()) / std::max(draws, 1u);
+    const double direction_share = static_cast<double>(pilots.size()) / std::max(draws, 1u);
     TreeGrowth(*this, source, std::move(pilots), draws, step, budget, key).grow(std::move(hints));
     StartGrids{*this};
     find_edges();
-    set_resolved(drawn, budget.points());
+    set_resolvable_p(direction_share, budget.points());
 }
 
 std::vector<double> Tree::shares_of_points() const {
@@ -324,42 +325,43 @@ std::vector<double> Tree::shares_of_points() const {
     return out;
 }
 
-void Tree::set_resolved(double drawn, double points) {
-    double held = 0;
-    for (const Leaf& leaf : leaves_) held += leaf.q * rect(leaf).area();
-    const double integral = std::max(drawn, held);  // of a p that is too large, what the leaves hold
+void Tree::set_resolvable_p(double direction_share, double points) {
+    double leaf_mass = 0;
+    for (const Leaf& leaf : leaves_) leaf_mass += leaf.q * rect(leaf).area();
+    const double integral = std::max(direction_share, leaf_mass);  // of a p that is too large, what the leaves hold
     const std::vector<double> shares = shares_of_points();
     for (std::size_t l = 0; l < leaves_.size(); ++l) {
         Leaf& leaf = leaves_[l];
         const double point = heaviest_point * integral * (points * shares[l] + 2) / rect(leaf).area();
-        leaf.resolved = std::max(point, far_above * leaf.q);
+        leaf.resolvable_p = std::max(point, far_above * leaf.q);
     }
 }
 
-void Tree::find(std::span<const ChartPoint> at, std::span<std::uint32_t> leaves) const {
-    constexpr std::size_t together = 16;
-    for (std::size_t first = 0; first < at.size(); first += together) {
-        const std::size_t n = std::min(together, at.size() - first);
-        std::array<ChartPoint, together> points;
-        std::array<std::uint32_t, together> node{};
-        for (std::size_t k = 0; k < together; ++k) {
-            points[k] = at[first + std::min(k, n - 1)];
-            node[k] = start_in(0, points[k]);
+void Tree::find(std::span<const ChartPoint> points, std::span<std::uint32_t> leaves) const {
+    constexpr std::size_t block_size = 16;
+    for (std::size_t first = 0; first < points.size(); first += block_size) {
+        const std::size_t n = std::min(block_size, points.size() - first);
+        std::array<ChartPoint, block_size> block;
+        std::array<std::uint32_t, block_size> node{};
+        for (std::size_t k = 0; k < block_size; ++k) {
+            block[k] = points[first + std::min(k, n - 1)];
+            node[k] = start_in(0, block[k]);
         }
-        for (bool deeper = true; deeper;) {  // without a branch for each point: few of them could be predicted
-            deeper = false;
-            for (std::size_t k = 0; k < together; ++k) {
-                const bool in_grid = (node[k] & is_grid) != 0;
-                const std::uint32_t next = start_in(in_grid ? node[k] & ~is_grid : 0, points[k]);
-                node[k] = in_grid ? next : node[k];
-                deeper |= (node[k] & is_grid) != 0;
+        // Without a branch for each point: few of them could be predicted.
+        for (bool goes_deeper = true; goes_deeper;) {
+            goes_deeper = false;
+            for (std::size_t k = 0; k < block_size; ++k) {
+                const bool is_in_grid = (node[k] & is_grid) != 0;
+                const std::uint32_t next = start_in(is_in_grid ? node[k] & ~is_grid : 0, block[k]);
+                node[k] = is_in_grid ? next : node[k];
+                goes_deeper |= (node[k] & is_grid) != 0;
             }
         }
-        for (bool moved = true; moved;) {
-            moved = false;
-            for (std::size_t k = 0; k < together; ++k) {
-                const std::uint32_t next = cuts_[node[k]].next(points[k]);
-                moved |= next != node[k];
+        for (bool has_moved = true; has_moved;) {
+            has_moved = false;
+            for (std::size_t k = 0; k < block_size; ++k) {
+                const std::uint32_t next = cuts_[node[k]].next(block[k]);
+                has_moved |= next != node[k];
                 node[k] = next;
             }
         }
@@ -370,36 +372,35 @@ void Tree::find(std::span<const ChartPoint> at, std::span<std::uint32_t> leaves)
 /// A leaf is at an edge if a neighbouring leaf has another density: it may then contain a strip of it without any
 /// point. The neighbours are those at two places beyond each side.
 void Tree::find_edges() {
-    constexpr double outside = 1e-12, places[2] = {0.25, 0.75};
-    constexpr std::size_t sides = 4, leaves_together = 512;
-    std::vector<ChartPoint> beyond;
+    constexpr double margin = 1e-12, places[2] = {0.25, 0.75};
+    constexpr std::size_t sides = 4, leaves_per_block = 512;
+    std::vector<ChartPoint> outer_points;
     std::vector<std::size_t> leaf_of;  // the leaf of each of these points
     std::vector<std::uint32_t> neighbours;
-    for (std::size_t first = 0; first < leaves_.size(); first += leaves_together) {
-        beyond.clear();
+    for (std::size_t first = 0; first < leaves_.size(); first += leaves_per_block) {
+        outer_points.clear();
         leaf_of.clear();
-        for (std::size_t l = first; l < std::min(first + leaves_together, leaves_.size()); ++l) {
-            if (!leaves_[l].met) continue;
+        for (std::size_t l = first; l < std::min(first + leaves_per_block, leaves_.size()); ++l) {
+            if (!leaves_[l].has_mass) continue;
             const ChartRect& r = rect(leaves_[l]);
             for (std::size_t side = 0; side < sides; ++side)
                 for (double x : places) {
                     ChartPoint point = r.at(x, x);
-                    if (side == 0) point.t = r.t0 - outside;
-                    if (side == 1) point.t = r.t1 + outside;
-                    if (side == 2) point.phi = r.phi0 - outside < 0 ? r.phi0 - outside + two_pi : r.phi0 - outside;
-                    if (side == 3)
-                        point.phi = r.phi1 + outside >= two_pi ? r.phi1 + outside - two_pi : r.phi1 + outside;
+                    if (side == 0) point.t = r.t0 - margin;
+                    if (side == 1) point.t = r.t1 + margin;
+                    if (side == 2) point.phi = r.phi0 - margin < 0 ? r.phi0 - margin + two_pi : r.phi0 - margin;
+                    if (side == 3) point.phi = r.phi1 + margin >= two_pi ? r.phi1 + margin - two_pi : r.phi1 + margin;
                     if (point.t < 0 || point.t > 2) continue;
-                    beyond.push_back(point);
+                    outer_points.push_back(point);
                     leaf_of.push_back(l);
                 }
         }
-        neighbours.resize(beyond.size());
-        find(beyond, neighbours);
+        neighbours.resize(outer_points.size());
+        find(outer_points, neighbours);
         for (std::size_t k = 0; k < leaf_of.size(); ++k) {
             const Leaf& neighbour = leaves_[neighbours[k]];
             Leaf& leaf = leaves_[leaf_of[k]];
-            const double q = neighbour.met ? neighbour.q : 0;
+            const double q = neighbour.has_mass ? neighbour.q : 0;
             if (std::max(q, leaf.q) > alike * std::min(q, leaf.q)) leaf.edge = true;
         }
     }
@@ -413,10 +414,11 @@ double step_of(std::vector<double> v) {
     for (std::size_t k = 0; k + 1 < v.size(); ++k) v[k] = v[k + 1] - v[k];
     v.pop_back();
     sort_by_key(v, sort_key);
-    const auto equal = static_cast<std::size_t>(std::upper_bound(v.begin(), v.end(), 0.0) - v.begin());
-    const std::size_t n = v.size(), within = std::min(n - 1, 2 * equal + n / 16);
-    if (equal < 3 || equal == n) return 0;
-    return std::min(2 * v[within] * static_cast<double>(equal) / static_cast<double>(within), v[(equal + n) / 2]);
+    const auto equal_pairs = static_cast<std::size_t>(std::upper_bound(v.begin(), v.end(), 0.0) - v.begin());
+    const std::size_t n = v.size(), close_pairs = std::min(n - 1, 2 * equal_pairs + n / 16);
+    if (equal_pairs < 3 || equal_pairs == n) return 0;
+    return std::min(2 * v[close_pairs] * static_cast<double>(equal_pairs) / static_cast<double>(close_pairs),
+        v[(equal_pairs + n) / 2]);
 }
 
 double step_of_directions(std::span<const Vec3d> directions) {
@@ -438,7 +440,7 @@ struct Pilot {
     std::vector<Vec3d> directions;
     std::vector<PrimarySample> u;    // of the first of them
     std::array<double, 3> weight{};  // mean
-    std::uint32_t of = 0;
+    std::uint32_t draw_count = 0;
 };
 
 /// The mean weight f cos / pdf by channel of draws that come without one, from the directions among the first draws.
@@ -462,9 +464,9 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
     std::vector<Draw> draws;
     std::vector<double> unweighted_pdf;
     std::vector<Vec3d> unweighted;  // directions without a weight, among the first batch
-    out.of = source.available(key, budget.pilot());
-    for (std::uint32_t from = 0; from < out.of; from += batch_size) {
-        const std::uint32_t n = std::min(batch_size, out.of - from);
+    out.draw_count = source.available(key, budget.pilot());
+    for (std::uint32_t from = 0; from < out.draw_count; from += batch_size) {
+        const std::uint32_t n = std::min(batch_size, out.draw_count - from);
         u.resize(n);
         draws.assign(n, {});
         source.draw(key, from, u, draws);
@@ -473,7 +475,7 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
             const Draw& d = draws[rows[i]];
             out.points.push_back({to_chart(w[i]), p[i]});
             out.directions.push_back(w[i]);
-            if (out.u.size() < budget.of_steps()) out.u.push_back(u[rows[i]]);
+            if (out.u.size() < budget.step_draws()) out.u.push_back(u[rows[i]]);
             if (!d.weight) {
                 if (from == 0) {
                     unweighted.push_back(w[i]);
@@ -484,37 +486,37 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
             const Vec3d x = source.channels() == 3 ? d.weights : Vec3d{*d.weight, *d.weight, *d.weight};
             for (int c = 0; c < 3; ++c)
                 if (std::isfinite(channel_of(x, c)))
-                    out.weight[static_cast<std::size_t>(c)] += channel_of(x, c) / out.of;
+                    out.weight[static_cast<std::size_t>(c)] += channel_of(x, c) / out.draw_count;
         }
     }
     if (source.has_f() && source.has_density() && !unweighted.empty()) {
         const std::array<double, 3> x =
-            weights_from_f(source, unweighted, unweighted_pdf, std::min(batch_size, out.of));
+            weights_from_f(source, unweighted, unweighted_pdf, std::min(batch_size, out.draw_count));
         for (std::size_t c = 0; c < 3; ++c) out.weight[c] += x[c];
     }
     return out;
 }
 
 Values change_per_step(Source& source, const Plan& plan, const Pilot& pilot, const std::vector<LocalStep>& steps) {
-    std::vector<std::size_t> which;
+    std::vector<std::size_t> rows;
     std::vector<Vec3d> next;
     for (std::size_t i = 0; i < steps.size(); ++i)
         if (steps[i].jump > 0) {
-            which.push_back(i);
+            rows.push_back(i);
             next.push_back(steps[i].next);
         }
     std::vector<double> p(next.size());
     source.density(next, p);
     Values out{};
-    for (std::size_t k = 0; k < which.size(); ++k) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
         if (!(p[k] > 0)) continue;
         const auto values_at = [&](Vec3d w, double density) {
             return plan.values(plan.tree.leaves()[plan.tree.find(to_chart(w))], w, density);
         };
-        const std::size_t i = which[k];
-        const Values here = values_at(pilot.directions[i], pilot.points[i].p), beside = values_at(next[k], p[k]);
+        const std::size_t i = rows[k];
+        const Values values = values_at(pilot.directions[i], pilot.points[i].p), next_values = values_at(next[k], p[k]);
         for (std::size_t q = 0; q < integrands; ++q)
-            out[q] += std::fabs(beside[q] - here[q]) / static_cast<double>(steps.size());
+            out[q] += std::fabs(next_values[q] - values[q]) / static_cast<double>(steps.size());
     }
     return out;
 }
@@ -527,9 +529,9 @@ Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::ve
     std::vector<double> log_p;
     for (const DensityPoint& e : pilot.points)
         if (e.p > 0) log_p.push_back(e.p);
-    const auto drawn = static_cast<std::uint32_t>(pilot.points.size());
+    const auto direction_count = static_cast<std::uint32_t>(pilot.points.size());
     Vec3d middle{};
-    for (Vec3d w : pilot.directions) middle = middle + w * (1.0 / drawn);
+    for (Vec3d w : pilot.directions) middle = middle + w * (1.0 / direction_count);
     const double step = step_of_directions(pilot.directions);
     const std::vector<LocalStep> steps =
         local_steps(source, pilot.u, {pilot.directions.begin(), pilot.directions.begin() + std::ssize(pilot.u)});
@@ -541,15 +543,15 @@ Plan make_plan(Source& source, const CheckBudget& budget, StreamKey key, std::ve
         median = math::log(*median_place);
     }
     key.purpose = Purpose::tree;
-    Plan plan{.tree = Tree(source, pilot.points, pilot.of, std::move(hints), step, budget, key),
+    Plan plan{.tree = Tree(source, pilot.points, pilot.draw_count, std::move(hints), step, budget, key),
         .step = step,
         .median_log_p = median,
         .middle = middle,
-        .usual = pilot.weight,
+        .mean_weight = pilot.weight,
         .per_step = {},
         .estimates = source.estimates || !source.has_density(),
-        .drawn = drawn,
-        .of = pilot.of};
+        .direction_count = direction_count,
+        .draw_count = pilot.draw_count};
     if (!plan.estimates) plan.per_step = change_per_step(source, plan, pilot, steps);
     return plan;
 }

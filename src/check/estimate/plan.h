@@ -23,7 +23,7 @@ namespace crescent::check {
 
 /// A point with p there.
 struct DensityPoint {
-    ChartPoint at;
+    ChartPoint place;
     double p = 0;
     bool hint = false;  // a point from an earlier tree where p was high: excluded from averages
     double step = -1;   // of a draw: jump of its direction; below 0 if not measured
@@ -45,9 +45,10 @@ struct Leaf {
     double spread = 0;  // area times the standard deviation of p over its points
     double score = 0;   // benefit of more leaves here
     double step = 0;    // of its node
-    bool met = false;   // p > 0 at a point or draw while the tree grew; otherwise q is that of half a draw in the pilot
-    bool edge = false;  // it is met, and a neighbour has a q that differs by more than `alike`
-    double resolved = 0;  // the largest p that its points resolve, see `heaviest_point`
+    /// Whether p > 0 at a point or draw while the tree grew; otherwise q is that of half a draw in the pilot.
+    bool has_mass = false;
+    bool edge = false;        // it has mass, and a neighbour has a q that differs by more than `alike`
+    double resolvable_p = 0;  // the largest p that its points resolve, see `heaviest_point`
 };
 
 class Tree {
@@ -116,7 +117,7 @@ private:
     friend class StartGrids;
     void number_leaves();
     void find_edges();
-    void set_resolved(double drawn, double points);
+    void set_resolvable_p(double direction_share, double points);
     friend class TreeGrowth;
 };
 
@@ -130,13 +131,13 @@ using Values = std::array<double, integrands>;
 
 struct Plan {
     Tree tree;
-    double step = 0;                  // of the sampler's arithmetic, as an angle; 0: none found
-    double median_log_p = 0;          // over the pilot draws
-    Vec3d middle{};                   // their mean direction
-    std::array<double, 3> usual{};    // their mean weight by channel
-    Values per_step{};                // change of h by a local step of the arithmetic, mean over pilot draws
-    bool estimates = false;           // p is a random estimate, so h does not depend on it
-    std::uint32_t drawn = 0, of = 0;  // pilot draws that are directions; all pilot draws
+    double step = 0;                      // of the sampler's arithmetic, as an angle; 0: none found
+    double median_log_p = 0;              // over the pilot draws
+    Vec3d middle{};                       // their mean direction
+    std::array<double, 3> mean_weight{};  // their mean weight by channel
+    Values per_step{};                    // change of h by a local step of the arithmetic, mean over pilot draws
+    bool estimates = false;               // p is a random estimate, so h does not depend on it
+    std::uint32_t direction_count = 0, draw_count = 0;  // pilot draws that are directions; all pilot draws
 
     /// h = q / (p + q), in [0, 1] (the bridge of Meng and Wong 1996), and h times the quantities of the other sums.
     Values values(const Leaf& leaf, Vec3d w, double p) const {
@@ -148,7 +149,7 @@ struct Plan {
     /// A bound of h: it is 1/2 if it does not depend on p.
     double largest_h() const { return estimates ? 0.5 : 1; }
     /// Whether the points of the leaf resolve p, see `heaviest_point`.
-    bool resolves(const Leaf& leaf, double p) const { return estimates || !(p > leaf.resolved); }
+    bool resolves(const Leaf& leaf, double p) const { return estimates || !(p > leaf.resolvable_p); }
     /// Whether the sampler computes in single precision, as it declares or as the step of its directions shows: that of
     /// an angle is angle_per_step ulp, here to a factor of 4.
     bool in_single(const Source& source) const { return source.single() || step >= angle_per_step * ulp / 4; }
@@ -159,9 +160,9 @@ struct Plan {
         constexpr std::uint64_t of_mantissa = (std::uint64_t{1} << 52) - 1;
         const auto bits = std::bit_cast<std::uint64_t>(p);
         constexpr std::uint64_t root_half = 0x3fe6a09e667f3bcdu;  // bits of sqrt(1/2), from which m begins
-        const std::uint64_t above = bits - root_half;
-        const auto exponent = static_cast<double>(static_cast<std::int64_t>(above) >> 52);
-        const double m = std::bit_cast<double>((above & of_mantissa) + root_half), s = (m - 1) / (m + 1), s2 = s * s;
+        const std::uint64_t offset = bits - root_half;
+        const auto exponent = static_cast<double>(static_cast<std::int64_t>(offset) >> 52);
+        const double m = std::bit_cast<double>((offset & of_mantissa) + root_half), s = (m - 1) / (m + 1), s2 = s * s;
         return exponent * ln2 + 2 * s * (1 + s2 * (1.0 / 3 + s2 * (1.0 / 5 + s2 * (1.0 / 7 + s2 * (1.0 / 9)))));
     }
 };

@@ -62,7 +62,7 @@ TEST_F(CheckTree, LeafDensitiesAreCloseToPWhereItsMassIs) {
         const ChartRect& r = plan.tree.rect(leaf);
         const auto below = [&](double t) { return t < 1 ? std::pow(1 - t, 41.0) : 0; };
         const double mass_here = (below(r.t0) - below(r.t1)) * (r.phi1 - r.phi0) / two_pi;
-        if (leaf.met) off += std::fabs(leaf.q * r.area() - mass_here);
+        if (leaf.has_mass) off += std::fabs(leaf.q * r.area() - mass_here);
     }
     EXPECT_LT(off, 0.03);
 }
@@ -89,7 +89,7 @@ TEST(CheckTreeEdges, AreLeavesBesideAnEmptyOne) {
         const ChartRect& r = plan.tree.rect(leaf);
         edges += leaf.edge;
         if (leaf.edge) EXPECT_NEAR(r.t1, 0.25, 0.05);
-        EXPECT_EQ(leaf.met, r.t0 < 0.25) << r.t0;
+        EXPECT_EQ(leaf.has_mass, r.t0 < 0.25) << r.t0;
         if (r.t1 <= 0.25) EXPECT_NEAR(leaf.q, 1 / (0.25 * two_pi), 1e-9);
     }
     EXPECT_GT(edges, 8);
@@ -133,9 +133,9 @@ TEST(CheckPlan, DescribesThePilotDraws) {
     Source source(s, 0, {0, 0, 1}, light);
     const CheckBudget budget = CheckBudget::limited(2e5);
     const Plan plan = make_plan(source, budget, {});
-    EXPECT_EQ(plan.of, budget.pilot());
-    EXPECT_NEAR(plan.drawn, plan.of / 2.0, 4 * std::sqrt(plan.of / 4.0));
-    EXPECT_NEAR(plan.usual[0], 0.4, 0.05);
+    EXPECT_EQ(plan.draw_count, budget.pilot());
+    EXPECT_NEAR(plan.direction_count, plan.draw_count / 2.0, 4 * std::sqrt(plan.draw_count / 4.0));
+    EXPECT_NEAR(plan.mean_weight[0], 0.4, 0.05);
     EXPECT_NEAR(plan.middle.z, 2.0 / 3, 0.03);        // E[cos theta]
     EXPECT_NEAR(plan.middle.y, -4.0 / 3 / pi, 0.03);  // azimuths from pi to 2 pi: -(2 / pi) E[sin theta]
     EXPECT_NEAR(plan.median_log_p, std::log(std::sqrt(0.5) / pi), 0.05);
@@ -161,7 +161,7 @@ TEST(CheckPlan, TestFunctionsAreBridgedWithTheLeaf) {
     EXPECT_NEAR(at[centre_x], 0.75 * 0.4, 1e-12);
     EXPECT_NEAR(at[centre_z], 0.75 * 0.4, 1e-12);
     EXPECT_EQ(plan.values(leaf, {0, 0, 1}, 0)[slope], 0);
-    leaf.resolved = 0.5;
+    leaf.resolvable_p = 0.5;
     EXPECT_TRUE(plan.resolves(leaf, 0.5));
     EXPECT_FALSE(plan.resolves(leaf, 0.6));
     EXPECT_DOUBLE_EQ(plan.values(leaf, {0, 0, 1}, 0.6)[bridge], 1.0 / 3);

@@ -30,8 +30,8 @@ template <class T, class Key> void sort_by_key(std::vector<T>& v, const Key& key
     std::vector<T> sorted(v.size());
     for (std::size_t d = 0; d < digits; ++d) {
         if (std::ranges::any_of(counts[d], [&](std::uint32_t n) { return n == v.size(); })) continue;  // one value
-        std::uint32_t before = 0;
-        for (std::uint32_t& n : counts[d]) before += std::exchange(n, before);
+        std::uint32_t offset = 0;
+        for (std::uint32_t& n : counts[d]) offset += std::exchange(n, offset);
         for (const T& x : v) sorted[counts[d][digit(x, d)]++] = x;
         v.swap(sorted);
     }

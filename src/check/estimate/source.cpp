@@ -48,12 +48,12 @@ std::span<const std::uint32_t> rows_for(const StreamKey& key) {
 
 }  // namespace
 
-std::uint32_t Source::available(const StreamKey& key, std::uint32_t wanted) const {
-    if (!recorded_) return wanted;
+std::uint32_t Source::available(const StreamKey& key, std::uint32_t limit) const {
+    if (!recorded_) return limit;
     const std::span<const std::uint32_t> rows = rows_for(key);
     std::size_t count = recorded_->rows() / 8 * rows.size();
     for (std::uint32_t r : rows) count += r < recorded_->rows() % 8;
-    return static_cast<std::uint32_t>(std::min<std::size_t>(wanted, count));
+    return static_cast<std::uint32_t>(std::min<std::size_t>(limit, count));
 }
 
 void Source::draw(const StreamKey& key, std::uint32_t from, std::span<PrimarySample> u, std::span<Draw> out) {
@@ -75,7 +75,7 @@ void Source::density(std::span<const Vec3d> wi, std::span<double> out) {
         return;
     }
     adapter.exact_pdf(technique, pairs_of(wi), out);
-    invalid_.of_pdf += wi.size();
+    invalid_.pdf_evaluations += wi.size();
     for (std::size_t i = 0; i < wi.size(); ++i) {
         if (std::isfinite(out[i]) && out[i] >= 0) continue;
         note_invalid(InvalidAnswers::Function::pdf, wi[i], out[i]);
@@ -103,16 +103,16 @@ UsableDraws usable_draws(Source& source, std::span<const Draw> draws) {
         }
     out.p.resize(out.w.size());
     source.density(out.w, out.p);
-    std::size_t kept = 0;
+    std::size_t count = 0;
     for (std::size_t k = 0; k < out.w.size(); ++k) {
         if (!is_direction(source.traits, draws[out.row[k]], out.p[k])) continue;
-        out.row[kept] = out.row[k];
-        out.w[kept] = out.w[k];
-        out.p[kept++] = out.p[k];
+        out.row[count] = out.row[k];
+        out.w[count] = out.w[k];
+        out.p[count++] = out.p[k];
     }
-    out.row.resize(kept);
-    out.w.resize(kept);
-    out.p.resize(kept);
+    out.row.resize(count);
+    out.w.resize(count);
+    out.p.resize(count);
     return out;
 }
 
@@ -143,7 +143,7 @@ void Source::f_cos(std::span<const Vec3d> wi, std::span<Vec3d> out, bool truth) 
         truth ? adapter.reference_f(pairs, y) : adapter.f(pairs, y);
         for (std::size_t i = 0; i < y.size(); ++i) out[i] = {y[i], y[i], y[i]};
     }
-    invalid_.of_f += wi.size();
+    invalid_.f_evaluations += wi.size();
     const auto usable = [](double v) { return std::isfinite(v) && v >= 0; };
     for (std::size_t i = 0; i < wi.size(); ++i) {
         const Vec3d v = out[i];
@@ -169,31 +169,32 @@ bool nearly_equal(double a, double b) { return std::fabs(a - b) <= reciprocity_t
 BothWays both_ways(const SamplerAdapter& adapter, StreamKey key) {
     const Traits traits = adapter.traits();
     if (!adapter.has_f() || traits.eta || !traits.has_surface()) return BothWays::not_known;
-    const bool both = traits.wo == Traits::WoDomain::both;
+    const bool is_two_sided = traits.wo == Traits::WoDomain::both;
     Stream stream(key);
-    const auto direction = [&](bool below) { return random_direction(stream, below, 0.02); };
-    std::vector<Pair> forth, back, through;
+    const auto draw_direction = [&](bool is_below) { return random_direction(stream, is_below, 0.02); };
+    std::vector<Pair> forward_pairs, reverse_pairs, crossing_pairs;
     for (int i = 0; i < pair_count; ++i) {
-        forth.push_back({direction(both && (i & 1)), direction(both && !(i & 1))});
-        back.push_back({forth.back().wi, forth.back().wo});
-        through.push_back({direction(false), direction(true)});
+        forward_pairs.push_back({draw_direction(is_two_sided && (i & 1)), draw_direction(is_two_sided && !(i & 1))});
+        reverse_pairs.push_back({forward_pairs.back().wi, forward_pairs.back().wo});
+        crossing_pairs.push_back({draw_direction(false), draw_direction(true)});
     }
     std::vector<double> f(pair_count), g(pair_count), h(pair_count);
-    adapter.f(forth, f);
-    adapter.f(back, g);
-    adapter.f(through, h);
-    const auto everywhere = [](const std::vector<double>& v) {
+    adapter.f(forward_pairs, f);
+    adapter.f(reverse_pairs, g);
+    adapter.f(crossing_pairs, h);
+    const auto is_positive = [](const std::vector<double>& v) {
         return std::ranges::all_of(v, [](double x) { return x > 0; });
     };
-    bool phase = everywhere(f) && everywhere(g) && everywhere(h), same = both;
+    bool is_phase = is_positive(f) && is_positive(g) && is_positive(h), is_symmetric = is_two_sided;
     int positive = 0;
     for (std::size_t i = 0; i < f.size(); ++i) {
         positive += f[i] > 0;
-        phase = phase && nearly_equal(f[i] * std::fabs(forth[i].wi.z), g[i] * std::fabs(forth[i].wo.z));
-        same = same && nearly_equal(f[i], g[i]);
+        is_phase =
+            is_phase && nearly_equal(f[i] * std::fabs(forward_pairs[i].wi.z), g[i] * std::fabs(forward_pairs[i].wo.z));
+        is_symmetric = is_symmetric && nearly_equal(f[i], g[i]);
     }
-    if (phase) return BothWays::phase_function;
-    return same && positive >= fewest ? BothWays::same_f : BothWays::not_known;
+    if (is_phase) return BothWays::phase_function;
+    return is_symmetric && positive >= fewest ? BothWays::same_f : BothWays::not_known;
 }
 
 // ---- Finds the next change by increasing moves of one number, then by bisection.
@@ -205,27 +206,27 @@ constexpr std::ptrdiff_t draws_to_begin = 64;  // without a step among these dra
 // They bisect the last fourfold move: the jump is then known to 1/16 of the distance to it.
 constexpr int step_halvings = 6;
 
-class Moved {
-    static constexpr double nowhere = 2;  // larger than any distance of directions
+class Mover {
+    static constexpr double largest_jump = 2;  // larger than any distance of directions
 
 public:
-    Moved(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w)
+    Mover(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w)
         : source_(source), u_(u), w_(w) {}
 
     /// The jumps of these draws if number k moves inwards by the given distances.
-    std::vector<LocalStep> by_moving(const std::vector<std::size_t>& which, int k, const std::vector<double>& moves) {
+    std::vector<LocalStep> find_jumps(const std::vector<std::size_t>& rows, int k, const std::vector<double>& moves) {
         std::vector<PrimarySample> v;
-        for (std::size_t i : which) {
+        for (std::size_t i : rows) {
             v.push_back(u_[i]);
             v.back()[k] += v.back()[k] < 0.5 ? moves[i] : -moves[i];
         }
         std::vector<Draw> draws(v.size());
         source_.draw(v, draws);
         std::vector<LocalStep> out;
-        for (std::size_t j = 0; j < which.size(); ++j) {
-            const Vec3d d = draws[j].wi - w_[which[j]];
-            const bool drawn = draws[j].pdf > 0 && draws[j].delta == 0;
-            out.push_back({drawn ? std::sqrt(dot(d, d)) : nowhere, draws[j].wi});
+        for (std::size_t j = 0; j < rows.size(); ++j) {
+            const Vec3d d = draws[j].wi - w_[rows[j]];
+            const bool is_drawn = draws[j].pdf > 0 && draws[j].delta == 0;
+            out.push_back({is_drawn ? std::sqrt(dot(d, d)) : largest_jump, draws[j].wi});
         }
         return out;
     }
@@ -237,34 +238,34 @@ private:
 };
 
 /// The jump at the next change of each draw along number k; 0 if the smallest move already changes it, or none does.
-std::vector<LocalStep> jumps_along(Moved& moved, int k, std::size_t count) {
+std::vector<LocalStep> jumps_along(Mover& mover, int k, std::size_t count) {
     std::vector<LocalStep> out(count);
-    std::vector<double> same(count), other(count, ulp);
+    std::vector<double> low(count), high(count, ulp);
     std::vector<std::size_t> open(count), closing;
     for (std::size_t i = 0; i < count; ++i) open[i] = i;
     for (double distance = ulp; distance <= longest_move && !open.empty(); distance *= 4) {
-        std::vector<std::size_t> still;
-        const std::vector<LocalStep> d = moved.by_moving(open, k, other);
+        std::vector<std::size_t> unchanged;
+        const std::vector<LocalStep> d = mover.find_jumps(open, k, high);
         for (std::size_t j = 0; j < open.size(); ++j) {
             const std::size_t i = open[j];
             if (d[j].jump == 0) {
-                same[i] = distance;
-                other[i] = 4 * distance;
-                still.push_back(i);
+                low[i] = distance;
+                high[i] = 4 * distance;
+                unchanged.push_back(i);
             } else if (distance > ulp) {
                 out[i] = d[j];
                 closing.push_back(i);
             }
         }
-        open = std::move(still);
+        open = std::move(unchanged);
     }
     std::vector<double> middle(count);
     for (int n = 0; n < step_halvings && !closing.empty(); ++n) {
-        for (std::size_t i : closing) middle[i] = (same[i] + other[i]) / 2;
-        const std::vector<LocalStep> d = moved.by_moving(closing, k, middle);
+        for (std::size_t i : closing) middle[i] = (low[i] + high[i]) / 2;
+        const std::vector<LocalStep> d = mover.find_jumps(closing, k, middle);
         for (std::size_t j = 0; j < closing.size(); ++j) {
             const std::size_t i = closing[j];
-            (d[j].jump == 0 ? same[i] : other[i]) = middle[i];
+            (d[j].jump == 0 ? low[i] : high[i]) = middle[i];
             if (d[j].jump > 0) out[i] = d[j];
         }
     }
@@ -273,21 +274,21 @@ std::vector<LocalStep> jumps_along(Moved& moved, int k, std::size_t count) {
 
 std::vector<LocalStep> steps_of(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w) {
     std::vector<LocalStep> out(w.size());
-    Moved moved(source, u, w);
+    Mover mover(source, u, w);
     for (int k = 0; k < source.numbers(); ++k) {
-        const std::vector<LocalStep> steps = jumps_along(moved, k, w.size());
+        const std::vector<LocalStep> steps = jumps_along(mover, k, w.size());
         std::vector<std::size_t> jumping;
         for (std::size_t i = 0; i < w.size(); ++i)
             if (steps[i].jump > 0) jumping.push_back(i);
-        std::vector<double> beside(w.size());  // largest movement of w by another number, per unit
+        std::vector<double> side_movement(w.size());  // largest movement of w by another number, per unit
         for (int j = 0; j < source.numbers() && !jumping.empty(); ++j) {
             if (j == k) continue;
-            const std::vector<LocalStep> d = moved.by_moving(jumping, j, std::vector<double>(w.size(), side_move));
+            const std::vector<LocalStep> d = mover.find_jumps(jumping, j, std::vector<double>(w.size(), side_move));
             for (std::size_t n = 0; n < jumping.size(); ++n)
-                beside[jumping[n]] = std::max(beside[jumping[n]], d[n].jump / side_move);
+                side_movement[jumping[n]] = std::max(side_movement[jumping[n]], d[n].jump / side_move);
         }
         for (std::size_t i : jumping) {
-            const double jump = steps[i].jump, area = jump * std::max(beside[i], two_pi / 2 * jump);
+            const double jump = steps[i].jump, area = jump * std::max(side_movement[i], two_pi / 2 * jump);
             if (jump > out[i].jump && area <= one_direction) out[i] = steps[i];
         }
     }
@@ -299,10 +300,10 @@ std::vector<LocalStep> steps_of(Source& source, const std::vector<PrimarySample>
 std::vector<LocalStep> local_steps(Source& source, const std::vector<PrimarySample>& u, const std::vector<Vec3d>& w) {
     if (source.traits.own_random || !source.declaration.can_draw) return {};
     const auto first = std::min<std::ptrdiff_t>(draws_to_begin, std::ssize(w));
-    const std::vector<LocalStep> some =
+    const std::vector<LocalStep> first_steps =
         steps_of(source, {u.begin(), u.begin() + first}, {w.begin(), w.begin() + first});
-    const bool any = std::ranges::any_of(some, [](const LocalStep& s) { return s.jump > 0; });
-    return any ? steps_of(source, u, w) : some;
+    const bool has_steps = std::ranges::any_of(first_steps, [](const LocalStep& s) { return s.jump > 0; });
+    return has_steps ? steps_of(source, u, w) : first_steps;
 }
 
 // ---- Compares the first answers with a second round at the same directions, then with neighbours at two distances:
@@ -324,21 +325,21 @@ std::vector<double> differences(std::span<const double> a, std::span<const doubl
 
 /// Whether repeated answers differ at three directions at least and at one of twenty: a single difference is due to
 /// state.
-double of_repetition(const std::vector<double>& apart) {
-    const auto differ = std::ranges::count_if(apart, [](double v) { return v > same_number; });
-    return differ >= 3 && 20 * differ >= std::ssize(apart) ? std::max(median_of(apart), same_number) : 0;
+double of_repetition(const std::vector<double>& gaps) {
+    const auto differ = std::ranges::count_if(gaps, [](double v) { return v > same_number; });
+    return differ >= 3 && 20 * differ >= std::ssize(gaps) ? std::max(median_of(gaps), same_number) : 0;
 }
 
 /// Neighbours differ if the difference does not shrink with the step: that of a slope is sixteen times smaller at the
 /// fine step.
-double of_neighbours(const std::vector<double>& near, const std::vector<double>& far) {
+double of_neighbours(const std::vector<double>& near_gaps, const std::vector<double>& far_gaps) {
     constexpr double no_rounding = 0.1;  // larger than the rounding of sharp lobes in single precision
-    constexpr std::size_t enough = 16;
-    const double small = median_of(near);
-    return near.size() >= enough && small > no_rounding && median_of(far) < 4 * small ? small : 0;
+    constexpr std::size_t fewest_values = 16;
+    const double small = median_of(near_gaps);
+    return near_gaps.size() >= fewest_values && small > no_rounding && median_of(far_gaps) < 4 * small ? small : 0;
 }
 
-std::vector<Vec3d> beside(std::span<const Vec3d> directions, double step) {
+std::vector<Vec3d> shifted_directions(std::span<const Vec3d> directions, double step) {
     std::vector<Vec3d> out;
     for (Vec3d w : directions) {
         const Frame<double> frame = frame_about(w);
@@ -364,24 +365,26 @@ std::vector<Vec3d> places_of(Source& source, const StreamKey& key) {
 EvaluationNoise look_for_noise(Source& source, const StreamKey& key) {
     EvaluationNoise out;
     if (!source.declaration.can_draw) return out;  // a file has one answer for each direction
-    const std::vector<Vec3d> directions = places_of(source, key), near = beside(directions, fine_step),
-                             far = beside(directions, coarse_step);
+    const std::vector<Vec3d> directions = places_of(source, key),
+                             near_directions = shifted_directions(directions, fine_step),
+                             far_directions = shifted_directions(directions, coarse_step);
     const SamplerAdapter& sampler = uncached(source.adapter);
-    const auto answers = [&](const std::vector<Vec3d>& wi, bool of_f) {
+    const auto answers = [&](const std::vector<Vec3d>& wi, bool is_f) {
         std::vector<Pair> pairs;
         for (Vec3d w : wi) pairs.push_back({source.wo, w});
         std::vector<double> v(wi.size());
         source.count(wi.size());
-        of_f ? sampler.f(pairs, v) : sampler.pdf(source.technique, pairs, v);
+        is_f ? sampler.f(pairs, v) : sampler.pdf(source.technique, pairs, v);
         return v;
     };
-    for (bool of_f : {false, true}) {
-        if (of_f ? !source.has_f() : !source.has_density()) continue;
-        double& scatter = of_f ? out.of_f : out.of_pdf;
-        const std::vector<double> first = answers(directions, of_f);
-        scatter = of_repetition(differences(first, answers(directions, of_f)));
+    for (bool is_f : {false, true}) {
+        if (is_f ? !source.has_f() : !source.has_density()) continue;
+        double& scatter = is_f ? out.f_noise : out.pdf_noise;
+        const std::vector<double> first = answers(directions, is_f);
+        scatter = of_repetition(differences(first, answers(directions, is_f)));
         if (scatter > 0) continue;
-        scatter = of_neighbours(differences(first, answers(near, of_f)), differences(first, answers(far, of_f)));
+        scatter = of_neighbours(
+            differences(first, answers(near_directions, is_f)), differences(first, answers(far_directions, is_f)));
         out.hashed = out.hashed || scatter > 0;
     }
     return out;
@@ -395,7 +398,7 @@ Sentences sentences_of(const EvaluationNoise& s) {
     return {{"random estimates",
                 fmt::format("{}: {} differ by {:.2g} % (median).", what,
                     s.hashed ? "answers for directions 2e-7 apart" : "two answers for one direction",
-                    100 * std::max(s.of_pdf, s.of_f))},
+                    100 * std::max(s.pdf_noise, s.f_noise))},
         {"tested means", "Their means are tested."}};
 }
 

@@ -15,8 +15,8 @@ namespace crescent::check {
 
 /// Answers of pdf(w) and f(w) that are not finite or negative, and the first of them.
 struct InvalidAnswers {
-    std::uint64_t pdf = 0, f = 0;        // directions
-    std::uint64_t of_pdf = 0, of_f = 0;  // directions that were evaluated
+    std::uint64_t pdf = 0, f = 0;                          // directions
+    std::uint64_t pdf_evaluations = 0, f_evaluations = 0;  // directions that were evaluated
     enum class Function { none, pdf, f };
     Function first = Function::none;
     Vec3d wi{};
@@ -62,8 +62,8 @@ public:
     /// Draws `from` to `from + u.size()` of a stream, with their random numbers. A file returns its rows in place of
     /// new draws: of each eight the first for the pilot, four for stage 1, three for stage 2, none of them twice.
     void draw(const StreamKey& key, std::uint32_t from, std::span<PrimarySample> u, std::span<Draw> out);
-    /// The number of draws of a stream that are available, up to `wanted`.
-    std::uint32_t available(const StreamKey& key, std::uint32_t wanted) const;
+    /// The number of draws of a stream that are available, up to `limit`.
+    std::uint32_t available(const StreamKey& key, std::uint32_t limit) const;
     /// 1/sr, in double if the sampler has it; replaced by 0 and counted if it is not finite or negative.
     void density(std::span<const Vec3d> wi, std::span<double> out);
     double density(Vec3d wi);
@@ -127,10 +127,10 @@ UsableDraws usable_draws(Source& source, std::span<const Draw> draws);
 // neighbouring directions do not converge as the directions do.
 
 struct EvaluationNoise {
-    double of_pdf = 0, of_f = 0;  // median relative difference of two answers; 0: no estimate
+    double pdf_noise = 0, f_noise = 0;  // median relative difference of two answers; 0: no estimate
     bool hashed = false;
-    bool pdf() const { return of_pdf > 0; }
-    bool f() const { return of_f > 0; }
+    bool pdf() const { return pdf_noise > 0; }
+    bool f() const { return f_noise > 0; }
 };
 
 /// Uses a few hundred answers, at drawn directions and over the whole sphere.

@@ -119,7 +119,7 @@ TEST(EvaluationNoise, IsFoundInAnswersThatDiffer) {
     EXPECT_FALSE(noise_of(exact).pdf() || noise_of(exact).f());
     int call = 0;
     random.p = [&call](Vec3d o, Vec3d w) { return cosine_pdf(o, w) * (1 + 0.2 * (call++ % 7)); };
-    EXPECT_GT(noise_of(random).of_pdf, 0.05);
+    EXPECT_GT(noise_of(random).pdf_noise, 0.05);
     EXPECT_FALSE(noise_of(random).hashed);
     hashed.f_value = [](Vec3d, Vec3d w) {
         const std::uint64_t bits = std::bit_cast<std::uint64_t>(w.x) * 0x9e3779b97f4a7c15u;

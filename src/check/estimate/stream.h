@@ -33,8 +33,9 @@ struct StreamKey {
     bool confirms() const { return stage != 1 && stage != regrown && stage != further; }
 
     Vec4u<std::uint32_t> block(std::uint32_t index) const {
-        const std::uint32_t where = std::uint32_t{place} | std::uint32_t{technique} << 16 | std::uint32_t{stage} << 24;
-        return pcg4d(Vec4u<std::uint32_t>{index, where, static_cast<std::uint32_t>(purpose) << 16 | part, seed});
+        const std::uint32_t location =
+            std::uint32_t{place} | std::uint32_t{technique} << 16 | std::uint32_t{stage} << 24;
+        return pcg4d(Vec4u<std::uint32_t>{index, location, static_cast<std::uint32_t>(purpose) << 16 | part, seed});
     }
 };
 
@@ -52,10 +53,10 @@ inline Resolution resolution_of(const Traits& traits) {
     return traits.u_bits == 53 ? Resolution::fine : traits.bits == 24 ? Resolution::single : Resolution::standard;
 }
 /// From 32 bits, and 32 more that only a fine number uses.
-inline double number_of_bits(std::uint32_t bits, std::uint32_t more, Resolution resolution) {
+inline double number_of_bits(std::uint32_t bits, std::uint32_t extra_bits, Resolution resolution) {
     if (resolution == Resolution::standard) return unit_number(bits);
     if (resolution == Resolution::single) return single_number(unit_number(bits));
-    return static_cast<double>((std::uint64_t{bits} << 21 | more >> 11) | 1u) * 0x1p-53;
+    return static_cast<double>((std::uint64_t{bits} << 21 | extra_bits >> 11) | 1u) * 0x1p-53;
 }
 
 /// Numbers of a stream in order.
@@ -63,22 +64,22 @@ class Stream {
 public:
     explicit Stream(StreamKey key) : key_(key) {}
     std::uint32_t bits() {
-        if (at_ % 4 == 0) block_ = key_.block(at_ / 4);
-        const std::uint32_t lane = at_++ % 4;
+        if (position_ % 4 == 0) block_ = key_.block(position_ / 4);
+        const std::uint32_t lane = position_++ % 4;
         return lane == 0 ? block_.x : lane == 1 ? block_.y : lane == 2 ? block_.z : block_.w;
     }
     double number() { return unit_number(bits()); }
 
 private:
     StreamKey key_;
-    std::uint32_t at_ = 0;
+    std::uint32_t position_ = 0;
     Vec4u<std::uint32_t> block_{};
 };
 
 /// Uniform above the horizon by at least `least_z`, or below it.
-inline Vec3d random_direction(Stream& stream, bool below, double least_z) {
+inline Vec3d random_direction(Stream& stream, bool is_below, double least_z) {
     const double z = least_z + (1 - least_z) * stream.number();
-    return from_chart({below ? 1 + z : 1 - z, two_pi * stream.number()});
+    return from_chart({is_below ? 1 + z : 1 - z, two_pi * stream.number()});
 }
 
 /// The random numbers of sample i of a stream, by position: blocks 2 i and 2 i + 1; the further bits of fine numbers
@@ -90,8 +91,8 @@ inline PrimarySample numbers_at(const StreamKey& key, std::uint32_t i, int count
         const Vec4u<std::uint32_t> b = key.block(block),
                                    c = resolution == Resolution::fine ? key.block(block | 1u << 31)
                                                                       : Vec4u<std::uint32_t>{};
-        const std::uint32_t lanes[4] = {b.x, b.y, b.z, b.w}, more[4] = {c.x, c.y, c.z, c.w};
-        for (int k = 0; k < 4; ++k) out[4 * half + k] = number_of_bits(lanes[k], more[k], resolution);
+        const std::uint32_t lanes[4] = {b.x, b.y, b.z, b.w}, extra_bits[4] = {c.x, c.y, c.z, c.w};
+        for (int k = 0; k < 4; ++k) out[4 * half + k] = number_of_bits(lanes[k], extra_bits[k], resolution);
     }
     return out;
 }
@@ -128,8 +129,8 @@ constexpr SobolMatrix sobol_matrix() {
                 to = line.m[i] << (31 - i);
                 continue;
             }
-            const std::uint32_t back = v[d][static_cast<std::size_t>(i - line.s)];
-            to = back ^ (back >> line.s);
+            const std::uint32_t previous = v[d][static_cast<std::size_t>(i - line.s)];
+            to = previous ^ (previous >> line.s);
             for (int j = 1; j < line.s; ++j)
                 if (line.a >> (line.s - 1 - j) & 1) to ^= v[d][static_cast<std::size_t>(i - j)];
         }
@@ -196,10 +197,10 @@ public:
             const std::uint32_t seed = seeds_[static_cast<std::size_t>(d)];
             std::uint32_t x = reversed_bits(sobol(from, d)), i = from;
             for (PrimarySample& u : out) {
-                const std::uint32_t more = resolution_ == Resolution::fine
+                const std::uint32_t extra_bits = resolution_ == Resolution::fine
                     ? pcg4d(Vec4u<std::uint32_t>{i, static_cast<std::uint32_t>(d), seed, 0}).x
                     : 0;
-                u[d] = number_of_bits(owen_of_reversed(x, seed), more, resolution_);
+                u[d] = number_of_bits(owen_of_reversed(x, seed), extra_bits, resolution_);
                 ++i;
                 if (i != 0) x ^= step[static_cast<std::size_t>(std::countr_zero(i))];
             }

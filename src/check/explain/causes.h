@@ -46,8 +46,8 @@ std::vector<Factor> factors_for(const Traits& traits, const CaseLighting& light)
 /// are opposite.
 Vec3d half_vector_of(Vec3d wo, Vec3d wi, double eta);
 
-/// "2", "1/pi", "eta^2"; "" for an unknown number. known_to: relative.
-std::string number_name(double value, double known_to, const Traits& traits);
+/// "2", "1/pi", "eta^2"; "" for an unknown number. precision: relative.
+std::string number_name(double value, double precision, const Traits& traits);
 
 // ---- Ratios without noise, such as that of a weight to f cos / p at a draw, and the constant or factor that they
 // have.
@@ -62,7 +62,7 @@ struct KnownRatio {
 struct RatioCause {
     std::string name;  // "constant", "cos theta_i"
     double exponent = 0, constant = 1;
-    double explained = 0;  // share of the ratios
+    double explained_share = 0;  // share of the ratios
 };
 
 /// A constant, or a constant times a simple power of one factor, if nine of ten ratios agree with it; none if half of
@@ -75,7 +75,7 @@ std::optional<RatioCause> explain_ratios(std::span<const KnownRatio> ratios, std
 struct FactorHypothesis {
     Hypothesis hypothesis;
     std::string name;
-    double exponent = 0, fitted = 0, error = 0;
+    double exponent = 0, fitted_exponent = 0, error = 0;
     double usual_constant = 1;
 };
 
@@ -93,7 +93,7 @@ std::vector<Hypothesis> frame_hypotheses(std::span<const Place> places);
 
 /// The rotation of largest likelihood at one place, searched from the identity; about the z axis from any angle.
 struct Turn {
-    Vec3d by{};        // axis times angle, radians
+    Vec3d rotation{};  // axis times angle, radians
     double error = 0;  // of the angle, one standard error
 };
 struct FoundTurn {
@@ -102,7 +102,7 @@ struct FoundTurn {
     /// Whether each angle exceeds its error by far.
     bool is_clear() const {
         return std::ranges::all_of(
-            turns, [](const Turn& t) { return dot(t.by, t.by) > sqr(clear_move) * t.error * t.error; });
+            turns, [](const Turn& t) { return dot(t.rotation, t.rotation) > sqr(clear_move) * t.error * t.error; });
     }
 };
 std::optional<FoundTurn> turn_hypothesis(std::span<const Place> places);
@@ -120,15 +120,15 @@ std::vector<Hypothesis> domain_frames(std::span<const Place> places);
 /// Draws are those of p with the coordinate of an infinite line multiplied by a number.
 struct FittedMove {
     Hypothesis hypothesis;
-    std::string factor, of;
-    double value = 0, error = 0, neutral = 0;
-    bool is_clear() const { return std::fabs(value - neutral) > clear_move * error; }
+    std::string factor, coordinate;
+    double value = 0, error = 0, neutral_value = 0;
+    bool is_clear() const { return std::fabs(value - neutral_value) > clear_move * error; }
 };
 std::vector<FittedMove> domain_moves(std::span<const Place> places);
 /// Draws are those of p with other shares of the entries of a set, in a product with other parts.
 struct EntryShares {
     struct Share {
-        double drawn = 0, claimed = 0, error = 0;  // of the draws and of p, and of `drawn`
+        double drawn_share = 0, claimed_share = 0, error = 0;  // of the draws and of p, and of `drawn_share`
     };
     Hypothesis hypothesis;
     std::vector<Share> shares;  // by entry
@@ -169,7 +169,7 @@ std::optional<Cause> lobe_cause(std::span<const Place> places);
 struct Leak {
     Hypothesis hypothesis;
     double share = 0, error = 0;
-    bool whole = true;  // sphere
+    bool covers_sphere = true;  // else the upper hemisphere
     bool is_clear() const;
 };
 std::vector<Leak> leak_hypotheses(std::span<const Place> places);
@@ -190,6 +190,6 @@ std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const 
 std::optional<Cause> reciprocal_weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome);
 
 /// "Weights are f cos / p over cos theta_i and a constant 0.5 = 1/2."
-std::string ratio_sentence(const char* given, const char* expected, const RatioCause& cause, const Traits& traits);
+std::string ratio_sentence(const char* subject, const char* expected, const RatioCause& cause, const Traits& traits);
 
 }  // namespace crescent::check

@@ -25,7 +25,7 @@ inline constexpr double explains_all = 0.9;
 /// A constant this near to 1 is not printed: figures of it are known to half a percent.
 inline constexpr double near_one = 0.01;
 /// Unusable draws explain a missing mass that they equal to this part.
-inline constexpr double of_unusable = 0.2;
+inline constexpr double unusable_tolerance = 0.2;
 /// Standard errors by which a number must differ from that of a right sampler for its cause to be named, and by which
 /// the likelihood must exceed that of p for a partial cause. Chosen: of a thousand numbers none does by chance.
 inline constexpr double clear_number = 8;
@@ -45,9 +45,9 @@ inline constexpr double no_density = 14;
 /// Share of the points of the map at which a supposed density may be below that of the draws: one in ten has a
 /// derivative across an edge.
 inline constexpr double most_below_map = 0.1;
-/// Two hypotheses are one if their densities agree to `same_density` at `same_at` of the draws: ten roundings of single
-/// precision, and the draws at edges.
-inline constexpr double same_density = 1e-3, same_at = 0.9;
+/// Two hypotheses are one if their densities agree to `same_density` at `same_share` of the draws: ten roundings of
+/// single precision, and the draws at edges.
+inline constexpr double same_density = 1e-3, same_share = 0.9;
 
 // ---- factors: draws over p as a product of powers
 
@@ -56,7 +56,7 @@ inline constexpr double same_density = 1e-3, same_at = 0.9;
 inline constexpr double part_that_agrees = 0.1;
 /// A fitted exponent is taken for the multiple of 1/2 within this distance: from ratios, which have errors of 1e-3,
 /// and from counts, whose exponent has a standard error of about 0.01.
-inline constexpr double to_half = 0.05, to_simple = 0.03;
+inline constexpr double half_tolerance = 0.05, simple_tolerance = 0.03;
 /// A factor is better than another if it explains this much more of the ratios: a third of the error of their share.
 inline constexpr double better_share = 0.02;
 /// Ratios that decide an exponent by the share that agrees: a share of 0.9 of 40 has a standard error of 0.05.
@@ -79,7 +79,7 @@ inline constexpr double same_weight = agreement;
 // ---- rotations
 
 /// An azimuth within this part of it is taken for a whole column of a table, if that is as likely.
-inline constexpr double to_column = 0.1;
+inline constexpr double column_tolerance = 0.1;
 /// Of two rotations by angles half a turn apart the smaller is named if their likelihoods differ by less than this:
 /// two axes of one surface are the same after half a turn.
 inline constexpr double equal_likelihoods = 1e-3;
@@ -97,7 +97,7 @@ inline constexpr double draws_of_lobe = 400;
 inline constexpr double lobes_fit = 1e-3;
 /// How well a share (relative), a probability (half an interval), a lobe that p does not have, and a factor (half an
 /// interval, relative) must be known to be named: so that the printed figures are right.
-inline constexpr double known_share = 0.02, known_probability = 0.05, known_to_be_0 = 0.1, known_factor = 0.1;
+inline constexpr double known_share = 0.02, known_probability = 0.05, known_absence = 0.1, known_factor = 0.1;
 
 // ---- draws outside of p, and parts of p without draws
 
@@ -106,7 +106,7 @@ inline constexpr double least_leak = 1e-4, clear_leak = 8;
 /// Expected draws of an empty leaf that counts as unreached: e^-10.
 inline constexpr double expected_unreached = 10;
 /// Largest difference from 1 of draws over p where there are draws, and least share of the mass of p that has none.
-inline constexpr double right_elsewhere = 0.1, least_unreached = 0.02;
+inline constexpr double elsewhere_tolerance = 0.1, least_unreached = 0.02;
 /// Draws with one direction are a delta part if they are this share of all, and all of them from `every_draw` on;
 /// directions within `one_point` are one.
 inline constexpr double least_delta = 0.01, every_draw = 0.999, one_point = 1e-6;
@@ -115,8 +115,8 @@ inline constexpr double least_delta = 0.01, every_draw = 0.999, one_point = 1e-6
 
 /// Least mass of a region, relative to all: less has too few draws for a mean.
 inline constexpr double least_region = 2e-3;
-/// p-value of a factor that explains the weights; one of which is rejected more clearly than `rejected` is none.
-inline constexpr double weights_fit = 0.01, rejected = 1e-6;
+/// p-value of a factor that explains the weights; one of which is rejected more clearly than `rejection_level` is none.
+inline constexpr double weights_fit = 0.01, rejection_level = 1e-6;
 /// Standard errors by which a constant differs from 1. Few constants are fitted.
 inline constexpr double clear_constant = 4;
 

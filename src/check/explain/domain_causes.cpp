@@ -35,7 +35,7 @@ void moved_density(const SamplerAdapter& s, int technique, std::span<const Pair>
     std::vector<Pair> images(pairs.begin(), pairs.end());
     std::vector<double> factor(pairs.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        Coordinates x{}, again{};
+        Coordinates x{}, image_coordinates{};
         const std::span<double> point = std::span(x).first(count);
         factor[i] = change * chart->point(pairs[i].wi, point);
         move(point);
@@ -44,7 +44,7 @@ void moved_density(const SamplerAdapter& s, int technique, std::span<const Pair>
             continue;
         }
         images[i].wi = chart->direction(point, std::span(middle).first(chart->spreads()));
-        const double image = chart->point(images[i].wi, std::span(again).first(count));
+        const double image = chart->point(images[i].wi, std::span(image_coordinates).first(count));
         factor[i] = image > 0 ? factor[i] / image : 0;
     }
     s.exact_pdf(technique, images, out);
@@ -52,13 +52,13 @@ void moved_density(const SamplerAdapter& s, int technique, std::span<const Pair>
 }
 
 /// The same with 0 where p is 0 and draws there count as no samples.
-Hypothesis by_moving(std::string name, Move move, double change, bool at_zero) {
+Hypothesis by_moving(std::string name, Move move, double change, bool counts_zero) {
     Hypothesis h;
     h.name = std::move(name);
-    h.density = [move = std::move(move), change, at_zero](
+    h.density = [move = std::move(move), change, counts_zero](
                     const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out) {
         moved_density(s, technique, pairs, out, move, change);
-        if (at_zero) return;
+        if (counts_zero) return;
         std::vector<double> p(pairs.size());
         s.exact_pdf(technique, pairs, p);
         for (std::size_t i = 0; i < p.size(); ++i)
@@ -69,15 +69,15 @@ Hypothesis by_moving(std::string name, Move move, double change, bool at_zero) {
 
 /// The entry beside entry i taken for entry i, and the last one (first, for -1) for itself: what a search does that
 /// ends one place off, cut off at the end of its table.
-Hypothesis by_next_entry(std::size_t c, double count, int shift, bool at_zero) {
-    const Move back = [=](std::span<double> x) { x[c] -= shift; };  // the entry that this one is drawn for
+Hypothesis by_next_entry(std::size_t c, double count, int shift, bool counts_zero) {
+    const Move undo_shift = [=](std::span<double> x) { x[c] -= shift; };  // the entry that this one is drawn for
     Hypothesis h = by_moving(fmt::format("entry i {} 1 taken for entry i, but for the {} (off by one)",
                                  shift > 0 ? '+' : '-', shift > 0 ? "last" : "first"),
-        back, 1, at_zero);
+        undo_shift, 1, counts_zero);
     const double end = shift > 0 ? count - 1 : 0;  // drawn for itself and for the entry before it
-    h.density = [=, moved = std::move(h.density)](
+    h.density = [=, density = std::move(h.density)](
                     const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out) {
-        moved(s, technique, pairs, out);
+        density(s, technique, pairs, out);
         std::vector<double> p(pairs.size());
         s.exact_pdf(technique, pairs, p);
         for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -222,12 +222,12 @@ std::optional<NamedMove> exchanged_entries(const Place& place) {
         const double entry = k;
         w.push_back(chart.direction(std::span(&entry, 1), std::span(middle).first(chart.spreads())));
     }
-    std::vector<double> p(entries), drawn(entries), deviation(entries);
+    std::vector<double> p(entries), draw_counts(entries), deviation(entries);
     place.source().density(w, p);
     for (std::uint32_t k = 0; k < entries; ++k) p[k] = chart.density(w[k], p[k]);
-    for (const Vec3d& d : place.w) ++drawn[static_cast<std::size_t>(coordinate(chart, d, 0))];
+    for (const Vec3d& d : place.w) ++draw_counts[static_cast<std::size_t>(coordinate(chart, d, 0))];
     for (std::uint32_t k = 0; k < entries; ++k)
-        deviation[k] = (drawn[k] - place.of * p[k]) / std::sqrt(place.of * p[k] + 1);
+        deviation[k] = (draw_counts[k] - place.draw_count * p[k]) / std::sqrt(place.draw_count * p[k] + 1);
     const auto [low, high] = std::ranges::minmax_element(deviation);
     if (*low > -clear_entries || *high < clear_entries) return {};
     const double a = static_cast<double>(std::min(low, high) - deviation.begin()),
@@ -244,18 +244,18 @@ std::vector<Hypothesis> domain_frames(std::span<const Place> places) {
     std::vector<NamedMove> moves = moves_of(domain);
     if (domain.parts()[0].kind == Kind::set)
         if (auto exchange = exchanged_entries(places[0])) moves.push_back(std::move(*exchange));
-    std::vector<Hypothesis> all;
+    std::vector<Hypothesis> hypotheses;
     for (NamedMove& move : moves)
-        all.push_back(by_moving(std::move(move.name), std::move(move.move), 1, places[0].draws_at_zero()));
+        hypotheses.push_back(by_moving(std::move(move.name), std::move(move.move), 1, places[0].draws_at_zero()));
     std::size_t c = 0;
     for (const DomainPart& part : domain.parts()) {
         for (const int shift : {1, -1})
             if (part.kind == Kind::set && part.count > 1)
-                all.push_back(by_next_entry(c, part.count, shift, places[0].draws_at_zero()));
+                hypotheses.push_back(by_next_entry(c, part.count, shift, places[0].draws_at_zero()));
         c += part.coordinates();
     }
     std::vector<Hypothesis> out;
-    for (Hypothesis& h : all) {
+    for (Hypothesis& h : hypotheses) {
         h.place = static_cast<int>(out.size());
         score(h, places);
         if (h.helps()) out.push_back(std::move(h));
@@ -283,35 +283,36 @@ std::optional<EntryShares> entry_shares(std::span<const Place> places) {
     const Place& place = places[0];
     const auto entry_of = [&](Vec3d w) { return static_cast<std::size_t>(coordinate(chart, w, c)); };
     constexpr double bridge = 1 / (2 * two_pi);  // q, 1/sr: that of even directions
-    std::vector<double> drawn(set->count), claimed(set->count), counts(set->count);
+    std::vector<double> drawn_sums(set->count), claimed_sums(set->count), counts(set->count);
     for (std::size_t i = 0; i < place.w.size(); ++i) {
         const std::size_t k = entry_of(place.w[i]);
-        drawn[k] += 1 / (place.p[i] + bridge);
+        drawn_sums[k] += 1 / (place.p[i] + bridge);
         ++counts[k];
     }
     const auto points = static_cast<std::uint32_t>(place.w.size());
-    std::vector<Vec3d> even;
+    std::vector<Vec3d> directions;
     for (std::uint32_t i = 0; i < points; ++i)
-        even.push_back(from_chart({2 * (i + 0.5) / points, two_pi * std::fmod(i * golden, 1)}));
-    std::erase_if(even, [&](Vec3d w) { return !chart.has_point(w); });
-    std::vector<double> p(even.size());
-    place.source().density(even, p);
-    for (std::size_t i = 0; i < even.size(); ++i) claimed[entry_of(even[i])] += p[i] / (p[i] + bridge);
+        directions.push_back(from_chart({2 * (i + 0.5) / points, two_pi * std::fmod(i * golden, 1)}));
+    std::erase_if(directions, [&](Vec3d w) { return !chart.has_point(w); });
+    std::vector<double> p(directions.size());
+    place.source().density(directions, p);
+    for (std::size_t i = 0; i < directions.size(); ++i) claimed_sums[entry_of(directions[i])] += p[i] / (p[i] + bridge);
     EntryShares out;
-    std::vector<double> ratio;
+    std::vector<double> ratios;
     for (std::size_t k = 0; k < set->count; ++k) {
-        const double a = drawn[k] / place.of, b = claimed[k] * 2 * two_pi / points;
-        ratio.push_back(b > 0 ? a / b : 0);
-        const double share = counts[k] / place.of;
-        out.shares.push_back({share, ratio[k] > 0 ? share / ratio[k] : 0, std::sqrt(share * (1 - share) / place.of)});
+        const double a = drawn_sums[k] / place.draw_count, b = claimed_sums[k] * 2 * two_pi / points;
+        ratios.push_back(b > 0 ? a / b : 0);
+        const double share = counts[k] / place.draw_count;
+        out.shares.push_back(
+            {share, ratios[k] > 0 ? share / ratios[k] : 0, std::sqrt(share * (1 - share) / place.draw_count)});
     }
     out.hypothesis.name = "other shares of the entries";
-    out.hypothesis.density = [ratio, c](const SamplerAdapter& s, int technique, std::span<const Pair> pairs,
+    out.hypothesis.density = [ratios, c](const SamplerAdapter& s, int technique, std::span<const Pair> pairs,
                                  std::span<double> to) {
         s.exact_pdf(technique, pairs, to);
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             const auto k = static_cast<std::size_t>(coordinate(*s.traits().domain, pairs[i].wi, c));
-            to[i] *= k < ratio.size() ? ratio[k] : 0;  // a direction beyond the last entry belongs to no point
+            to[i] *= k < ratios.size() ? ratios[k] : 0;  // a direction beyond the last entry belongs to no point
         }
     };
     score(out.hypothesis, places);
@@ -324,7 +325,7 @@ namespace {
 
 /// A hypothesis for each value of one number, and the values that are tried.
 struct MoveFamily {
-    std::function<Hypothesis(double)> at;
+    std::function<Hypothesis(double)> hypothesis_at;
     double from, to;
 };
 
@@ -343,42 +344,43 @@ double mean_log_of(const Hypothesis& h, std::span<const Place> places, std::size
 
 std::optional<FittedMove> fitted_move(const MoveFamily& family, std::span<const Place> places) {
     constexpr int steps = 40;
-    constexpr std::size_t few = 512, total = 1u << 20;
+    constexpr std::size_t coarse_count = 512, full_count = 1u << 20;
     const double step = (family.to - family.from) / steps;
-    double best = -1e300, value = 0;
+    double best_log = -1e300, value = 0;
     for (int k = 0; k <= steps; ++k) {
-        const double x = family.from + k * step, l = mean_log_of(family.at(x), places, few);
-        if (l > best) {
-            best = l;
+        const double x = family.from + k * step, l = mean_log_of(family.hypothesis_at(x), places, coarse_count);
+        if (l > best_log) {
+            best_log = l;
             value = x;
         }
     }
     double low = value - step, high = value + step;
     double a = high - golden * (high - low), b = low + golden * (high - low);
-    double of_a = mean_log_of(family.at(a), places, total), of_b = mean_log_of(family.at(b), places, total);
+    double log_a = mean_log_of(family.hypothesis_at(a), places, full_count),
+           log_b = mean_log_of(family.hypothesis_at(b), places, full_count);
     for (int k = 0; k < 16; ++k) {
-        if (of_a > of_b) {
+        if (log_a > log_b) {
             high = b;
             b = a;
-            of_b = of_a;
-            of_a = mean_log_of(family.at(a = high - golden * (high - low)), places, total);
+            log_b = log_a;
+            log_a = mean_log_of(family.hypothesis_at(a = high - golden * (high - low)), places, full_count);
         } else {
             low = a;
             a = b;
-            of_a = of_b;
-            of_b = mean_log_of(family.at(b = low + golden * (high - low)), places, total);
+            log_a = log_b;
+            log_b = mean_log_of(family.hypothesis_at(b = low + golden * (high - low)), places, full_count);
         }
     }
     FittedMove out;
     out.value = (low + high) / 2;
-    const double near = step / 4, here = mean_log_of(family.at(out.value), places, total);
-    const double bend = (2 * here - mean_log_of(family.at(out.value - near), places, total) -
-                            mean_log_of(family.at(out.value + near), places, total)) /
-        (near * near);
+    const double offset = step / 4, peak = mean_log_of(family.hypothesis_at(out.value), places, full_count);
+    const double bend = (2 * peak - mean_log_of(family.hypothesis_at(out.value - offset), places, full_count) -
+                            mean_log_of(family.hypothesis_at(out.value + offset), places, full_count)) /
+        (offset * offset);
     double draws = 0;
     for (const Place& place : places) draws += static_cast<double>(place.w.size());
     out.error = bend > 0 ? 1 / std::sqrt(bend * draws) : step;
-    out.hypothesis = family.at(out.value);
+    out.hypothesis = family.hypothesis_at(out.value);
     score(out.hypothesis, places);
     return out.hypothesis.helps() ? std::optional(out) : std::nullopt;
 }
@@ -387,23 +389,23 @@ std::optional<FittedMove> fitted_move(const MoveFamily& family, std::span<const 
 
 std::vector<FittedMove> domain_moves(std::span<const Place> places) {
     std::vector<FittedMove> out;
-    const bool at_zero = places[0].draws_at_zero();
+    const bool counts_zero = places[0].draws_at_zero();
     std::size_t c = 0;
     for (const DomainPart& part : places[0].traits.domain->domain().parts()) {
         if (part.is_infinite()) {
             const double end = std::isfinite(part.from) ? part.from : std::isfinite(part.to) ? part.to : 0;
-            const auto scaled = [=](double log_scale) {
+            const auto hypothesis_at = [=](double log_scale) {
                 const double factor = math::exp(-log_scale);
                 return by_moving(
-                    "scaled", [=](std::span<double> x) { x[c] = end + factor * (x[c] - end); }, factor, at_zero);
+                    "scaled", [=](std::span<double> x) { x[c] = end + factor * (x[c] - end); }, factor, counts_zero);
             };
-            if (auto found = fitted_move({scaled, -1.5, 1.5}, places)) {
-                found->error *= math::exp(found->value);
-                found->value = math::exp(found->value);
-                found->factor = "scale";
-                found->of = difference(end);
-                found->neutral = 1;
-                out.push_back(std::move(*found));
+            if (auto move = fitted_move({hypothesis_at, -1.5, 1.5}, places)) {
+                move->error *= math::exp(move->value);
+                move->value = math::exp(move->value);
+                move->factor = "scale";
+                move->coordinate = difference(end);
+                move->neutral_value = 1;
+                out.push_back(std::move(*move));
             }
         }
         c += part.coordinates();

@@ -18,19 +18,19 @@ namespace {
 struct SeenBoundary {
     double below_over_above;
     double eta(Vec3d wo) const { return wo.z > 0 ? below_over_above : 1 / below_over_above; }
-    Vec3d half(Vec3d wo, Vec3d wi) const { return half_vector_of(wo, wi, eta(wo)); }
-    static bool across(Vec3d wo, Vec3d wi) { return wo.z * wi.z < 0; }
+    Vec3d half_vector(Vec3d wo, Vec3d wi) const { return half_vector_of(wo, wi, eta(wo)); }
+    static bool is_across(Vec3d wo, Vec3d wi) { return wo.z * wi.z < 0; }
     /// (22)
     double fresnel(double c, double n) const {
         const double g2 = n * n - 1 + c * c;
         if (g2 <= 0) return 1;
-        const double g = std::sqrt(g2), one = (g - c) / (g + c), two = (c * (g + c) - 1) / (c * (g - c) + 1);
-        return 0.5 * one * one * (1 + two * two);
+        const double g = std::sqrt(g2), ratio = (g - c) / (g + c), correction = (c * (g + c) - 1) / (c * (g - c) + 1);
+        return 0.5 * ratio * ratio * (1 + correction * correction);
     }
-    double fresnel(Vec3d wo, Vec3d wi) const { return fresnel(std::fabs(dot(wo, half(wo, wi))), eta(wo)); }
+    double fresnel(Vec3d wo, Vec3d wi) const { return fresnel(std::fabs(dot(wo, half_vector(wo, wi))), eta(wo)); }
     /// dm / dw_i of a refraction, (17).
-    double refracted(Vec3d wo, Vec3d wi) const {
-        const Vec3d m = half(wo, wi);
+    double refraction_jacobian(Vec3d wo, Vec3d wi) const {
+        const Vec3d m = half_vector(wo, wi);
         const double n = eta(wo), om = dot(wo, m), im = dot(wi, m), sum = om + n * im;
         return n * n * std::fabs(im) / std::max(sum * sum, 1e-300);
     }
@@ -38,22 +38,23 @@ struct SeenBoundary {
 
 void add_of_boundary(std::vector<Factor>& out, double below_over_above) {
     const SeenBoundary b{below_over_above};
-    const auto add = [&](const char* name, auto across, auto reflected) {
-        out.push_back({name, [=](Vec3d o, Vec3d i) { return b.across(o, i) ? across(o, i) : reflected(o, i); }});
+    const auto add = [&](const char* name, auto refraction, auto reflection) {
+        out.push_back(
+            {name, [=](Vec3d o, Vec3d i) { return b.is_across(o, i) ? refraction(o, i) : reflection(o, i); }});
     };
-    const auto one = [](Vec3d, Vec3d) { return 1.0; };
-    const auto om = [b](Vec3d o, Vec3d i) { return std::fabs(dot(o, b.half(o, i))); };
-    const auto im = [b](Vec3d o, Vec3d i) { return std::fabs(dot(i, b.half(o, i))); };
-    const auto through = [b](Vec3d o, Vec3d i) { return 1 - b.fresnel(o, i); };
-    const auto reflected = [b](Vec3d o, Vec3d i) { return b.fresnel(o, i); };
+    const auto unity = [](Vec3d, Vec3d) { return 1.0; };
+    const auto om = [b](Vec3d o, Vec3d i) { return std::fabs(dot(o, b.half_vector(o, i))); };
+    const auto im = [b](Vec3d o, Vec3d i) { return std::fabs(dot(i, b.half_vector(o, i))); };
+    const auto transmittance = [b](Vec3d o, Vec3d i) { return 1 - b.fresnel(o, i); };
+    const auto reflectance = [b](Vec3d o, Vec3d i) { return b.fresnel(o, i); };
     const auto odds = [b](Vec3d o, Vec3d i) {
         const double f = b.fresnel(o, i);
         return f > 0 && f < 1 ? (1 - f) / f : 0;
     };
-    add("eta^2 across the surface", [b](Vec3d o, Vec3d) { return b.eta(o) * b.eta(o); }, one);
-    add("Fresnel (1 - F across the surface)", through, reflected);
-    add("1 - Fresnel of what is refracted", through, one);
-    add("Fresnel of what is reflected", one, reflected);
+    add("eta^2 across the surface", [b](Vec3d o, Vec3d) { return b.eta(o) * b.eta(o); }, unity);
+    add("Fresnel (1 - F across the surface)", transmittance, reflectance);
+    add("1 - Fresnel of what is refracted", transmittance, unity);
+    add("Fresnel of what is reflected", unity, reflectance);
     add(
         "Fresnel exchanged with 1 - Fresnel",
         [odds](Vec3d o, Vec3d i) {
@@ -61,15 +62,15 @@ void add_of_boundary(std::vector<Factor>& out, double below_over_above) {
             return v > 0 ? 1 / v : 0;
         },
         odds);
-    add("the Jacobian of refraction", [b](Vec3d o, Vec3d i) { return b.refracted(o, i); }, one);
+    add("the Jacobian of refraction", [b](Vec3d o, Vec3d i) { return b.refraction_jacobian(o, i); }, unity);
     add(
         "the Jacobian of refraction for that of reflection",
-        [b, om](Vec3d o, Vec3d i) { return 4 * om(o, i) * b.refracted(o, i); }, one);
+        [b, om](Vec3d o, Vec3d i) { return 4 * om(o, i) * b.refraction_jacobian(o, i); }, unity);
     add(
         "(w_i.m) / (w_o.m) of what is refracted",
-        [om, im](Vec3d o, Vec3d i) { return im(o, i) / std::max(om(o, i), 1e-12); }, one);
-    add("w_i.m of what is refracted", im, one);
-    add("cos theta_i of what is refracted", [](Vec3d, Vec3d i) { return std::fabs(i.z); }, one);
+        [om, im](Vec3d o, Vec3d i) { return im(o, i) / std::max(om(o, i), 1e-12); }, unity);
+    add("w_i.m of what is refracted", im, unity);
+    add("cos theta_i of what is refracted", [](Vec3d, Vec3d i) { return std::fabs(i.z); }, unity);
 }
 
 void add_of_light(std::vector<Factor>& out, const CaseLighting& light) {
@@ -92,11 +93,11 @@ Vec3d half_vector_of(Vec3d wo, Vec3d wi, double eta) {
 
 std::vector<Factor> factors_for(const Traits& traits, const CaseLighting& light) {
     if (traits.domain) return domain_factors(traits.domain);
-    const bool one_index = traits.eta && traits.eta->x == traits.eta->z;
-    const double eta = one_index ? traits.eta->x : 1;
-    const auto half = [eta](Vec3d o, Vec3d i) { return half_vector_of(o, i, o.z > 0 ? eta : 1 / eta); };
-    const auto om = [half](Vec3d o, Vec3d i) { return std::fabs(dot(o, half(o, i))); };
-    const auto nm = [half](Vec3d o, Vec3d i) { return std::fabs(half(o, i).z); };
+    const bool has_one_index = traits.eta && traits.eta->x == traits.eta->z;
+    const double eta = has_one_index ? traits.eta->x : 1;
+    const auto half_vector = [eta](Vec3d o, Vec3d i) { return half_vector_of(o, i, o.z > 0 ? eta : 1 / eta); };
+    const auto om = [half_vector](Vec3d o, Vec3d i) { return std::fabs(dot(o, half_vector(o, i))); };
+    const auto nm = [half_vector](Vec3d o, Vec3d i) { return std::fabs(half_vector(o, i).z); };
     std::vector<Factor> out = {{"cos theta_i", [](Vec3d, Vec3d i) { return std::fabs(i.z); }},
         {"sin theta_i", [](Vec3d, Vec3d i) { return std::sqrt(i.x * i.x + i.y * i.y); }}};
     if (traits.wo != Traits::WoDomain::none) {
@@ -107,21 +108,21 @@ std::vector<Factor> factors_for(const Traits& traits, const CaseLighting& light)
         out.push_back({"(n.m) / (w_o.m)", [=](Vec3d o, Vec3d i) { return nm(o, i) / std::max(om(o, i), 1e-12); }});
         out.push_back({"w_i.R", [](Vec3d o, Vec3d i) { return std::max(dot(i, mirror(o)), 0.0); }});
     }
-    if (one_index) add_of_boundary(out, eta);
+    if (has_one_index) add_of_boundary(out, eta);
     add_of_light(out, light);
     return out;
 }
 
-std::string number_name(double value, double known_to, const Traits& traits) {
+std::string number_name(double value, double precision, const Traits& traits) {
     constexpr double pi = two_pi / 2;
     std::vector<std::pair<std::string, double>> constants = {
         {"2", 2}, {"4", 4}, {"pi", pi}, {"2 pi", 2 * pi}, {"4 pi", 4 * pi}, {"pi/2", pi / 2}, {"2 pi^2", 2 * pi * pi}};
     if (traits.eta && traits.eta->x == traits.eta->z) constants.push_back({"eta^2", traits.eta->x * traits.eta->x});
     for (const auto& [name, number] : constants) {
-        if (std::fabs(number - 1) < 10 * known_to) continue;
-        if (std::fabs(value / number - 1) < known_to) return name;
-        if (name == "pi/2" && std::fabs(value * number - 1) < known_to) return "2/pi";
-        if (std::fabs(value * number - 1) < known_to)
+        if (std::fabs(number - 1) < 10 * precision) continue;
+        if (std::fabs(value / number - 1) < precision) return name;
+        if (name == "pi/2" && std::fabs(value * number - 1) < precision) return "2/pi";
+        if (std::fabs(value * number - 1) < precision)
             return name.find_first_of(" /") == std::string::npos ? "1/" + name : "1/(" + name + ")";
     }
     return "";
@@ -162,17 +163,18 @@ double slope_of(std::vector<std::pair<double, double>> points) {
 }
 
 /// Fits ln ratio = ln constant + exponent x: the constant, and the share of ratios that agree.
-RatioCause agreeing(const std::vector<double>& logs, const std::vector<double>& x, double exponent, double close,
-    std::span<const KnownRatio> ratios) {
-    std::vector<double> rest;
-    for (std::size_t i = 0; i < logs.size(); ++i) rest.push_back(logs[i] - exponent * x[i]);
-    double middle = median(rest), near = 0;
-    if (std::fabs(middle) < close / 2) middle = 0;
-    for (std::size_t i = 0; i < rest.size(); ++i) near += std::fabs(rest[i] - middle) < close + 2 * ratios[i].error;
+RatioCause fit_constant(const std::vector<double>& logs, const std::vector<double>& x, double exponent,
+    double tolerance, std::span<const KnownRatio> ratios) {
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i < logs.size(); ++i) residuals.push_back(logs[i] - exponent * x[i]);
+    double middle = median(residuals), agreements = 0;
+    if (std::fabs(middle) < tolerance / 2) middle = 0;
+    for (std::size_t i = 0; i < residuals.size(); ++i)
+        agreements += std::fabs(residuals[i] - middle) < tolerance + 2 * ratios[i].error;
     return {.name = "",
         .exponent = exponent,
         .constant = math::exp(middle),
-        .explained = near / static_cast<double>(rest.size())};
+        .explained_share = agreements / static_cast<double>(residuals.size())};
 }
 
 }  // namespace
@@ -186,11 +188,11 @@ std::optional<RatioCause> explain_ratios(std::span<const KnownRatio> ratios, std
         return {};
     std::vector<double> sizes;
     for (double v : logs) sizes.push_back(std::fabs(v));
-    const double close = std::min(agreement, part_that_agrees * median(sizes));
-    RatioCause best = agreeing(logs, logs, 0, close, ratios);
+    const double tolerance = std::min(agreement, part_that_agrees * median(sizes));
+    RatioCause best = fit_constant(logs, logs, 0, tolerance, ratios);
     best.name = "constant";
-    if (best.explained >= share_in_agreement) return best;
-    bool several = false;
+    if (best.explained_share >= share_in_agreement) return best;
+    bool is_ambiguous = false;
     for (const Factor& f : factors) {
         std::vector<double> x;
         std::vector<std::pair<double, double>> points;
@@ -200,15 +202,17 @@ std::optional<RatioCause> explain_ratios(std::span<const KnownRatio> ratios, std
             if (g > 0 && logs[i] < 100) points.emplace_back(x[i], logs[i]);
         }
         if (points.size() < fewest_ratios) continue;
-        const double b = slope_of(std::move(points)), simple = std::round(2 * b) / 2;
-        if (simple == 0 || std::fabs(b - simple) > to_half) continue;
-        RatioCause with = agreeing(logs, x, simple, close, ratios);
-        if (with.explained < share_in_agreement) continue;
-        with.name = f.name;
-        several = best.explained >= share_in_agreement && with.explained > best.explained - better_share;
-        if (with.explained > best.explained + better_share || best.explained < share_in_agreement) best = with;
+        const double b = slope_of(std::move(points)), simple_exponent = std::round(2 * b) / 2;
+        if (simple_exponent == 0 || std::fabs(b - simple_exponent) > half_tolerance) continue;
+        RatioCause cause = fit_constant(logs, x, simple_exponent, tolerance, ratios);
+        if (cause.explained_share < share_in_agreement) continue;
+        cause.name = f.name;
+        is_ambiguous =
+            best.explained_share >= share_in_agreement && cause.explained_share > best.explained_share - better_share;
+        if (cause.explained_share > best.explained_share + better_share || best.explained_share < share_in_agreement)
+            best = cause;
     }
-    return best.explained >= share_in_agreement && !several ? std::optional(best) : std::nullopt;
+    return best.explained_share >= share_in_agreement && !is_ambiguous ? std::optional(best) : std::nullopt;
 }
 
 }  // namespace crescent::check

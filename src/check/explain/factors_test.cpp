@@ -96,7 +96,7 @@ TEST(FactorsOfLeaves, HaveTheExponentOfTheDraws) {
     ASSERT_FALSE(found.empty());
     EXPECT_EQ(found[0].name, "cos theta_i");
     EXPECT_EQ(found[0].exponent, 1);
-    EXPECT_NEAR(found[0].fitted, 1, 5 * found[0].error);
+    EXPECT_NEAR(found[0].fitted_exponent, 1, 5 * found[0].error);
     EXPECT_NEAR(found[0].hypothesis.constant(0), 2, 0.05);
     const Explained power = checked(made([](Vec3d, const PrimarySample& u) { return power_draw({0, 0, 1}, 24, u); },
         [](Vec3d, Vec3d w) { return power_pdf({0, 0, 1}, 20, w); }));

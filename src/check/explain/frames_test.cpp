@@ -25,10 +25,11 @@ TEST(FramesOfDraws, AreTurnedByAMeasuredAngle) {
     ASSERT_EQ(places.size(), 1u);
     const auto turn = turn_hypothesis(places);
     ASSERT_TRUE(turn);
-    const Vec3d by = turn->turns[0].by;
-    EXPECT_NEAR(std::sqrt(dot(by, by)), 3 * pi / 180, 5 * turn->turns[0].error);
+    const Vec3d rotation = turn->turns[0].rotation;
+    EXPECT_NEAR(std::sqrt(dot(rotation, rotation)), 3 * pi / 180, 5 * turn->turns[0].error);
     EXPECT_LT(turn->turns[0].error, 0.01);
-    EXPECT_NEAR(dot(by, cross(axis, off)) / (std::sqrt(dot(by, by)) * std::sin(3 * pi / 180)), 1, 0.2);
+    EXPECT_NEAR(
+        dot(rotation, cross(axis, off)) / (std::sqrt(dot(rotation, rotation)) * std::sin(3 * pi / 180)), 1, 0.2);
 }
 
 // The columns of a table that begin a quarter later.
@@ -60,8 +61,8 @@ TEST(FramesOfDraws, AnAzimuthIsFoundFromAnyAngle) {
     const auto turn = azimuth_hypothesis(places);
     ASSERT_TRUE(turn);
     EXPECT_TRUE(turn->is_clear());
-    EXPECT_NEAR(turn->turns[0].by.z, pi / 2, 0.02);
-    EXPECT_NEAR(turn->hypothesis.explained, 1, 0.1);
+    EXPECT_NEAR(turn->turns[0].rotation.z, pi / 2, 0.02);
+    EXPECT_NEAR(turn->hypothesis.explained_share, 1, 0.1);
     const std::vector<Hypothesis> named = frame_hypotheses(places);
     ASSERT_FALSE(named.empty());
     EXPECT_EQ(named[0].name, "the azimuth turned by -90 deg for w_i");  // p at (y, -x, z)

@@ -53,25 +53,25 @@ inline void without_f(SamplerDeclaration& declaration) {
 /// Masses of draws and p at a place: p over the density of the draws, from the masses or from the bridge, whichever is
 /// more precise, with its standard error.
 struct MassRatio {
-    double drawn = 0, claimed = 0, ratio = 1, error = 0;
+    double drawn_mass = 0, claimed_mass = 0, ratio = 1, error = 0;
 };
 MassRatio mass_ratio(const CheckAt& c);
 
 /// One technique at one w_o that is wrong, with fresh draws and p there.
 struct Place {
     const CheckCase* check_case = nullptr;
-    const CheckAt* at = nullptr;
+    const CheckAt* check = nullptr;
     std::size_t number = 0;  // index of the case in the call
     Traits traits{};
     std::vector<Vec3d> w;
     std::vector<double> p;
     std::vector<double> implied;  // density of the draws from the counts of the leaves, 1/sr
-    double of = 0;                // number of draws
+    double draw_count = 0;        // number of draws
     std::vector<MapDensity> map;  // the density of the sampling map at a few points
     /// Whether draws where p is 0 count as draws; otherwise they count as no sample because their pdf is 0 too.
-    bool draws_at_zero() const { return at->observations.checks.zero.times > 0; }
+    bool draws_at_zero() const { return check->observations.checks.zero.times > 0; }
     const SamplerAdapter& adapter() const { return *check_case->adapter; }
-    int technique() const { return at->technique; }
+    int technique() const { return check->technique; }
     Source source() const { return {adapter(), technique(), check_case->wo, check_case->light}; }
     /// Streams of the explanation; each has its own seed.
     StreamKey key(std::uint32_t seed, Purpose purpose, std::uint16_t part) const {
@@ -94,14 +94,16 @@ std::vector<Place> places_of(std::span<const CheckCase> check_cases, const Check
     std::size_t largest_count, std::uint32_t count);
 
 struct Hypothesis {
-    std::string name;    // of the cause
-    std::string same{};  // names of equivalent causes, in brackets
-    int place = 0;       // index in its list, in order of preference
+    std::string name;           // of the cause
+    std::string equivalents{};  // names of equivalent causes, in brackets
+    int place = 0;              // index in its list, in order of preference
+    /// Whether two parameters that belong to x and y, if they are exchanged, have the same effect.
+    bool exchanges_parameters = false;
     /// The supposed density of a sampler's technique, 1/sr.
     std::function<void(const SamplerAdapter&, int technique, std::span<const Pair>, std::span<double>)> density;
-    /// Factor of the density by place; empty: 1. free: chosen so that the masses agree.
+    /// Factor of the density by place; empty: 1. Chosen with has_free_constant so that the masses agree.
     std::vector<double> constants{};
-    bool free = false;
+    bool has_free_constant = false;
     double constant(std::size_t k) const { return constants.empty() ? 1 : constants[k]; }
     /// By place: the integral of the density over that of p; empty: 1.
     std::vector<double> masses{};
@@ -111,7 +113,7 @@ struct Hypothesis {
     /// Whether the hypothesis is worth a check.
     bool helps() const { return gain > error && gain > 0; }
     /// Explained share of the divergence between draws and p, from the leaves; 1 if nothing remains.
-    double explained = 0;
+    double explained_share = 0;
 };
 
 /// Sets gain, error and explained.

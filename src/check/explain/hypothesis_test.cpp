@@ -16,8 +16,8 @@ TEST(MassRatios, AreOfPOverTheDraws) {
     o.sums[mass] = {80, 80};  // 80 of 100 draws are directions
     c.integrals.sums[mass] = {1.6, 0.0004, 0};
     const MassRatio m = mass_ratio(c);
-    EXPECT_DOUBLE_EQ(m.drawn, 0.8);
-    EXPECT_DOUBLE_EQ(m.claimed, 1.6);
+    EXPECT_DOUBLE_EQ(m.drawn_mass, 0.8);
+    EXPECT_DOUBLE_EQ(m.claimed_mass, 1.6);
     EXPECT_DOUBLE_EQ(m.ratio, 2);
     EXPECT_NEAR(m.error, std::sqrt(0.0004 + 4 * 0.16 / 100) / 0.8, 1e-12);
     o.sums[bridge] = {40, 16.1};
@@ -39,7 +39,7 @@ TEST_F(WrongDensity, HasAPlaceForEachWo) {
     ASSERT_EQ(places.size(), 2u);
     EXPECT_NE(places[0].check_case->theta_deg, places[1].check_case->theta_deg);
     EXPECT_EQ(places[0].w.size(), 1024u);
-    for (const Place& place : places) EXPECT_NEAR(mass_ratio(*place.at).ratio, 0.5, 0.01);
+    for (const Place& place : places) EXPECT_NEAR(mass_ratio(*place.check).ratio, 0.5, 0.01);
     double off = 0;  // the density that the leaves imply
     for (std::size_t i = 0; i < places[0].w.size(); ++i)
         off += std::fabs(places[0].implied[i] / cosine_pdf({}, places[0].w[i]) - 1) / 1024;
@@ -56,8 +56,8 @@ TEST_F(WrongDensity, TheTrueDensityHasTheLargestLikelihood) {
     EXPECT_NEAR(right.gain, std::log(4) - 0.5, 0.05);
     EXPECT_NEAR(wrong.gain, std::log(8 / pi) - 0.5, 0.05);
     EXPECT_TRUE(right.helps());
-    EXPECT_GT(right.explained, 0.9);
-    EXPECT_LT(wrong.explained, 0.6);
+    EXPECT_GT(right.explained_share, 0.9);
+    EXPECT_LT(wrong.explained_share, 0.6);
     right.masses = {0.5, 0.5};  // half of the mass of p, which is half of that of the draws
     score(right, places);
     EXPECT_NEAR(right.gain, std::log(4) - 0.5 + 0.5 * 0.5, 0.05);

@@ -42,39 +42,39 @@ double shadowing(Vec3d w, double alpha_x, double alpha_y) {
 
 struct Shadowing {
     double alpha_x = 0.5, alpha_y = 0.5;
-    bool exchanged = true;  // p has G1(w_i) for G1(w_o); false: G1(w_i) besides it
+    bool is_exchanged = true;  // p has G1(w_i) for G1(w_o); false: G1(w_i) besides it
     double operator()(Vec3d wo, Vec3d wi) const {
-        return (exchanged ? shadowing(wo, alpha_x, alpha_y) : 1) / shadowing(wi, alpha_x, alpha_y);
+        return (is_exchanged ? shadowing(wo, alpha_x, alpha_y) : 1) / shadowing(wi, alpha_x, alpha_y);
     }
 };
 
 /// The roughness of the least error of nine tenths of the ratios: a grid, then a search with steps that are halved.
-Shadowing fitted_shadowing(std::span<const KnownRatio> ratios, bool exchanged) {
+Shadowing fitted_shadowing(std::span<const KnownRatio> ratios, bool is_exchanged) {
     constexpr int grid = 20;
-    constexpr double smallest = 0.02, largest = 2, least_step = 1e-5;
-    Shadowing best{.exchanged = exchanged};
-    double least = 1e300;
+    constexpr double smallest_alpha = 0.02, largest_alpha = 2, least_step = 1e-5;
+    Shadowing best{.is_exchanged = is_exchanged};
+    double least_error = 1e300;
     const auto attempt = [&](double x, double y) {
-        const Shadowing s{x, y, exchanged};
+        const Shadowing s{x, y, is_exchanged};
         const std::vector<double> errors = errors_of(s, ratios);
-        const auto kept = static_cast<std::ptrdiff_t>(share_in_agreement * static_cast<double>(errors.size()));
-        const double error = std::accumulate(errors.begin(), errors.begin() + kept, 0.0);
-        const bool better = error < least;
-        if (better) {
-            least = error;
+        const auto count = static_cast<std::ptrdiff_t>(share_in_agreement * static_cast<double>(errors.size()));
+        const double error = std::accumulate(errors.begin(), errors.begin() + count, 0.0);
+        const bool is_better = error < least_error;
+        if (is_better) {
+            least_error = error;
             best = s;
         }
-        return better;
+        return is_better;
     };
-    const double ratio = math::exp(math::log(largest / smallest) / grid);
-    for (double x = smallest; x <= largest; x *= ratio)
-        for (double y = smallest; y <= largest; y *= ratio) attempt(x, y);
+    const double ratio = math::exp(math::log(largest_alpha / smallest_alpha) / grid);
+    for (double x = smallest_alpha; x <= largest_alpha; x *= ratio)
+        for (double y = smallest_alpha; y <= largest_alpha; y *= ratio) attempt(x, y);
     for (double step = ratio - 1; step > least_step;) {
         const Shadowing s = best;
-        bool better = false;
+        bool is_better = false;
         for (double x : {1 - step, 1.0, 1 + step})
-            for (double y : {1 - step, 1.0, 1 + step}) better = attempt(s.alpha_x * x, s.alpha_y * y) || better;
-        if (!better) step /= 2;
+            for (double y : {1 - step, 1.0, 1 + step}) is_better = attempt(s.alpha_x * x, s.alpha_y * y) || is_better;
+        if (!is_better) step /= 2;
     }
     return best;
 }
@@ -84,21 +84,21 @@ Hypothesis times(const RatioModel& model, const char* name) { return check::time
 
 std::optional<Cause> shadowing_cause(std::span<const KnownRatio> ratios, std::span<const Place> places) {
     if (places[0].traits.wo == Traits::WoDomain::none) return {};
-    for (bool exchanged : {true, false}) {
-        const Shadowing s = fitted_shadowing(ratios, exchanged);
+    for (bool is_exchanged : {true, false}) {
+        const Shadowing s = fitted_shadowing(ratios, is_exchanged);
         if (!agree(s, ratios)) continue;
         Hypothesis h = times(s, "G1");
         if (!passes(h, places, 1)) continue;
-        const bool round = std::fabs(s.alpha_x / s.alpha_y - 1) < near_one;
-        const std::string alpha = round ? fmt::format("alpha {:.3g}", (s.alpha_x + s.alpha_y) / 2)
-                                        : fmt::format("alpha {:.3g} and {:.3g}", s.alpha_x, s.alpha_y);
+        const bool is_round = std::fabs(s.alpha_x / s.alpha_y - 1) < near_one;
+        const std::string alpha = is_round ? fmt::format("alpha {:.3g}", (s.alpha_x + s.alpha_y) / 2)
+                                           : fmt::format("alpha {:.3g} and {:.3g}", s.alpha_x, s.alpha_y);
         return Cause{.factor = "G1",
             .exponent = s.alpha_x,
             .error = 0,
             .text = fmt::format(
                 "By the derivatives of sample(u), draws follow p with G1(w_o) {} G1(w_i): p has the shadowing of "
                 "the other direction{} (Smith's G1 of GGX with {}).",
-                exchanged ? "in place of" : "but without", exchanged ? "" : " too", alpha)};
+                is_exchanged ? "in place of" : "but without", is_exchanged ? "" : " too", alpha)};
     }
     return {};
 }
@@ -121,8 +121,8 @@ constexpr PlanePower plane_powers[] = {{1,
 }  // namespace
 
 std::string plane_words(double power) {
-    for (const auto& [known, words] : plane_powers)
-        if (power == known) return words;
+    for (const auto& [known_power, words] : plane_powers)
+        if (power == known_power) return words;
     return "";
 }
 
@@ -162,16 +162,16 @@ std::optional<Cause> plane_cause(std::span<const KnownRatio> ratios, std::span<c
     for (const auto& [power, what] : plane_powers) {
         const std::optional<Vec3d> n = fitted_plane(ratios, power);
         if (!n || !(length(*n) > 0)) continue;
-        const RatioModel model = [at = *n, exponent = power](Vec3d, Vec3d wi) {
-            const double c = std::fabs(dot(at, wi));
+        const RatioModel model = [normal = *n, exponent = power](Vec3d, Vec3d wi) {
+            const double c = std::fabs(dot(normal, wi));
             return c > 0 ? math::exp(-exponent * math::log(c)) : 0;
         };
         if (!agree(model, ratios)) continue;
         Hypothesis h = times(model, "light in a plane");
         if (!passes(h, places, 1)) continue;
         const Vec3d normal = *n * (1 / length(*n));
-        const bool of_surface = std::fabs(normal.z) > 1 - same_normal;
-        const std::string surface = of_surface
+        const bool is_surface_normal = std::fabs(normal.z) > 1 - same_normal;
+        const std::string surface = is_surface_normal
             ? fmt::format(" For a surface with this normal, cos theta_i{} is {} in p.",
                   std::abs(power) == 1 ? "" : fmt::format("^{}", std::abs(power)),
                   power < 0 ? "missing" : "a factor too many")
@@ -191,16 +191,17 @@ std::optional<Cause> plane_cause(std::span<const KnownRatio> ratios, std::span<c
 }  // namespace
 
 std::optional<Cause> cause_of_known_form(std::span<const KnownRatio> ratios, std::span<const Place> places) {
-    std::vector<KnownRatio> usable;
-    double different = 0;
+    std::vector<KnownRatio> usable_ratios;
+    double different_count = 0;
     for (const KnownRatio& r : ratios)
         if (r.value > 0 && std::isfinite(r.value)) {
-            usable.push_back(r);
-            different += std::fabs(r.value - 1) > 0.05;
+            usable_ratios.push_back(r);
+            different_count += std::fabs(r.value - 1) > 0.05;
         }
-    if (usable.size() < fewest_of_form || different < static_cast<double>(usable.size()) / 2) return {};
-    if (std::optional<Cause> c = plane_cause(usable, places)) return c;
-    return shadowing_cause(usable, places);
+    if (usable_ratios.size() < fewest_of_form || different_count < static_cast<double>(usable_ratios.size()) / 2)
+        return {};
+    if (std::optional<Cause> c = plane_cause(usable_ratios, places)) return c;
+    return shadowing_cause(usable_ratios, places);
 }
 
 }  // namespace crescent::check

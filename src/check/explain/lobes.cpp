@@ -16,13 +16,13 @@ namespace crescent::check {
 
 namespace {
 
-constexpr std::size_t settings_of_others = 12, scanned = 65, most_lobes = 8;
+constexpr std::size_t settings_of_others = 12, scan_points = 65, most_lobes = 8;
 constexpr int halvings = 22;
 constexpr std::uint32_t draws_for_lobes = 1u << 16, few_draws_for_lobes = 1u << 14;
 constexpr std::uint32_t more_draws = 4, most_draws_for_lobes = 1u << 18;  // times as many, where a fit may become clear
 
 struct NumberStep {
-    std::size_t of;
+    std::size_t setting;
     double from, to;
     Draw a, b;
     static double move(const Draw& a, const Draw& b) {
@@ -38,7 +38,7 @@ void close_in(Source& source, int number, std::span<const PrimarySample> others,
     for (int k = 0; k < halvings && !steps.empty(); ++k) {
         std::vector<PrimarySample> u;
         for (const NumberStep& s : steps) {
-            u.push_back(others[s.of]);
+            u.push_back(others[s.setting]);
             u.back()[number] = (s.from + s.to) / 2;
         }
         std::vector<Draw> middle(u.size());
@@ -60,13 +60,14 @@ void close_in(Source& source, int number, std::span<const PrimarySample> others,
 std::vector<NumberStep> jumps_along(Source& source, int number, std::span<const PrimarySample> others) {
     std::vector<NumberStep> out;
     for (std::size_t i = 0; i < others.size(); ++i) {
-        std::vector<PrimarySample> u(scanned, others[i]);
-        for (std::size_t k = 0; k < scanned; ++k)
-            u[k][number] = std::clamp(static_cast<double>(k) / (scanned - 1), steep_rim, 1 - steep_rim);
+        std::vector<PrimarySample> u(scan_points, others[i]);
+        for (std::size_t k = 0; k < scan_points; ++k)
+            u[k][number] = std::clamp(static_cast<double>(k) / (scan_points - 1), steep_rim, 1 - steep_rim);
         std::vector<Draw> w(u.size());
         source.draw(u, w);
-        for (std::size_t k = 0; k + 1 < scanned; ++k)
-            if (const NumberStep s{.of = i, .from = u[k][number], .to = u[k + 1][number], .a = w[k], .b = w[k + 1]};
+        for (std::size_t k = 0; k + 1 < scan_points; ++k)
+            if (const NumberStep s{
+                    .setting = i, .from = u[k][number], .to = u[k + 1][number], .a = w[k], .b = w[k + 1]};
                 s.jumps())
                 out.push_back(s);
     }
@@ -77,21 +78,21 @@ std::vector<NumberStep> jumps_along(Source& source, int number, std::span<const 
 }
 
 /// The ends that a third of the settings have in common; none if there are many other jumps between two directions.
-std::vector<LobeInterval> intervals(const std::vector<NumberStep>& steps, std::size_t tried) {
-    const auto of_two = [](const NumberStep& s) { return has_direction(s.a) && has_direction(s.b); };
+std::vector<LobeInterval> intervals(const std::vector<NumberStep>& steps, std::size_t setting_count) {
+    const auto has_two_directions = [](const NumberStep& s) { return has_direction(s.a) && has_direction(s.b); };
     std::vector<LobeInterval> out;
     double from = 0;
-    std::ptrdiff_t common = 0;
+    std::ptrdiff_t common_count = 0;
     for (auto next = steps.begin(); next != steps.end();) {
         const auto first = next;
         while (next != steps.end() && next->from - first->from < one_end) ++next;
-        if (3 * (next - first) < static_cast<std::ptrdiff_t>(tried)) continue;
-        common += std::count_if(first, next, of_two);
+        if (3 * (next - first) < static_cast<std::ptrdiff_t>(setting_count)) continue;
+        common_count += std::count_if(first, next, has_two_directions);
         const double end = (first[(next - first) / 2].from + first[(next - first) / 2].to) / 2;
         out.push_back({from, end});
         from = end;
     }
-    if (out.empty() || 10 * common < 9 * std::count_if(steps.begin(), steps.end(), of_two)) return {};
+    if (out.empty() || 10 * common_count < 9 * std::count_if(steps.begin(), steps.end(), has_two_directions)) return {};
     out.push_back({from, 1});
     return out.size() <= most_lobes ? out : std::vector<LobeInterval>();
 }
@@ -99,12 +100,12 @@ std::vector<LobeInterval> intervals(const std::vector<NumberStep>& steps, std::s
 /// Sums of h by leaf over draws of one lobe, and the number of draws.
 struct LobeDraws {
     std::vector<double> sum, square;
-    double drawn = 0;
+    double draw_count = 0;
 };
 LobeDraws draws_of(
     Source& source, const Place& place, const LobeChooser& chooser, std::size_t lobe, std::uint32_t count) {
     LobeDraws out;
-    const Plan& plan = *place.at->plan;
+    const Plan& plan = *place.check->plan;
     out.sum.resize(plan.tree.leaves().size());
     out.square.resize(out.sum.size());
     StreamKey key{.seed = 13,
@@ -129,13 +130,13 @@ LobeDraws draws_of(
             out.square[l] += h * h;
         }
     }
-    out.drawn = count;
+    out.draw_count = count;
     return out;
 }
 
 /// A cell of leaves: the integral of h p, and the means of each lobe.
 struct LobeCell {
-    double claimed = 0, variance = 0, draws = 0;
+    double claimed_mass = 0, variance = 0, draws = 0;
     std::vector<double> mean, mean_variance;
 };
 
@@ -149,17 +150,17 @@ std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& chooser, c
         cell.mean_variance.resize(lobes.size());
     };
     clear();
-    for (std::size_t l = 0; l < place.at->integrals.leaves.size(); ++l) {
-        const Estimate& claim = place.at->integrals.leaves[l].bridge;
-        cell.claimed += claim.value;
+    for (std::size_t l = 0; l < place.check->integrals.leaves.size(); ++l) {
+        const Estimate& claim = place.check->integrals.leaves[l].bridge;
+        cell.claimed_mass += claim.value;
         cell.variance += claim.variance;
         for (std::size_t k = 0; k < lobes.size(); ++k) {
-            const double share = chooser.lobes[k].share() / lobes[k].drawn;
+            const double share = chooser.lobes[k].share() / lobes[k].draw_count;
             cell.mean[k] += share * lobes[k].sum[l];
             cell.mean_variance[k] += share * share * lobes[k].square[l];
             cell.draws += 2 * lobes[k].sum[l];
         }
-        if (cell.draws + 2 * cell.claimed * lobes[0].drawn < draws_of_lobe) continue;
+        if (cell.draws + 2 * cell.claimed_mass * lobes[0].draw_count < draws_of_lobe) continue;
         out.push_back(std::move(cell));
         clear();
     }
@@ -168,7 +169,7 @@ std::vector<LobeCell> cells_of(const Place& place, const LobeChooser& chooser, c
 
 struct Shares {
     std::vector<double> x, errors;
-    double misfit = 0, before = 0, cells = 0;  // chi squared with x and with 1
+    double misfit = 0, unit_misfit = 0, cells = 0;  // chi squared with x and with 1
 };
 
 double chi_squared(const std::vector<LobeCell>& cells, const std::vector<double>& x) {
@@ -179,7 +180,7 @@ double chi_squared(const std::vector<LobeCell>& cells, const std::vector<double>
             sum += x[k] * c.mean[k];
             v += x[k] * x[k] * c.mean_variance[k];
         }
-        out += (c.claimed - sum) * (c.claimed - sum) / (v + 1e-300);
+        out += (c.claimed_mass - sum) * (c.claimed_mass - sum) / (v + 1e-300);
     }
     return out;
 }
@@ -189,22 +190,22 @@ std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t 
     out.x.assign(lobes, 1);
     out.errors.resize(lobes);
     out.cells = static_cast<double>(cells.size());
-    out.before = chi_squared(cells, out.x);
+    out.unit_misfit = chi_squared(cells, out.x);
     std::vector<std::vector<double>> normal;
     for (int round = 0; round < 8; ++round) {
         normal.assign(lobes, std::vector<double>(lobes));
-        std::vector<double> right(lobes);
+        std::vector<double> right_side(lobes);
         for (const LobeCell& c : cells) {
             double v = c.variance + 1e-300;
             for (std::size_t k = 0; k < lobes; ++k) v += out.x[k] * out.x[k] * c.mean_variance[k];
             for (std::size_t k = 0; k < lobes; ++k) {
-                right[k] += c.mean[k] * c.claimed / v;
+                right_side[k] += c.mean[k] * c.claimed_mass / v;
                 for (std::size_t j = 0; j < lobes; ++j) normal[k][j] += c.mean[k] * c.mean[j] / v;
             }
             // The square of a mean is biased by its variance.
             for (std::size_t k = 0; k < lobes; ++k) normal[k][k] -= c.mean_variance[k] / v;
         }
-        const auto x = solved(normal, right, 1e-6);
+        const auto x = solved(normal, right_side, 1e-6);
         if (!x) return {};
         for (double v : *x)
             if (!std::isfinite(v)) return {};
@@ -222,17 +223,17 @@ std::optional<Shares> shares_of(const std::vector<LobeCell>& cells, std::size_t 
 
 bool explains(const Shares& s) {
     const double degrees = s.cells - static_cast<double>(s.x.size());
-    if (degrees < 4 || !(s.before > 2 * s.misfit)) return false;
+    if (degrees < 4 || !(s.unit_misfit > 2 * s.misfit)) return false;
     for (std::size_t k = 0; k < s.x.size(); ++k)
         if (s.x[k] < -3 * s.errors[k]) return false;  // no share is negative
     // The rest is within chance, or a fiftieth of the original misfit.
-    return chi_squared_tail(degrees, s.misfit) > lobes_fit || s.misfit - degrees < 0.02 * (s.before - degrees);
+    return chi_squared_tail(degrees, s.misfit) > lobes_fit || s.misfit - degrees < 0.02 * (s.unit_misfit - degrees);
 }
 
 /// Whether x fits better than 1 beyond chance, and well: with more draws it may explain the difference.
 bool may_explain(const Shares& s) {
     const double lobes = static_cast<double>(s.x.size());
-    return s.cells > lobes && chi_squared_tail(lobes, s.before - s.misfit) < lobes_fit &&
+    return s.cells > lobes && chi_squared_tail(lobes, s.unit_misfit - s.misfit) < lobes_fit &&
         chi_squared_tail(s.cells - lobes, s.misfit) > lobes_fit;
 }
 
@@ -249,10 +250,10 @@ std::optional<Shares> shares_at(Source& source, const Place& place, const LobeCh
 }
 
 /// A probability with half of its interval, which is cut at 0 and 1.
-std::string probability_text(double p, double half) {
-    if (p - half < 0) return fmt::format("at most {:.2g}", std::max(p + half, 0.0));
-    if (p + half > 1) return fmt::format("at least {:.2g}", std::min(p - half, 1.0));
-    return with_error(p, half);
+std::string probability_text(double p, double half_width) {
+    if (p - half_width < 0) return fmt::format("at most {:.2g}", std::max(p + half_width, 0.0));
+    if (p + half_width > 1) return fmt::format("at least {:.2g}", std::min(p - half_width, 1.0));
+    return with_error(p, half_width);
 }
 
 /// Whether one constant, the weighted mean, agrees with every x: nothing then speaks of a lobe.
@@ -277,44 +278,44 @@ bool is_without_probability(double probability, double x, double error) {
 /// differs, each lobe has a factor, which is named if it is known.
 std::optional<std::string> lobe_sentence(const LobeChooser& chooser, const Shares& s, const std::string& where) {
     const int number = chooser.number + 1;
-    std::vector<std::size_t> differing;
-    std::vector<std::string> drawn, claimed, factors;
-    bool shares_known = true, factors_known = true, without_probabilities = true;
-    double sum = 0, sum_half = 0;
+    std::vector<std::size_t> differing_lobes;
+    std::vector<std::string> drawn_shares, claimed_shares, factors;
+    bool are_shares_known = true, are_factors_known = true, lack_probabilities = true;
+    double sum = 0, sum_half_width = 0;
     for (std::size_t k = 0; k < s.x.size(); ++k) {
-        const double share = chooser.lobes[k].share(), half = 1.96 * s.errors[k];
-        shares_known = shares_known && half * share < known_probability;
-        factors_known = factors_known && half < known_factor * s.x[k];
-        without_probabilities = without_probabilities && is_without_probability(share, s.x[k], s.errors[k]);
+        const double share = chooser.lobes[k].share(), half_width = 1.96 * s.errors[k];
+        are_shares_known = are_shares_known && half_width * share < known_probability;
+        are_factors_known = are_factors_known && half_width < known_factor * s.x[k];
+        lack_probabilities = lack_probabilities && is_without_probability(share, s.x[k], s.errors[k]);
         sum += s.x[k] * share;
-        sum_half += half * share;
-        drawn.push_back(fmt::format("{:.3g}", share));
-        claimed.push_back(probability_text(s.x[k] * share, half * share));
-        factors.push_back(with_error(s.x[k], half));
-        if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) differing.push_back(k);
+        sum_half_width += half_width * share;
+        drawn_shares.push_back(fmt::format("{:.3g}", share));
+        claimed_shares.push_back(probability_text(s.x[k] * share, half_width * share));
+        factors.push_back(with_error(s.x[k], half_width));
+        if (std::fabs(s.x[k] - 1) > std::max(3 * s.errors[k], known_share)) differing_lobes.push_back(k);
     }
-    for (std::size_t k : differing)
-        if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], known_share) && 3 * s.errors[k] < known_to_be_0)
+    for (std::size_t k : differing_lobes)
+        if (std::fabs(s.x[k]) < std::max(3 * s.errors[k], known_share) && 3 * s.errors[k] < known_absence)
             return fmt::format("p does not have one of the lobes that u{} chooses, the one from {:.4g} to {:.4g}{}.",
                 number, chooser.lobes[k].from, chooser.lobes[k].to, where);
-    if (differing.size() == 1) {
-        const LobeInterval& lobe = chooser.lobes[differing[0]];
-        const double x = s.x[differing[0]];
-        const bool no_chooser = is_without_probability(lobe.share(), x, s.errors[differing[0]]);
+    if (differing_lobes.size() == 1) {
+        const LobeInterval& lobe = chooser.lobes[differing_lobes[0]];
+        const double x = s.x[differing_lobes[0]];
+        const bool lacks_probability = is_without_probability(lobe.share(), x, s.errors[differing_lobes[0]]);
         return fmt::format(
             "Of the lobes that u{} chooses, the one from {:.4g} to {:.4g} has {:.3g} +- {:.1g} times what "
             "it draws in p{}, the others are right: {}.",
-            number, lobe.from, lobe.to, x, 1.96 * s.errors[differing[0]], where,
-            no_chooser ? "the chooser's probability of that one lobe is left out"
-                       : "the chooser's probability of that one lobe, or a constant of its own, is off");
+            number, lobe.from, lobe.to, x, 1.96 * s.errors[differing_lobes[0]], where,
+            lacks_probability ? "the chooser's probability of that one lobe is left out"
+                              : "the chooser's probability of that one lobe, or a constant of its own, is off");
     }
-    if (without_probabilities && factors_known)
+    if (lack_probabilities && are_factors_known)
         return fmt::format(
             "Of the lobes that u{} chooses, p has {} times what they draw{}, each as if it alone were drawn: the "
             "chooser's probability of each is left out.",
             number, fmt::join(factors, ", "), where);
-    if (std::fabs(sum - 1) > sum_half + known_share) {
-        if (!factors_known) return {};
+    if (std::fabs(sum - 1) > sum_half_width + known_share) {
+        if (!are_factors_known) return {};
         return fmt::format(
             "Of the lobes that u{} chooses, p has {} times what they draw{}: a factor that differs from lobe to lobe, "
             "such as a Jacobian or the area of a light.",
@@ -322,8 +323,8 @@ std::optional<std::string> lobe_sentence(const LobeChooser& chooser, const Share
     }
     return fmt::format(
         "The lobes that u{} chooses are drawn with {}{}; p has them with {}: the chooser's probability differs.",
-        number, fmt::join(drawn, ", "), where,
-        shares_known ? fmt::format("{}", fmt::join(claimed, ", ")) : "other probabilities");
+        number, fmt::join(drawn_shares, ", "), where,
+        are_shares_known ? fmt::format("{}", fmt::join(claimed_shares, ", ")) : "other probabilities");
 }
 
 }  // namespace

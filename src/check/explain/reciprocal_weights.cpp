@@ -23,44 +23,47 @@ namespace {
 struct WeightPlace {
     Vec3d wi;
     double target = 1;
-    double surfaces = 1, with_target = 1, ratios = 1, squared_ratios = 1, reciprocal_ratios = 1;
+    double surfaces = 1, target_count = 1, ratios = 1, squared_ratios = 1, reciprocal_ratios = 1;
 };
 
 /// A factor by which W may be off.
 struct WeightFactor {
     const char* name;
-    double (*value)(const WeightPlace& at);
-    const char* corrected;  // W without it
-    const char* fault;      // in words
+    double (*value)(const WeightPlace& place);
+    const char* corrected_weight;  // W without it
+    const char* fault;             // in words
 };
 constexpr const char* source_in_weight =
     "the weight by which a neighbour's sample is resampled has the target of its source surface, not that of the "
     "receiver";
 constexpr WeightFactor weight_factors[] = {
     {"constant", [](const WeightPlace&) { return 1.0; }, "", ""},
-    {"target", [](const WeightPlace& at) { return at.target; }, "W / target",
+    {"target", [](const WeightPlace& place) { return place.target; }, "W / target",
         "W is not divided by the target of the direction that is kept"},
-    {"1/target", [](const WeightPlace& at) { return 1 / at.target; }, "W x target",
+    {"1/target", [](const WeightPlace& place) { return 1 / place.target; }, "W x target",
         "W is divided twice by the target of the direction that is kept"},
-    {"cos theta_i", [](const WeightPlace& at) { return std::fabs(at.wi.z); }, "W / cos theta_i",
+    {"cos theta_i", [](const WeightPlace& place) { return std::fabs(place.wi.z); }, "W / cos theta_i",
         "W has cos theta_i once too often"},
-    {"1/cos theta_i", [](const WeightPlace& at) { return 1 / std::max(std::fabs(at.wi.z), 1e-6); }, "W x cos theta_i",
-        "W lacks a factor cos theta_i"},
-    {"1/M", [](const WeightPlace& at) { return at.with_target / at.surfaces; }, "W x M / Z",
+    {"1/cos theta_i", [](const WeightPlace& place) { return 1 / std::max(std::fabs(place.wi.z), 1e-6); },
+        "W x cos theta_i", "W lacks a factor cos theta_i"},
+    {"1/M", [](const WeightPlace& place) { return place.target_count / place.surfaces; }, "W x M / Z",
         "M counts all surfaces, also those whose target is 0 at w_i (1/M bias); MIS weights, or Z, the number of those "
         "that can draw w_i, are unbiased"},
-    {"target of the source in the resampling weight", [](const WeightPlace& at) { return at.ratios / at.surfaces; },
-        "the receiver's target", source_in_weight},
+    {"target of the source in the resampling weight",
+        [](const WeightPlace& place) { return place.ratios / place.surfaces; }, "the receiver's target",
+        source_in_weight},
     {"target of the source in the balanced resampling weight",
-        [](const WeightPlace& at) { return at.squared_ratios / at.ratios; }, "the receiver's target", source_in_weight},
-    {"target of the source in W", [](const WeightPlace& at) { return at.reciprocal_ratios / at.surfaces; },
+        [](const WeightPlace& place) { return place.squared_ratios / place.ratios; }, "the receiver's target",
+        source_in_weight},
+    {"target of the source in W", [](const WeightPlace& place) { return place.reciprocal_ratios / place.surfaces; },
         "the receiver's target",
         "W is divided by the target of the source surface of the kept sample, not by that of the receiver"},
 };
-constexpr std::size_t by_constant = 0;     // its index
-constexpr std::size_t of_one_surface = 5;  // factors that do not depend on neighbours; these are the first
+constexpr std::size_t constant_index = 0;          // its index
+constexpr std::size_t single_surface_factors = 5;  // factors that do not depend on neighbours; these are the first
 
-constexpr std::size_t of_height = 8, of_azimuth = 4, of_target = 2, regions = of_height * of_azimuth * of_target;
+constexpr std::size_t height_parts = 8, azimuth_parts = 4, target_parts = 2,
+                      regions = height_parts * azimuth_parts * target_parts;
 constexpr std::uint32_t draws_of_weights = 1u << 18, points_of_target = 1u << 16, batch = 1u << 14;
 constexpr double golden_ratio = 0.618033988749894848;
 
@@ -69,8 +72,8 @@ std::size_t region_of(Vec3d w, double h) {
         return std::min(static_cast<std::size_t>(std::max(share, 0.0) * static_cast<double>(count)), count - 1);
     };
     const ChartPoint place = to_chart(w);
-    return (part(place.t / 2, of_height) * of_azimuth + part(place.phi / two_pi, of_azimuth)) * of_target +
-        part(h, of_target);
+    return (part(place.t / 2, height_parts) * azimuth_parts + part(place.phi / two_pi, azimuth_parts)) * target_parts +
+        part(h, target_parts);
 }
 
 struct RegionSum {
@@ -84,11 +87,11 @@ using RegionSums = std::array<RegionSum, regions>;
 
 /// h W over the fresh draws of one w_o, and h over points of the whole sphere.
 struct ReservoirSums {
-    std::array<RegionSums, std::size(weight_factors)> drawn{};  // of W over each factor
+    std::array<RegionSums, std::size(weight_factors)> weight_sums{};  // of W over each factor
     std::array<double, regions> integral{}, error{};
-    double draws = 0, empty = 0;  // draws, and those without a weight
+    double draws = 0, empty_draws = 0;  // draws, and those without a weight
     /// Shares of directions whose target is above 0: uniform over the sphere, over the hemisphere, by the cosine.
-    std::array<double, 3> with_target{};
+    std::array<double, 3> target_shares{};
 };
 
 /// Sets what depends on the neighbours: identity shifts, so that w_i is one direction for all of them.
@@ -102,15 +105,17 @@ void add_neighbours(const Source& source, std::span<WeightPlace> places) {
         return out;
     };
     if (neighbours.empty()) return;
-    const std::vector<double> of_receiver = targets([&](Vec3d wi) { return Pair{source.wo, wi}; });
-    for (const Neighbour& each : neighbours) {
-        const Vec3d wo = to_local(each, each.wo);
-        const std::vector<double> of_neighbour = targets([&](Vec3d wi) { return Pair{wo, to_local(each, wi)}; });
+    const std::vector<double> receiver_targets = targets([&](Vec3d wi) { return Pair{source.wo, wi}; });
+    for (const Neighbour& neighbour : neighbours) {
+        const Vec3d wo = to_local(neighbour, neighbour.wo);
+        const std::vector<double> neighbour_targets =
+            targets([&](Vec3d wi) { return Pair{wo, to_local(neighbour, wi)}; });
         for (std::size_t i = 0; i < places.size(); ++i) {
-            const double ratio = of_receiver[i] > 0 ? each.light * of_neighbour[i] / of_receiver[i] : 0;
+            const double ratio =
+                receiver_targets[i] > 0 ? neighbour.light * neighbour_targets[i] / receiver_targets[i] : 0;
             ++places[i].surfaces;
             if (!(ratio > 0)) continue;
-            ++places[i].with_target;
+            ++places[i].target_count;
             places[i].ratios += ratio;
             places[i].squared_ratios += ratio * ratio;
             places[i].reciprocal_ratios += 1 / ratio;
@@ -120,7 +125,7 @@ void add_neighbours(const Source& source, std::span<WeightPlace> places) {
 
 /// Factors of merging are none without it.
 std::size_t factor_count(const Traits& traits) {
-    return traits.neighbours > 0 ? std::size(weight_factors) : of_one_surface;
+    return traits.neighbours > 0 ? std::size(weight_factors) : single_surface_factors;
 }
 
 void add_draws(Source& source, const StreamKey& key, ReservoirSums& out) {
@@ -142,7 +147,7 @@ void add_draws(Source& source, const StreamKey& key, ReservoirSums& out) {
         h.resize(w.size());
         source.f_cos(w, h);
         out.draws += batch;
-        out.empty += static_cast<double>(batch - w.size());
+        out.empty_draws += static_cast<double>(batch - w.size());
         std::vector<WeightPlace> places(w.size());
         for (std::size_t k = 0; k < w.size(); ++k) {
             places[k].wi = w[k];
@@ -153,7 +158,7 @@ void add_draws(Source& source, const StreamKey& key, ReservoirSums& out) {
             if (!(h[k].x > 0 && h[k].x < 1)) continue;
             const std::size_t region = region_of(w[k], h[k].x);
             for (std::size_t f = 0; f < factor_count(source.traits); ++f)
-                out.drawn[f][region].add(weights[k] / weight_factors[f].value(places[k]));
+                out.weight_sums[f][region].add(weights[k] / weight_factors[f].value(places[k]));
         }
     }
 }
@@ -167,22 +172,22 @@ void add_points(Source& source, ReservoirSums& out) {
     }
     source.f_cos(w, h);
     const double area = 2 * two_pi / points_of_target;
-    std::array<double, regions> count{};
-    std::array<double, 3> whole{};
+    std::array<double, regions> counts{};
+    std::array<double, 3> totals{};
     for (std::size_t i = 0; i < w.size(); ++i) {
         const double densities[] = {1, w[i].z > 0 ? 1.0 : 0.0, std::max(w[i].z, 0.0)};  // up to a constant
-        for (std::size_t k = 0; k < whole.size(); ++k) {
-            whole[k] += densities[k];
-            out.with_target[k] += h[i].x > 0 ? densities[k] : 0;
+        for (std::size_t k = 0; k < totals.size(); ++k) {
+            totals[k] += densities[k];
+            out.target_shares[k] += h[i].x > 0 ? densities[k] : 0;
         }
         if (!(h[i].x > 0)) continue;
         const std::size_t region = region_of(w[i], h[i].x);
         out.integral[region] += h[i].x * area;
-        ++count[region];
+        ++counts[region];
     }
-    for (std::size_t k = 0; k < whole.size(); ++k) out.with_target[k] /= std::max(whole[k], 1.0);
+    for (std::size_t k = 0; k < totals.size(); ++k) out.target_shares[k] /= std::max(totals[k], 1.0);
     for (std::size_t r = 0; r < regions; ++r) {
-        const double root = std::sqrt(std::max(count[r], 1.0));
+        const double root = std::sqrt(std::max(counts[r], 1.0));
         out.error[r] = out.integral[r] / (root * std::sqrt(root));
     }
 }
@@ -192,25 +197,26 @@ struct WeightFit {
     double constant = 1, error = 0, p = 0;  // W is constant x factor times what it should be
 };
 WeightFit fit_of(const ReservoirSums& sums, std::size_t factor) {
-    const RegionSums& drawn = sums.drawn[factor];
+    const RegionSums& region_sums = sums.weight_sums[factor];
     double estimate = 0, integral = 0, variance = 0;
     for (std::size_t r = 0; r < regions; ++r) {
-        estimate += drawn[r].sum / sums.draws;
+        estimate += region_sums[r].sum / sums.draws;
         integral += sums.integral[r];
-        variance += drawn[r].squares / sqr(sums.draws);
+        variance += region_sums[r].squares / sqr(sums.draws);
     }
     if (!(estimate > 0) || !(integral > 0)) return {};
     WeightFit out{.constant = estimate / integral, .error = std::sqrt(variance) / integral};
-    double chi2 = 0, counted = 0;
+    double chi2 = 0, region_count = 0;
     for (std::size_t r = 0; r < regions; ++r) {
-        const double d = drawn[r].sum / sums.draws, expected = out.constant * sums.integral[r];
+        const double d = region_sums[r].sum / sums.draws, expected = out.constant * sums.integral[r];
         if (std::max(d, expected) < least_region * estimate) continue;
-        const double v = std::max(drawn[r].squares - sqr(drawn[r].sum) / sums.draws, 0.0) / sqr(sums.draws) +
+        const double v =
+            std::max(region_sums[r].squares - sqr(region_sums[r].sum) / sums.draws, 0.0) / sqr(sums.draws) +
             sqr(out.constant * sums.error[r]);
         chi2 += sqr(d - expected) / std::max(v, 1e-300);
-        ++counted;
+        ++region_count;
     }
-    out.p = counted > 1 ? chi_squared_p(chi2, counted - 1) : 1;
+    out.p = region_count > 1 ? chi_squared_p(chi2, region_count - 1) : 1;
     return out;
 }
 
@@ -219,31 +225,32 @@ WeightFit fit_of(const ReservoirSums& sums, std::size_t factor) {
 std::string count_sentence(const ReservoirSums& sums, const WeightFit& fit, const Traits& traits) {
     if (traits.domain) return "";
     constexpr const char* names[] = {"uniform over the sphere", "uniform over the hemisphere", "by the cosine"};
-    const double reservoirs = 1 - sums.empty / sums.draws;
+    const double full_share = 1 - sums.empty_draws / sums.draws;
     std::string candidates;
-    double least = 1;
-    for (std::size_t k = 0; k < sums.with_target.size(); ++k) {
-        const double share = sums.with_target[k], explained = reservoirs / std::max(share, 1e-9);
-        if (std::fabs(explained - 1) < 0.01 ||
-            std::fabs(fit.constant - explained) > clear_constant * fit.error + 0.005 * explained)
+    double least_share = 1;
+    for (std::size_t k = 0; k < sums.target_shares.size(); ++k) {
+        const double share = sums.target_shares[k], explained_constant = full_share / std::max(share, 1e-9);
+        if (std::fabs(explained_constant - 1) < 0.01 ||
+            std::fabs(fit.constant - explained_constant) > clear_constant * fit.error + 0.005 * explained_constant)
             continue;
         candidates += fmt::format("{}{}", candidates.empty() ? "" : " or ", names[k]);
-        least = std::min(least, share);
+        least_share = std::min(least_share, share);
     }
     if (!candidates.empty())
         return fmt::format(
             " Of candidates {} a share of {:.3g} has a target above 0: only these are counted in M, and "
             "all have to be.",
-            candidates, least);
+            candidates, least_share);
     return "";
 }
 
 std::string text_of(std::size_t factor, const WeightFit& fit, const ReservoirSums& sums, const Traits& traits) {
-    if (factor != by_constant)
-        return factor < of_one_surface ? fmt::format("With {} in the place of W the draws follow the target: {}.",
-                                             weight_factors[factor].corrected, weight_factors[factor].fault)
-                                       : fmt::format("With {} the draws follow the target: {}.",
-                                             weight_factors[factor].corrected, weight_factors[factor].fault);
+    if (factor != constant_index)
+        return factor < single_surface_factors
+            ? fmt::format("With {} in the place of W the draws follow the target: {}.",
+                  weight_factors[factor].corrected_weight, weight_factors[factor].fault)
+            : fmt::format("With {} the draws follow the target: {}.", weight_factors[factor].corrected_weight,
+                  weight_factors[factor].fault);
     const std::string number = number_name(fit.constant, std::max(2 * fit.error, detection_floor), traits);
     std::string out = fmt::format("W is {}{} times what it should be, by the same factor in all directions.",
         with_error(fit.constant, half_width_95 * fit.error), number.empty() || number == "1" ? "" : " = " + number);
@@ -258,8 +265,8 @@ std::string text_of(std::size_t factor, const WeightFit& fit, const ReservoirSum
 }  // namespace
 
 std::optional<Cause> reciprocal_weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome) {
-    for (std::size_t k = 0; k < outcome.at.size(); ++k)
-        for (const CheckAt& c : outcome.at[k]) {
+    for (std::size_t k = 0; k < outcome.checks.size(); ++k)
+        for (const CheckAt& c : outcome.checks[k]) {
             if (c.findings.empty()) continue;
             const CheckCase& check_case = check_cases[outcome.check_cases[k]];
             Source source(*check_case.adapter, c.technique, check_case.wo, check_case.light);
@@ -273,20 +280,20 @@ std::optional<Cause> reciprocal_weight_cause(std::span<const CheckCase> check_ca
                     .purpose = Purpose::light,
                     .part = 0},
                 sums);
-            std::optional<Cause> found;
+            std::optional<Cause> cause;
             for (std::size_t f = 0; f < factor_count(source.traits); ++f) {
                 const WeightFit fit = fit_of(sums, f);
-                if (fit.p < rejected) continue;
-                if (fit.p < weights_fit || found) return {};  // unclear, or two of them
-                if (f == by_constant && std::fabs(fit.constant - 1) < clear_constant * fit.error) return {};
-                found = Cause{.factor = weight_factors[f].name,
+                if (fit.p < rejection_level) continue;
+                if (fit.p < weights_fit || cause) return {};  // unclear, or two of them
+                if (f == constant_index && std::fabs(fit.constant - 1) < clear_constant * fit.error) return {};
+                cause = Cause{.factor = weight_factors[f].name,
                     .exponent = fit.constant,
                     .error = fit.error,
                     .text = text_of(f, fit, sums, source.traits),
                     .verdict = "mean"};
-                if (f == by_constant) return found;
+                if (f == constant_index) return cause;
             }
-            return found;
+            return cause;
         }
     return {};
 }

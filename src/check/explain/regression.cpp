@@ -25,15 +25,16 @@ struct Model {
 Model model_of(std::span<const Row> rows, std::size_t groups, const Fit& f) {
     Model m;
     m.mu.resize(rows.size());
-    std::vector<double> drawn(groups), claimed(groups);
+    std::vector<double> drawn_sums(groups), claimed_sums(groups);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         double eta = 0;
         for (std::size_t k = 0; k < f.factors.size(); ++k) eta += f.exponents[k] * rows[i].x[f.factors[k]];
         m.mu[i] = rows[i].expected * math::exp(std::clamp(eta, -largest_exponent, largest_exponent));
-        drawn[rows[i].group] += rows[i].observed;
-        claimed[rows[i].group] += m.mu[i];
+        drawn_sums[rows[i].group] += rows[i].observed;
+        claimed_sums[rows[i].group] += m.mu[i];
     }
-    for (std::size_t g = 0; g < groups; ++g) m.constants.push_back(claimed[g] > 0 ? drawn[g] / claimed[g] : 1);
+    for (std::size_t g = 0; g < groups; ++g)
+        m.constants.push_back(claimed_sums[g] > 0 ? drawn_sums[g] / claimed_sums[g] : 1);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         m.mu[i] *= m.constants[rows[i].group];
         if (m.mu[i] > 0)
@@ -125,9 +126,9 @@ Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, s
         Fit next = best;
         for (std::size_t k = 0; k < factors; ++k) {
             if (std::ranges::find(best.factors, k) != best.factors.end()) continue;
-            std::vector<std::size_t> with = best.factors;
-            with.push_back(k);
-            Fit f = fit(rows, groups, std::move(with));
+            std::vector<std::size_t> factor_indices = best.factors;
+            factor_indices.push_back(k);
+            Fit f = fit(rows, groups, std::move(factor_indices));
             if (std::isfinite(f.likelihood) && f.likelihood > next.likelihood) next = std::move(f);
         }
         if (next.likelihood - best.likelihood < math::log(static_cast<double>(rows.size())) / 2 + least_lead) break;
@@ -155,7 +156,7 @@ double average(const Factor& f, Vec3d wo, const ChartRect& rect) {
 std::vector<Row> rows_of(std::span<const Place> places, const std::vector<Factor>& factors) {
     std::vector<Row> rows;
     for (std::size_t g = 0; g < places.size(); ++g) {
-        const CheckAt& c = *places[g].at;
+        const CheckAt& c = *places[g].check;
         const double n = c.observations.independent;
         double h = 0, h2 = 0;
         for (const LeafIntegral& l : c.integrals.leaves) {
@@ -172,10 +173,10 @@ std::vector<Row> rows_of(std::span<const Place> places, const std::vector<Factor
                 .variance = leaf.bridge.variance * n * n,
                 .unit = h2 / h,
                 .x = {}};
-            const Leaf& of_tree = c.plan->tree.leaves()[l];
+            const Leaf& tree_leaf = c.plan->tree.leaves()[l];
             for (const Factor& f : factors)
-                r.x.push_back(math::log(average(f, places[g].check_case->wo, c.plan->tree.rect(of_tree)) + 1e-12));
-            r.x.push_back(math::log(of_tree.q));
+                r.x.push_back(math::log(average(f, places[g].check_case->wo, c.plan->tree.rect(tree_leaf)) + 1e-12));
+            r.x.push_back(math::log(tree_leaf.q));
             rows.push_back(std::move(r));
         }
     }
@@ -184,10 +185,10 @@ std::vector<Row> rows_of(std::span<const Place> places, const std::vector<Factor
 
 /// The simple exponent that agrees with a fitted one: 1 or -1 before 1/2, 2 and others; 0 if there is none.
 double simple_of(double b, double error) {
-    const double tolerance = std::max(3 * error, to_simple);
+    const double tolerance = std::max(3 * error, simple_tolerance);
     if (std::fabs(b) < 4 * error) return 0;
-    for (double simple : {1.0, 2.0, 0.5, 1.5, 3.0})
-        if (std::fabs(std::fabs(b) - simple) < tolerance) return b > 0 ? simple : -simple;
+    for (double exponent : {1.0, 2.0, 0.5, 1.5, 3.0})
+        if (std::fabs(std::fabs(b) - exponent) < tolerance) return b > 0 ? exponent : -exponent;
     return 0;
 }
 
@@ -195,21 +196,21 @@ double power_of(double x, double b) { return x > 0 ? math::exp(b * math::log(x))
 
 /// The known number next to a constant: 1, or the usual constant of the factor.
 double known_constant(double constant, double usual, double b) {
-    for (double constant_here : {1.0, power_of(usual, b)})
-        if (std::fabs(constant / constant_here - 1) < 0.02) return constant_here;
+    for (double candidate : {1.0, power_of(usual, b)})
+        if (std::fabs(constant / candidate - 1) < 0.02) return candidate;
     return constant;
 }
 
 /// Sets the gain from the log likelihood gained by a factor over constants alone, and that of the constants from the
 /// masses.
 void set_gain(Hypothesis& h, double likelihood, std::span<const Place> places) {
-    double draws = 0, by_masses = 0;
+    double draws = 0, mass_gain = 0;
     for (const Place& place : places) {
-        const double n = place.at->observations.independent, ratio = std::max(mass_ratio(*place.at).ratio, 1e-12);
+        const double n = place.check->observations.independent, ratio = std::max(mass_ratio(*place.check).ratio, 1e-12);
         draws += n;
-        by_masses += n * (ratio - 1 - math::log(ratio));
+        mass_gain += n * (ratio - 1 - math::log(ratio));
     }
-    h.gain = (likelihood + by_masses) / draws;
+    h.gain = (likelihood + mass_gain) / draws;
     h.draws = draws;
     h.error = std::sqrt(2 * std::max(likelihood, 1.0)) / draws;
 }
@@ -219,7 +220,7 @@ void set_gain(Hypothesis& h, double likelihood, std::span<const Place> places) {
 Hypothesis times(const Factor& f, double b) {
     Hypothesis h;
     h.name = f.name;
-    h.free = true;
+    h.has_free_constant = true;
     h.density = [f, b](const SamplerAdapter& s, int technique, std::span<const Pair> pairs, std::span<double> out) {
         s.exact_pdf(technique, pairs, out);
         for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -233,29 +234,30 @@ std::vector<FactorHypothesis> factor_hypotheses(std::span<const Place> places) {
     const std::vector<Row> rows = rows_of(places, factors);
     std::vector<FactorHypothesis> out;
     if (rows.size() < 32) return out;
-    const Fit even = fit(rows, places.size(), {});
+    const Fit constant_fit = fit(rows, places.size(), {});
     std::vector<std::pair<Fit, std::size_t>> fits;
     for (std::size_t k = 0; k < factors.size(); ++k) {
         Fit f = fit(rows, places.size(), {k});
         const double b = f.exponents[0];
-        const bool can_be = factors[k].any_exponent ? std::fabs(b) > 5 * f.errors[0] : simple_of(b, f.errors[0]) != 0;
-        if (!std::isfinite(f.likelihood) || !(f.errors[0] < 0.2) || !can_be) continue;
+        const bool is_possible =
+            factors[k].any_exponent ? std::fabs(b) > 5 * f.errors[0] : simple_of(b, f.errors[0]) != 0;
+        if (!std::isfinite(f.likelihood) || !(f.errors[0] < 0.2) || !is_possible) continue;
         fits.emplace_back(std::move(f), k);
     }
     std::ranges::sort(fits, std::greater<>(), [](const auto& one) { return one.first.likelihood; });
     if (fits.size() > most_factors) fits.resize(most_factors);
     for (const auto& [f, k] : fits) {
         const double b = f.exponents[0], exponent = factors[k].any_exponent ? b : simple_of(b, f.errors[0]);
-        FactorHypothesis found{.hypothesis = times(factors[k], exponent),
+        FactorHypothesis candidate{.hypothesis = times(factors[k], exponent),
             .name = factors[k].name,
             .exponent = exponent,
-            .fitted = b,
+            .fitted_exponent = b,
             .error = f.errors[0],
             .usual_constant = factors[k].usual_constant};
         for (double c : f.constants)
-            found.hypothesis.constants.push_back(known_constant(c, factors[k].usual_constant, exponent));
-        set_gain(found.hypothesis, f.likelihood - even.likelihood, places);
-        if (found.hypothesis.helps()) out.push_back(std::move(found));
+            candidate.hypothesis.constants.push_back(known_constant(c, factors[k].usual_constant, exponent));
+        set_gain(candidate.hypothesis, f.likelihood - constant_fit.likelihood, places);
+        if (candidate.hypothesis.helps()) out.push_back(std::move(candidate));
     }
     return out;
 }
@@ -269,9 +271,9 @@ std::optional<FactorHypothesis> power_hypothesis(std::span<const Place> places) 
     const double b = f.exponents[0];
     if (!(std::fabs(b) > std::max(least_power, 4 * f.errors[0])) || !(std::fabs(b) < largest_power)) return {};
     FactorHypothesis out{
-        .hypothesis = {}, .name = "p", .exponent = b, .fitted = b, .error = f.errors[0], .usual_constant = 1};
+        .hypothesis = {}, .name = "p", .exponent = b, .fitted_exponent = b, .error = f.errors[0], .usual_constant = 1};
     out.hypothesis.name = "p";
-    out.hypothesis.free = true;
+    out.hypothesis.has_free_constant = true;
     out.hypothesis.constants = f.constants;
     out.hypothesis.density = [b](const SamplerAdapter& s, int technique, std::span<const Pair> pairs,
                                  std::span<double> to) {

@@ -48,9 +48,10 @@ TEST(PlacesOfDraws, MayNotCoverWherePIsPositive) {
 }
 
 TEST(PlacesOfDraws, ALeakOverTheSphereIsDistinguished) {
-    for (const bool whole : {false, true}) {
-        const auto draw = [whole](Vec3d, const PrimarySample& u) {
-            return u[2] < 0.1 ? from_chart({whole ? 2 * u[0] : u[0], two_pi * u[1]}) : power_draw({0, 0, 1}, 50, u);
+    for (const bool covers_sphere : {false, true}) {
+        const auto draw = [covers_sphere](Vec3d, const PrimarySample& u) {
+            return u[2] < 0.1 ? from_chart({covers_sphere ? 2 * u[0] : u[0], two_pi * u[1]})
+                              : power_draw({0, 0, 1}, 50, u);
         };
         FunctionSampler s =
             made(draw, [](Vec3d, Vec3d w) { return power_pdf({0, 0, 1}, 50, w); }, 3, Traits::WoDomain::both);
@@ -59,7 +60,7 @@ TEST(PlacesOfDraws, ALeakOverTheSphereIsDistinguished) {
         const std::vector<Leak> leaks = leak_hypotheses(r.places(1024));
         ASSERT_FALSE(leaks.empty());
         const auto best = std::ranges::max_element(leaks, {}, [](const Leak& l) { return l.hypothesis.gain; });
-        EXPECT_EQ(best->whole, whole);
+        EXPECT_EQ(best->covers_sphere, covers_sphere);
         EXPECT_TRUE(best->is_clear());
         EXPECT_NEAR(best->share, 0.1, 5 * best->error);
         EXPECT_LT(best->error, 0.01);

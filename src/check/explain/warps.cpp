@@ -19,24 +19,24 @@ namespace {
 struct Warp {
     int number = 0;
     double power = 1;
-    bool from_one = false;
+    bool is_from_one = false;
 
-    double of(double u) const {
-        const double x = from_one ? 1 - u : u, y = x > 0 ? math::exp(power * math::log(x)) : 0;
-        return std::clamp(from_one ? 1 - y : y, 0.0, 1 - ulp);
+    double apply(double u) const {
+        const double x = is_from_one ? 1 - u : u, y = x > 0 ? math::exp(power * math::log(x)) : 0;
+        return std::clamp(is_from_one ? 1 - y : y, 0.0, 1 - ulp);
     }
     /// The density of the map over p where the number has the value v.
     double ratio(double v) const {
-        const double x = std::max(from_one ? 1 - v : v, 1e-12);
+        const double x = std::max(is_from_one ? 1 - v : v, 1e-12);
         return power * math::exp((power - 1) / power * math::log(x));
     }
     std::string text() const {
-        const std::string u = fmt::format("u{}", number + 1), x = from_one ? "1 - " + u : u;
+        const std::string u = fmt::format("u{}", number + 1), x = is_from_one ? "1 - " + u : u;
         const std::string y = power == 0.5 ? "sqrt(" + x + ")"
             : power < 1                    ? fmt::format("({})^(1/{:g})", x, std::round(1 / power))
-            : from_one                     ? fmt::format("({})^{:g}", x, power)
+            : is_from_one                  ? fmt::format("({})^{:g}", x, power)
                                            : fmt::format("{}^{:g}", x, power);
-        return from_one ? "1 - " + y : y;
+        return is_from_one ? "1 - " + y : y;
     }
 };
 
@@ -46,7 +46,7 @@ DecoratedSampler warped(std::shared_ptr<const SamplerAdapter> sampler, const War
         std::vector<PrimarySample> room;
         const std::span<const PrimarySample> u = query.u.samples(room);
         std::vector<PrimarySample> v(u.begin(), u.end());
-        for (PrimarySample& x : v) x[warp.number] = warp.of(x[warp.number]);
+        for (PrimarySample& x : v) x[warp.number] = warp.apply(x[warp.number]);
         query.u = std::span<const PrimarySample>(v);
         inner.evaluate(query, out);
     };
@@ -55,16 +55,16 @@ DecoratedSampler warped(std::shared_ptr<const SamplerAdapter> sampler, const War
 
 /// Whether the ratio of the map is that of the warp at nine of ten points, and not 1 there.
 bool explains(const Warp& warp, std::span<const Place> places) {
-    double points = 0, agreeing = 0, different = 0;
+    double points = 0, agreements = 0, differences = 0;
     for (const Place& place : places)
         for (const MapDensity& m : place.map) {
-            const double deviation = std::fabs(math::log(m.drawn / m.p / warp.ratio(m.u[warp.number])));
+            const double deviation = std::fabs(math::log(m.density / m.p / warp.ratio(m.u[warp.number])));
             ++points;
-            agreeing += deviation < agreement + 2 * m.error;
-            different += std::fabs(math::log(m.drawn / m.p)) > least_warp;
+            agreements += deviation < agreement + 2 * m.error;
+            differences += std::fabs(math::log(m.density / m.p)) > least_warp;
         }
-    return points >= static_cast<double>(fewest_of_form) && agreeing >= share_in_agreement * points &&
-        different > points / 2;
+    return points >= static_cast<double>(fewest_of_form) && agreements >= share_in_agreement * points &&
+        differences > points / 2;
 }
 
 }  // namespace
@@ -72,8 +72,8 @@ bool explains(const Warp& warp, std::span<const Place> places) {
 std::optional<Cause> warp_cause(std::span<const Place> places) {
     for (int k = 0; k < places[0].traits.numbers; ++k)
         for (double power : {1.0 / 2, 2.0, 1.0 / 3, 3.0})
-            for (bool from_one : {false, true}) {
-                const Warp warp{k, power, from_one};
+            for (bool is_from_one : {false, true}) {
+                const Warp warp{k, power, is_from_one};
                 if (!explains(warp, places)) continue;
                 const DecoratedSampler corrected = warped(places[0].check_case->adapter, warp);
                 if (!follows_density(corrected, places, 1)) continue;

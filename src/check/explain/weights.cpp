@@ -73,7 +73,7 @@ std::vector<Compared> compared_at(const CheckCase& check_case, int technique, st
     return out;
 }
 
-bool near(const ByChannel& a, const ByChannel& b) {
+bool are_near(const ByChannel& a, const ByChannel& b) {
     for (std::size_t c = 0; c < 3; ++c)
         if (!(std::fabs(a[c] - b[c]) <= 1e-3 * std::max(std::fabs(a[c]), std::fabs(b[c])))) return false;
     return true;
@@ -84,7 +84,7 @@ ByChannel grey(const ByChannel& c) {
 }
 struct ChannelExchange {
     const char* name;
-    ByChannel (*of)(const ByChannel&);
+    ByChannel (*apply)(const ByChannel&);
 };
 constexpr ChannelExchange channel_exchanges[] = {
     {"channels 1 and 3 exchanged", [](const ByChannel& c) { return ByChannel{c[2], c[1], c[0]}; }},
@@ -94,18 +94,19 @@ constexpr ChannelExchange channel_exchanges[] = {
     {"channels moved by two", [](const ByChannel& c) { return ByChannel{c[2], c[0], c[1]}; }},
     {"luminance in every channel", grey}};
 
-std::optional<Cause> exchanged_channels(const std::vector<Compared>& compared) {
-    double with_weight = 0, plain = 0;
-    std::array<double, std::size(channel_exchanges)> same{};
-    for (const Compared& c : compared) {
+std::optional<Cause> exchanged_channels(const std::vector<Compared>& comparisons) {
+    double weight_count = 0, right_count = 0;
+    std::array<double, std::size(channel_exchanges)> match_counts{};
+    for (const Compared& c : comparisons) {
         if (!c.has_weight) continue;
-        ++with_weight;
-        plain += near(c.weight, c.expected);
-        for (std::size_t k = 0; k < same.size(); ++k) same[k] += near(c.weight, channel_exchanges[k].of(c.expected));
+        ++weight_count;
+        right_count += are_near(c.weight, c.expected);
+        for (std::size_t k = 0; k < match_counts.size(); ++k)
+            match_counts[k] += are_near(c.weight, channel_exchanges[k].apply(c.expected));
     }
-    if (with_weight < 64 || 2 * plain > with_weight) return {};
-    for (std::size_t k = 0; k < same.size(); ++k)
-        if (same[k] >= 0.9 * with_weight)
+    if (weight_count < 64 || 2 * right_count > weight_count) return {};
+    for (std::size_t k = 0; k < match_counts.size(); ++k)
+        if (match_counts[k] >= 0.9 * weight_count)
             return Cause{.factor = channel_exchanges[k].name,
                 .exponent = 0,
                 .error = 0,
@@ -114,20 +115,20 @@ std::optional<Cause> exchanged_channels(const std::vector<Compared>& compared) {
     return {};
 }
 
-std::optional<Cause> ratio_cause(const std::vector<KnownRatio>& ratios, const CheckCase& check_case, const char* given,
-    const char* expected, const char* verdict) {
+std::optional<Cause> ratio_cause(const std::vector<KnownRatio>& ratios, const CheckCase& check_case,
+    const char* subject, const char* expected, const char* verdict) {
     const std::vector<Factor> factors = factors_for(check_case.adapter->traits(), check_case.light);
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
     if (!c) return {};
     return Cause{.factor = c->name,
         .exponent = c->exponent == 0 ? c->constant : c->exponent,
         .error = 0,
-        .text = ratio_sentence(given, expected, *c, check_case.adapter->traits()),
+        .text = ratio_sentence(subject, expected, *c, check_case.adapter->traits()),
         .verdict = verdict};
 }
 
-void add_ratio(std::vector<KnownRatio>& to, Vec3d wo, Vec3d wi, double given, double expected) {
-    if (expected > 0) to.push_back({wo, wi, given / expected});
+void add_ratio(std::vector<KnownRatio>& to, Vec3d wo, Vec3d wi, double value, double expected) {
+    if (expected > 0) to.push_back({wo, wi, value / expected});
 }
 
 /// f(a, b) with its eta^2 over f(b, a), for pairs across the surface and on one side.
@@ -135,19 +136,19 @@ std::vector<KnownRatio> reciprocity_ratios(const CheckCase& check_case) {
     const SamplerAdapter& s = *check_case.adapter;
     const Traits traits = s.traits();
     Stream stream({.seed = 19, .place = 0, .technique = 0, .stage = 8, .purpose = Purpose::pairs, .part = 1});
-    std::vector<Pair> forth, back;
+    std::vector<Pair> pairs, reversed_pairs;
     for (int i = 0; i < 256; ++i) {
-        const auto direction = [&](bool below) { return random_direction(stream, below, 0.05); };
-        const bool both = traits.wo == Traits::WoDomain::both;
-        forth.push_back({direction(both && i % 2), direction(both && i % 2 == 0)});
-        back.push_back({forth.back().wi, forth.back().wo});
+        const auto direction = [&](bool is_below) { return random_direction(stream, is_below, 0.05); };
+        const bool has_both_sides = traits.wo == Traits::WoDomain::both;
+        pairs.push_back({direction(has_both_sides && i % 2), direction(has_both_sides && i % 2 == 0)});
+        reversed_pairs.push_back({pairs.back().wi, pairs.back().wo});
     }
-    std::vector<double> a(forth.size()), b(back.size());
-    s.f(forth, a);
-    s.f(back, b);
+    std::vector<double> a(pairs.size()), b(reversed_pairs.size());
+    s.f(pairs, a);
+    s.f(reversed_pairs, b);
     std::vector<KnownRatio> out;
-    for (std::size_t i = 0; i < forth.size(); ++i) {
-        const Pair& p = forth[i];
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const Pair& p = pairs[i];
         add_ratio(out, p.wo, p.wi, a[i] * reciprocal_ratio(traits, p, 0), b[i]);
     }
     return out;
@@ -174,40 +175,40 @@ std::optional<Cause> reciprocity_cause(const CheckCase& check_case) {
         .verdict = "physics"};
 }
 
-bool found(const CheckAt& c, Family family) {
+bool has_finding(const CheckAt& c, Family family) {
     return std::ranges::any_of(c.findings, [&](const Finding& f) { return f.first.family == family; });
 }
 
 }  // namespace
 
-std::string ratio_sentence(const char* given, const char* expected, const RatioCause& c, const Traits& traits) {
+std::string ratio_sentence(const char* subject, const char* expected, const RatioCause& c, const Traits& traits) {
     const std::string number = number_name(c.constant, same_weight, traits);
     const std::string constant = fmt::format("a constant {:.4g}{}", c.constant, number.empty() ? "" : " = " + number);
-    if (c.exponent == 0) return fmt::format("{} {} times {}.", given, expected, constant);
+    if (c.exponent == 0) return fmt::format("{} {} times {}.", subject, expected, constant);
     const std::string power = std::fabs(c.exponent) == 1 ? "" : fmt::format("^{:g}", std::fabs(c.exponent));
-    return fmt::format("{} {} {} {}{}{}.", given, expected, c.exponent > 0 ? "times" : "over", c.name, power,
+    return fmt::format("{} {} {} {}{}{}.", subject, expected, c.exponent > 0 ? "times" : "over", c.name, power,
         std::fabs(c.constant - 1) < same_weight ? "" : " and " + constant);
 }
 
 std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome) {
-    std::vector<Compared> compared;
+    std::vector<Compared> comparisons;
     const CheckCase* check_case = nullptr;
     std::size_t directions = 0;
-    for (std::size_t k = 0; k < outcome.at.size() && directions < most_directions; ++k)
-        for (const CheckAt& c : outcome.at[k]) {
-            const bool wrong = found(c, Family::pointwise) || found(c, Family::weight) ||
-                found(c, Family::reference_f) || found(c, Family::mean);
-            if (!wrong) continue;
+    for (std::size_t k = 0; k < outcome.checks.size() && directions < most_directions; ++k)
+        for (const CheckAt& c : outcome.checks[k]) {
+            const bool is_wrong = has_finding(c, Family::pointwise) || has_finding(c, Family::weight) ||
+                has_finding(c, Family::reference_f) || has_finding(c, Family::mean);
+            if (!is_wrong) continue;
             check_case = &check_cases[outcome.check_cases[k]];
-            const std::vector<Compared> here =
+            const std::vector<Compared> place_comparisons =
                 compared_at(*check_case, c.technique, static_cast<std::uint16_t>(outcome.check_cases[k]));
-            compared.insert(compared.end(), here.begin(), here.end());
+            comparisons.insert(comparisons.end(), place_comparisons.begin(), place_comparisons.end());
             ++directions;
         }
     if (check_case) {
-        if (auto c = exchanged_channels(compared); c && check_case->adapter->traits().channels == 3) return c;
+        if (auto c = exchanged_channels(comparisons); c && check_case->adapter->traits().channels == 3) return c;
         std::vector<KnownRatio> pdf, weight, f;
-        for (const Compared& c : compared) {
+        for (const Compared& c : comparisons) {
             add_ratio(pdf, c.wo, c.wi, c.pdf, c.p);
             if (c.has_weight) add_ratio(weight, c.wo, c.wi, c.weight[0], c.expected[0]);
             if (check_case->adapter->has_true_f()) add_ratio(f, c.wo, c.wi, c.f[0], c.reference_f[0]);

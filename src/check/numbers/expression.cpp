@@ -25,7 +25,7 @@ constexpr std::array<NamedFunction, 7> named_functions = {{{"exp", [](double x) 
 class ExpressionReader {
 public:
     explicit ExpressionReader(std::string_view text) : text_(text) {}
-    double all() {
+    double read() {
         const double value = sum();
         if (!at_end()) fail("an operator or the end");
         return value;
@@ -34,20 +34,20 @@ public:
 private:
     static constexpr int deepest = 64;
     std::string_view text_;
-    std::size_t at_ = 0;
+    std::size_t position_ = 0;
     int depth_ = 0;
 
     [[noreturn]] void fail(const char* expected) const {
-        throw std::invalid_argument(fmt::format("column {}: expected {}", at_ + 1, expected));
+        throw std::invalid_argument(fmt::format("column {}: expected {}", position_ + 1, expected));
     }
     bool at_end() {
-        while (at_ < text_.size() && text_[at_] == ' ') ++at_;
-        return at_ == text_.size();
+        while (position_ < text_.size() && text_[position_] == ' ') ++position_;
+        return position_ == text_.size();
     }
     bool take(char c) {
-        const bool found = !at_end() && text_[at_] == c;
-        at_ += found;
-        return found;
+        const bool matches = !at_end() && text_[position_] == c;
+        position_ += matches;
+        return matches;
     }
     double sum() {
         double value = product();
@@ -67,10 +67,10 @@ private:
     }
     double signed_power() {
         if (++depth_ > deepest) fail("fewer parentheses and signs");
-        const bool negative = take('-');
-        if (!negative) take('+');
-        const double base = negative ? signed_power() : atom();
-        const double value = negative ? -base : take('^') ? math::pow(base, signed_power()) : base;
+        const bool is_negative = take('-');
+        if (!is_negative) take('+');
+        const double base = is_negative ? signed_power() : atom();
+        const double value = is_negative ? -base : take('^') ? math::pow(base, signed_power()) : base;
         --depth_;
         return value;
     }
@@ -82,23 +82,23 @@ private:
         }
         if (at_end()) fail("a number");
         double value = 0;
-        const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+        const auto [end, error] = std::from_chars(text_.data() + position_, text_.data() + text_.size(), value);
         if (error == std::errc{}) {
-            at_ = static_cast<std::size_t>(end - text_.data());
+            position_ = static_cast<std::size_t>(end - text_.data());
             return value;
         }
         return named();
     }
     double named() {
         constexpr double pi = 3.14159265358979323846, e = 2.71828182845904523536;
-        std::size_t end = at_;
+        std::size_t end = position_;
         while (end < text_.size() && text_[end] >= 'a' && text_[end] <= 'z') ++end;
-        const std::string_view name = text_.substr(at_, end - at_);
-        if (name == "pi") return at_ = end, pi;
-        if (name == "e") return at_ = end, e;
+        const std::string_view name = text_.substr(position_, end - position_);
+        if (name == "pi") return position_ = end, pi;
+        if (name == "e") return position_ = end, e;
         for (const NamedFunction& f : named_functions) {
             if (name != f.name) continue;
-            at_ = end;
+            position_ = end;
             if (!take('(')) fail("'('");
             const double x = sum();
             if (!take(')')) fail("')'");
@@ -111,7 +111,7 @@ private:
 }  // namespace
 
 double constant_value(std::string_view text) {
-    const double value = ExpressionReader(text).all();
+    const double value = ExpressionReader(text).read();
     if (!std::isfinite(value)) throw std::invalid_argument("expected a finite value");
     return value;
 }

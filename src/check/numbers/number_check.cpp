@@ -26,25 +26,25 @@ constexpr double screening = 2e-3;      // level of one look at stage 1, of all 
 constexpr double confirming = 0.05;     // of stage 2: five looks reject a right estimator with a probability of 5e-4
 constexpr double most_unusable = 1e-3;  // share of the values, for a mean
 constexpr double least_roots = 12;      // sqrt(n) over the skewness, so that the normal law holds to 3 errors
-constexpr std::size_t most_kept = 1u << 18;  // values for the tail
+constexpr std::size_t most_values = 1u << 18;  // values for the tail
 
 /// Sums of one channel about its first value.
 struct Moments {
-    double origin = 0, n = 0, first = 0, second = 0, third = 0, least = 0, most = 0;
+    double origin = 0, n = 0, first = 0, second = 0, third = 0, least_value = 0, greatest_value = 0;
     void add(double x) {
-        if (n == 0) origin = least = most = x;
+        if (n == 0) origin = least_value = greatest_value = x;
         const double d = x - origin;
         ++n;
         first += d;
         second += d * d;
         third += d * d * d;
-        least = std::min(least, x);
-        most = std::max(most, x);
+        least_value = std::min(least_value, x);
+        greatest_value = std::max(greatest_value, x);
     }
     double mean() const { return origin + first / n; }
     double variance() const { return std::max(second / n - sqr(first / n), 0.0) * n / std::max(n - 1, 1.0); }
     double error() const { return std::sqrt(variance() / n); }
-    bool is_constant() const { return least == most; }
+    bool is_constant() const { return least_value == greatest_value; }
     double skewness() const {
         const double m = first / n, v = second / n - m * m;
         return v > 0 ? (third / n - 3 * m * second / n + 2 * m * m * m) / (v * std::sqrt(v)) : 0;
@@ -61,7 +61,7 @@ public:
 
     std::array<Moments, 3> channels{};
     std::vector<double> values;  // of channel 0, or luminances; the first of them
-    std::uint64_t unusable = 0, drawn = 0;
+    std::uint64_t unusable_count = 0, draw_count = 0;
     PrimarySample first_unusable{};
     double seconds = 0;
 
@@ -70,16 +70,16 @@ public:
         std::vector<PrimarySample> u;
         std::vector<Draw> draws;
         const Stopwatch watch;
-        while (drawn < n) {
+        while (draw_count < n) {
             monitor.check();
-            const auto from = static_cast<std::uint32_t>(drawn);
+            const auto from = static_cast<std::uint32_t>(draw_count);
             u.resize(std::min<std::uint32_t>(batch_size, n - from));
             for (std::uint32_t i = 0; i < u.size(); ++i)
                 u[i] = numbers_at(key_, from + i, std::max(traits_.numbers, 1), resolution_of(traits_));
             draws.assign(u.size(), {});
             estimator_.sample(0, {0, 0, 1}, u, draws);
             for (std::size_t i = 0; i < u.size(); ++i) add(u[i], draws[i]);
-            drawn += u.size();
+            draw_count += u.size();
         }
         seconds += watch.seconds();
     }
@@ -91,15 +91,15 @@ private:
 
     void add(const PrimarySample& u, const Draw& d) {
         const double y = d.weight.value_or(std::nan(""));
-        const std::array<double, 3> by_channel = traits_.channels == 3
+        const std::array<double, 3> channel_values = traits_.channels == 3
             ? std::array<double, 3>{d.weights.x, d.weights.y, d.weights.z}
             : std::array<double, 3>{y, y, y};
-        if (!std::ranges::all_of(by_channel, [](double v) { return std::isfinite(v); })) {
-            if (unusable++ == 0) first_unusable = u;
+        if (!std::ranges::all_of(channel_values, [](double v) { return std::isfinite(v); })) {
+            if (unusable_count++ == 0) first_unusable = u;
             return;
         }
-        for (std::size_t c = 0; c < 3; ++c) channels[c].add(by_channel[c]);
-        if (values.size() < most_kept) values.push_back(std::fabs(y));
+        for (std::size_t c = 0; c < 3; ++c) channels[c].add(channel_values[c]);
+        if (values.size() < most_values) values.push_back(std::fabs(y));
     }
 };
 
@@ -140,14 +140,14 @@ public:
         for (std::size_t k = 0; k < std::size(looks); ++k) {
             a_.extend(looks[k], monitor_);
             if (b_) b_->extend(looks[k], monitor_);
-            ++made_;
-            const bool last =
+            ++look_count_;
+            const bool is_last =
                 k + 1 == std::size(looks) || watch.seconds() > (settings_.full ? thorough_seconds : quick_seconds) / 4;
-            look(k, last);
+            look(k, is_last);
             monitor_.advance(1);
-            const bool decided = decision_.state == State::wrong || a_.unusable > 0 ||
+            const bool is_decided = decision_.state == State::wrong || a_.unusable_count > 0 ||
                 (decision_.state == State::right && decision_.hidden <= target_bias && !settings_.full);
-            if (decided || last) break;
+            if (is_decided || is_last) break;
         }
         return result();
     }
@@ -160,7 +160,7 @@ private:
     ProgressMonitor& monitor_;
     std::shared_ptr<const SamplerAdapter> estimator_;
     Decision decision_;
-    std::uint64_t made_ = 0, confirmed_ = 0;
+    std::uint64_t look_count_ = 0, confirmed_count_ = 0;
 
     static StreamKey key(std::uint32_t seed, std::uint8_t stage, std::uint8_t side) {
         return {.seed = seed, .technique = side, .stage = stage, .purpose = Purpose::draws};
@@ -180,33 +180,33 @@ private:
     }
     bool heavy() const {
         const WeightTail tail = tail_of_weights(a_.values);
-        const bool other = b_ && (tail_of_weights(b_->values).heavy() || tail_of_weights(b_->values).open());
-        return tail.heavy() || tail.open() || other;
+        const bool is_other_heavy = b_ && (tail_of_weights(b_->values).heavy() || tail_of_weights(b_->values).open());
+        return tail.heavy() || tail.open() || is_other_heavy;
     }
 
-    void look(std::size_t k, bool last) {
+    void look(std::size_t k, bool is_last) {
         decision_ = {};
         if (a_.channels[0].n < 2) return;
-        const bool no_law = heavy();
-        decision_.state = no_law ? State::inconclusive : State::right;
+        const bool is_heavy = heavy();
+        decision_.state = is_heavy ? State::inconclusive : State::right;
         for (int c = 0; c < channels(); ++c) {
             const MeanDifference d = difference(a_, b_ ? &*b_ : nullptr, c);
-            const bool constant = d.error == 0;  // a rare value may not have been drawn yet
-            const bool lawful = constant ? last : !no_law && settled(a_, c) && (!b_ || settled(*b_, c));
+            const bool is_constant = d.error == 0;  // a rare value may not have been drawn yet
+            const bool is_lawful = is_constant ? is_last : !is_heavy && settled(a_, c) && (!b_ || settled(*b_, c));
             const double size = size_of(d);
             if (c == 0 || size > decision_.hidden) {
                 decision_.hidden = size;
                 decision_.difference = d;
                 decision_.channel = c;
             }
-            if (!lawful) {
+            if (!is_lawful) {
                 decision_.state = State::inconclusive;
                 continue;
             }
             if (std::fabs(d.value) <= d.rounding()) continue;
             if (normal_two_sided(d.errors()) > screening / channels()) continue;
             if (!is_confirmed(k, c, d)) continue;
-            ++confirmed_;
+            ++confirmed_count_;
             decision_ = {.state = State::wrong, .difference = d, .channel = c, .hidden = size};
             return;
         }
@@ -236,9 +236,9 @@ private:
     CheckResult result() {
         CheckResult out;
         out.alpha = settings_.alpha;
-        out.tests = made_ * static_cast<std::uint64_t>(channels());
-        out.confirmed = out.screened = confirmed_;
-        out.evaluations = out.questions = a_.drawn + (b_ ? b_->drawn : 0);
+        out.tests = look_count_ * static_cast<std::uint64_t>(channels());
+        out.confirmed = out.screened = confirmed_count_;
+        out.evaluations = out.questions = a_.draw_count + (b_ ? b_->draw_count : 0);
         CheckCase check_case;
         check_case.arm = estimator_->name();
         check_case.adapter = estimator_;
@@ -275,28 +275,29 @@ private:
     }
 
     void set_valid(Verdict& v) const {
-        v.evidence["draws"] = a_.drawn;
-        v.evidence["unusable"] = a_.unusable;
-        v.sentences = {{"usable", fmt::format("{} values can be used.", a_.drawn - a_.unusable)},
+        v.evidence["draws"] = a_.draw_count;
+        v.evidence["unusable"] = a_.unusable_count;
+        v.sentences = {{"usable", fmt::format("{} values can be used.", a_.draw_count - a_.unusable_count)},
             {"detectable",
-                fmt::format("NaN in one of {:.2g} draws would have been found.", static_cast<double>(a_.drawn) / 3)}};
-        if (a_.unusable == 0) return;
+                fmt::format(
+                    "NaN in one of {:.2g} draws would have been found.", static_cast<double>(a_.draw_count) / 3)}};
+        if (a_.unusable_count == 0) return;
         v.state = State::wrong;
-        v.size = static_cast<double>(a_.unusable) / static_cast<double>(a_.drawn);
+        v.size = static_cast<double>(a_.unusable_count) / static_cast<double>(a_.draw_count);
         std::string u;
         for (int k = 0; k < estimator_->traits().numbers; ++k)
             u += fmt::format("{}{:.6g}", k ? ", " : "", a_.first_unusable[k]);
         v.sentences = {{"not finite",
-            fmt::format("{} of {} values are not finite, first at u = ({}).", a_.unusable, a_.drawn, u)}};
+            fmt::format("{} of {} values are not finite, first at u = ({}).", a_.unusable_count, a_.draw_count, u)}};
     }
 
     void set_mean(Verdict& v) const {
         const Decision& d = decision_;
         const Moments& x = a_.channels[static_cast<std::size_t>(d.channel)];
         v.state = d.state;
-        v.evidence = {{"draws", a_.drawn}, {"mean", x.n > 0 ? x.mean() : 0},
+        v.evidence = {{"draws", a_.draw_count}, {"mean", x.n > 0 ? x.mean() : 0},
             {"standard_error", x.n > 0 ? x.error() : 0}, {"expected", d.difference.expected}};
-        if (x.n < 2 || static_cast<double>(a_.unusable) > most_unusable * static_cast<double>(a_.drawn)) {
+        if (x.n < 2 || static_cast<double>(a_.unusable_count) > most_unusable * static_cast<double>(a_.draw_count)) {
             v.state = State::skipped;
             v.sentences = {{"withheld", "Not given, since too many of the values are not numbers: see valid."}};
             return;

@@ -20,7 +20,7 @@ namespace crescent::check {
 namespace {
 
 constexpr double normal_95 = 1.959964, one_tail = 0.025;
-constexpr double of_support = 0.95;
+constexpr double support_share = 0.95;
 constexpr std::array<double, 3> shares_within = {0.5, 0.9, 0.99};
 
 Interval share_interval(double hits, double trials) {
@@ -31,20 +31,20 @@ Interval share_interval(double hits, double trials) {
 
 /// Interval of the mean of n values with this sum and sum of squares.
 Interval mean_interval(double sum, double square, double n) {
-    const double mean = sum / n, half = normal_95 * std::sqrt(std::max(square / n - mean * mean, 0.0) / n);
-    return {mean, mean - half, mean + half};
+    const double mean = sum / n, half_width = normal_95 * std::sqrt(std::max(square / n - mean * mean, 0.0) / n);
+    return {mean, mean - half_width, mean + half_width};
 }
 
 /// Interval of the value below which a share of the draws lies; `sorted` is ascending.
-Interval quantile_interval(const std::vector<double>& sorted, double share) {
-    const double n = static_cast<double>(sorted.size()), half = normal_95 * std::sqrt(n * share * (1 - share));
-    const auto value_of = [&](double rank) { return sorted[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
-    return {value_of(n * share), value_of(n * share - half), value_of(n * share + half)};
+Interval quantile_interval(const std::vector<double>& values, double share) {
+    const double n = static_cast<double>(values.size()), half_width = normal_95 * std::sqrt(n * share * (1 - share));
+    const auto value_of = [&](double rank) { return values[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
+    return {value_of(n * share), value_of(n * share - half_width), value_of(n * share + half_width)};
 }
 
 double angle_between(Vec3d a, Vec3d b) {
-    const Vec3d across = cross(a, b);
-    return math::atan2(length(across), dot(a, b));
+    const Vec3d normal = cross(a, b);
+    return math::atan2(length(normal), dot(a, b));
 }
 
 void describe_moments(const std::vector<Vec3d>& w, Description& d) {
@@ -60,7 +60,7 @@ void describe_moments(const std::vector<Vec3d>& w, Description& d) {
         }
     }
     for (std::size_t k = 0; k < 3; ++k) d.mean[k] = mean_interval(sum[k], product[k], n);
-    for (std::size_t k = 0; k < 6; ++k) d.second[k] = mean_interval(product[k], product_square[k], n);
+    for (std::size_t k = 0; k < 6; ++k) d.second_moments[k] = mean_interval(product[k], product_square[k], n);
     const Vec3d mean{d.mean[0].value, d.mean[1].value, d.mean[2].value};
     const double size = length(mean);
     if (!(size > 0)) return;
@@ -68,32 +68,32 @@ void describe_moments(const std::vector<Vec3d>& w, Description& d) {
     d.theta = math::atan2(math::hypot(axis.x, axis.y), axis.z);
     d.phi = math::atan2(axis.y, axis.x);
     if (d.phi < 0) d.phi += two_pi;
-    double along = 0, along_square = 0, across_square = 0;
+    double cosine_sum = 0, square_sum = 0, sine_square_sum = 0;
     std::vector<double> angles;
     for (Vec3d v : w) {
         const double c = dot(v, axis);
-        along += c;
-        along_square += c * c;
-        across_square += 1 - c * c;
+        cosine_sum += c;
+        square_sum += c * c;
+        sine_square_sum += 1 - c * c;
         angles.push_back(angle_between(v, axis));
     }
-    d.length = mean_interval(along, along_square, n);
+    d.length = mean_interval(cosine_sum, square_sum, n);
     // Perpendicular to the mean direction the mean has two components, each with half of this variance: 2.4477 =
     // sqrt(chi-square of two degrees at 95 %).
-    const double across = 2.4477 * std::sqrt(std::max(across_square, 0.0) / 2) / n;
-    d.direction_error = across < size ? math::asin(across / size) : two_pi / 2;
+    const double radius = 2.4477 * std::sqrt(std::max(sine_square_sum, 0.0) / 2) / n;
+    d.direction_error = radius < size ? math::asin(radius / size) : two_pi / 2;
     std::ranges::sort(angles);
-    for (std::size_t k = 0; k < shares_within.size(); ++k) d.within[k] = quantile_interval(angles, shares_within[k]);
+    for (std::size_t k = 0; k < shares_within.size(); ++k) d.angles[k] = quantile_interval(angles, shares_within[k]);
 }
 
-/// Dyadic cells of the chart that contain at most `most` of the draws that shape them.
+/// Dyadic cells of the chart that contain at most `leaf_points` of the draws that shape them.
 class Cells {
 public:
     explicit Cells(std::vector<ChartPoint> shape) { cut({}, std::move(shape), 0); }
     std::size_t find(ChartPoint point) const {
         std::size_t i = 0;
         while (nodes_[i].child != 0)
-            i = nodes_[i].child + ((nodes_[i].along_phi ? point.phi : point.t) >= nodes_[i].middle);
+            i = nodes_[i].child + ((nodes_[i].splits_phi ? point.phi : point.t) >= nodes_[i].middle);
         return nodes_[i].cell;
     }
     const std::vector<double>& areas() const { return areas_; }
@@ -102,31 +102,31 @@ private:
     static constexpr std::size_t leaf_points = 16;
     struct Node {
         std::size_t child = 0, cell = 0;
-        bool along_phi = false;
+        bool splits_phi = false;
         double middle = 0;
     };
     std::vector<Node> nodes_ = {{}};
     std::vector<double> areas_;
 
-    void cut(const ChartRect& rect, std::vector<ChartPoint> inside, std::size_t node) {
-        const bool along_phi = rect.phi_width() > rect.theta_width();
-        if (inside.size() <= leaf_points || rect.width(along_phi) < least_width) {
+    void cut(const ChartRect& rect, std::vector<ChartPoint> points, std::size_t node) {
+        const bool splits_phi = rect.phi_width() > rect.theta_width();
+        if (points.size() <= leaf_points || rect.width(splits_phi) < least_width) {
             nodes_[node].cell = areas_.size();
             areas_.push_back(rect.area());
             return;
         }
-        const double middle = rect.middle(along_phi);
+        const double middle = rect.middle(splits_phi);
         const std::size_t child = nodes_.size();
-        nodes_[node] = {.child = child, .cell = 0, .along_phi = along_phi, .middle = middle};
+        nodes_[node] = {.child = child, .cell = 0, .splits_phi = splits_phi, .middle = middle};
         nodes_.resize(child + 2);
-        std::vector<ChartPoint> half[2];
-        for (const ChartPoint& p : inside) half[(along_phi ? p.phi : p.t) >= middle].push_back(p);
-        inside = {};
+        std::vector<ChartPoint> halves[2];
+        for (const ChartPoint& p : points) halves[(splits_phi ? p.phi : p.t) >= middle].push_back(p);
+        points = {};
         for (std::size_t k = 0; k < 2; ++k) {
             ChartRect part = rect;
-            if (along_phi) (k == 0 ? part.phi1 : part.phi0) = middle;
+            if (splits_phi) (k == 0 ? part.phi1 : part.phi0) = middle;
             else (k == 0 ? part.t1 : part.t0) = middle;
-            cut(part, std::move(half[k]), child + k);
+            cut(part, std::move(halves[k]), child + k);
         }
     }
 };
@@ -142,45 +142,45 @@ void describe_support(const std::vector<Vec3d>& w, Description& d) {
     const Cells cells(part(0));
     const std::size_t count = cells.areas().size();
     const double n = static_cast<double>(third);
-    std::vector<double> density(count, 0), drawn(count, 0);
+    std::vector<double> density(count, 0), counts(count, 0);
     for (const ChartPoint& p : part(1)) density[cells.find(p)] += 1 / n;
     for (std::size_t c = 0; c < count; ++c) density[c] /= cells.areas()[c];
     double sum = 0, square = 0;
     for (const ChartPoint& p : part(2)) {
         const std::size_t c = cells.find(p);
-        ++drawn[c];
+        ++counts[c];
         sum += density[c];
         square += density[c] * density[c];
     }
-    const Interval of_square = mean_interval(sum, square, n);
-    const auto inverse = [](double v) { return v > 0 ? std::min(1 / v, 2 * two_pi) : 2 * two_pi; };
-    d.effective = {inverse(of_square.value), inverse(of_square.high), inverse(of_square.low)};
+    const Interval density_mean = mean_interval(sum, square, n);
+    const auto invert = [](double v) { return v > 0 ? std::min(1 / v, 2 * two_pi) : 2 * two_pi; };
+    d.effective_solid_angle = {invert(density_mean.value), invert(density_mean.high), invert(density_mean.low)};
     std::vector<std::size_t> order(count);
     for (std::size_t c = 0; c < count; ++c) order[c] = c;
     std::ranges::sort(order,
         [&](std::size_t a, std::size_t b) { return density[a] > density[b] || (density[a] == density[b] && a < b); });
-    const double half = normal_95 * std::sqrt(n * of_support * (1 - of_support));
-    double held = 0, area = 0;
-    bool low = false, middle = false, high = false;
+    const double half_width = normal_95 * std::sqrt(n * support_share * (1 - support_share));
+    double draw_sum = 0, area = 0;
+    bool has_low = false, has_middle = false, has_high = false;
     for (std::size_t c : order) {
-        held += drawn[c];
+        draw_sum += counts[c];
         area += cells.areas()[c];
-        const auto take = [&](bool& done, double from, double& to) {
-            if (!done && held >= from) {
-                done = true;
+        const auto take = [&](bool& is_set, double from, double& to) {
+            if (!is_set && draw_sum >= from) {
+                is_set = true;
                 to = area;
             }
         };
-        take(low, n * of_support - half, d.solid_angle.low);
-        take(middle, n * of_support, d.solid_angle.value);
-        take(high, std::min(n * of_support + half, n), d.solid_angle.high);
+        take(has_low, n * support_share - half_width, d.solid_angle.low);
+        take(has_middle, n * support_share, d.solid_angle.value);
+        take(has_high, std::min(n * support_share + half_width, n), d.solid_angle.high);
     }
 }
 
 void describe_map(const std::vector<Vec3d>& w, Description& d) {
     constexpr int rings_above = 9;
     d.sectors = 24;
-    const int rings = d.below.value > 0 ? 2 * rings_above : rings_above;
+    const int rings = d.below_share.value > 0 ? 2 * rings_above : rings_above;
     for (int i = 0; i <= rings; ++i) d.theta_edges.push_back(two_pi / 4 * i / rings_above);
     std::vector<double> hits(static_cast<std::size_t>(rings * d.sectors), 0);
     for (Vec3d v : w) {
@@ -207,34 +207,34 @@ Description describe_one(
         .purpose = Purpose::draws,
         .part = 0xffff};
     const std::uint32_t n =
-        source.available(key, check_case.adapter->limited() ? settings.draws_of_limited : settings.draws);
+        source.available(key, check_case.adapter->limited() ? settings.limited_draws : settings.draws);
     std::vector<Vec3d> w;
     std::vector<PrimarySample> u;
     std::vector<Draw> draws;
-    double above = 0, delta = 0, nothing = 0;
+    double above_count = 0, delta_count = 0, empty_count = 0;
     for (std::uint32_t from = 0; from < n; from += batch_size) {
         u.resize(std::min(batch_size, n - from));
         draws.assign(u.size(), {});
         source.draw(key, from, u, draws);
         for (const Draw& x : draws) {
             const double size = length(x.wi);
-            const bool drawn = x.delta != 0 || x.pdf > 0;
-            if (std::isnan(x.pdf) || (drawn && !(std::isfinite(size) && size > 0))) ++d.invalid;
-            else if (x.delta != 0) ++delta;
-            else if (!drawn) ++nothing;
+            const bool is_sample = x.delta != 0 || x.pdf > 0;
+            if (std::isnan(x.pdf) || (is_sample && !(std::isfinite(size) && size > 0))) ++d.invalid;
+            else if (x.delta != 0) ++delta_count;
+            else if (!is_sample) ++empty_count;
             else {
                 w.push_back(x.wi * (1 / size));
-                above += x.wi.z > 0;
+                above_count += x.wi.z > 0;
             }
         }
     }
     d.draws = n;
     d.directions = w.size();
     const double total = static_cast<double>(n);
-    d.above = share_interval(above, total);
-    d.below = share_interval(static_cast<double>(w.size()) - above, total);
-    d.delta = share_interval(delta, total);
-    d.nothing = share_interval(nothing, total);
+    d.above_share = share_interval(above_count, total);
+    d.below_share = share_interval(static_cast<double>(w.size()) - above_count, total);
+    d.delta_share = share_interval(delta_count, total);
+    d.empty_share = share_interval(empty_count, total);
     if (w.size() < 64) return d;
     describe_moments(w, d);
     describe_support(w, d);
@@ -258,8 +258,8 @@ std::vector<Description> describe(
         out[j] = describe_one(check_cases[check_case], technique, settings, static_cast<std::uint16_t>(check_case));
         monitor.advance(1);
     };
-    const bool serial = std::ranges::any_of(check_cases, [](const CheckCase& t) { return t.adapter->serial(); });
-    for_each_index(serial, jobs.size(), run);
+    const bool is_serial = std::ranges::any_of(check_cases, [](const CheckCase& t) { return t.adapter->serial(); });
+    for_each_index(is_serial, jobs.size(), run);
     return out;
 }
 
@@ -303,10 +303,10 @@ std::string description_text(const Description& d) {
     std::string out = d.arm + ", " + d.check_case;
     if (d.techniques > 1) out += fmt::format(", technique {} of {}", d.technique + 1, d.techniques);
     out += fmt::format(": {} draws, 95 % intervals in parentheses\n", d.draws);
-    out += "  above the horizon    " + interval_text(d.above, 100, " %") + "\n";
-    out += "  below the horizon    " + interval_text(d.below, 100, " %") + "\n";
-    if (d.delta.value > 0) out += "  delta parts          " + interval_text(d.delta, 100, " %") + "\n";
-    if (d.nothing.value > 0) out += "  nothing (pdf 0)      " + interval_text(d.nothing, 100, " %") + "\n";
+    out += "  above the horizon    " + interval_text(d.above_share, 100, " %") + "\n";
+    out += "  below the horizon    " + interval_text(d.below_share, 100, " %") + "\n";
+    if (d.delta_share.value > 0) out += "  delta parts          " + interval_text(d.delta_share, 100, " %") + "\n";
+    if (d.empty_share.value > 0) out += "  nothing (pdf 0)      " + interval_text(d.empty_share, 100, " %") + "\n";
     if (d.invalid > 0) out += fmt::format("  no direction (NaN)   {} draws\n", d.invalid);
     if (d.map.empty()) return out + "  too few directions for more\n";
     out += fmt::format("  mean direction       theta {:.4g} deg, phi {:.4g} deg, within {:.2g} deg\n",
@@ -314,9 +314,9 @@ std::string description_text(const Description& d) {
     out += fmt::format("  mean vector          x {}, y {}, z {}\n", interval_text(d.mean[0]), interval_text(d.mean[1]),
         interval_text(d.mean[2]));
     out += "    its length         " + interval_text(d.length) + "\n";
-    out += "  angle to the mean    50 % within " + interval_text(d.within[0], degrees, " deg") + "\n";
-    out += "                       90 % within " + interval_text(d.within[1], degrees, " deg") + "\n";
-    out += "                       99 % within " + interval_text(d.within[2], degrees, " deg") + "\n";
+    out += "  angle to the mean    50 % within " + interval_text(d.angles[0], degrees, " deg") + "\n";
+    out += "                       90 % within " + interval_text(d.angles[1], degrees, " deg") + "\n";
+    out += "                       99 % within " + interval_text(d.angles[2], degrees, " deg") + "\n";
     out += "  second moments       ";
     const char* names[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
     for (std::size_t k = 0; k < 6; ++k)
@@ -324,9 +324,9 @@ std::string description_text(const Description& d) {
             k == 0       ? ""
                 : k == 3 ? "\n                       "
                          : ", ",
-            names[k], d.second[k].value, (d.second[k].high - d.second[k].low) / 2);
+            names[k], d.second_moments[k].value, (d.second_moments[k].high - d.second_moments[k].low) / 2);
     out += "\n  effective support    95 % of the draws in " + interval_text(d.solid_angle, 1, " sr") + "\n";
-    out += "                       1 / integral of p^2: " + interval_text(d.effective, 1, " sr") + "\n";
+    out += "                       1 / integral of p^2: " + interval_text(d.effective_solid_angle, 1, " sr") + "\n";
     return out + map_text(d);
 }
 
@@ -339,19 +339,19 @@ nlohmann::ordered_json description_json(std::span<const Description> description
     Json out = Json::array();
     for (const Description& d : descriptions) {
         Json j = {{"arm", d.arm}, {"case", d.check_case}, {"technique", d.technique + 1}, {"draws", d.draws},
-            {"invalid", d.invalid}, {"share_above", json_of(d.above)}, {"share_below", json_of(d.below)},
-            {"share_of_delta_parts", json_of(d.delta)}, {"share_of_nothing", json_of(d.nothing)}};
+            {"invalid", d.invalid}, {"share_above", json_of(d.above_share)}, {"share_below", json_of(d.below_share)},
+            {"share_of_delta_parts", json_of(d.delta_share)}, {"share_of_nothing", json_of(d.empty_share)}};
         if (!d.map.empty()) {
             j["mean"] = {json_of(d.mean[0]), json_of(d.mean[1]), json_of(d.mean[2])};
             j["length_of_mean"] = json_of(d.length);
             j["mean_direction"] = {{"theta_deg", d.theta * degrees}, {"phi_deg", d.phi * degrees},
                 {"within_deg", d.direction_error * degrees}};
-            j["angle_to_mean_deg"] = {{"50", json_of(d.within[0], degrees)}, {"90", json_of(d.within[1], degrees)},
-                {"99", json_of(d.within[2], degrees)}};
+            j["angle_to_mean_deg"] = {{"50", json_of(d.angles[0], degrees)}, {"90", json_of(d.angles[1], degrees)},
+                {"99", json_of(d.angles[2], degrees)}};
             const char* names[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
-            for (std::size_t k = 0; k < 6; ++k) j["second_moments"][names[k]] = json_of(d.second[k]);
+            for (std::size_t k = 0; k < 6; ++k) j["second_moments"][names[k]] = json_of(d.second_moments[k]);
             j["solid_angle_of_95_percent_sr"] = json_of(d.solid_angle);
-            j["effective_solid_angle_sr"] = json_of(d.effective);
+            j["effective_solid_angle_sr"] = json_of(d.effective_solid_angle);
             Json edges = Json::array(), rows = Json::array();
             for (double e : d.theta_edges) edges.push_back(e * degrees);
             for (const Interval& i : d.map) rows.push_back({i.value, i.low, i.high});

@@ -24,17 +24,18 @@ struct Interval {
 struct Description {
     std::string arm, check_case;
     int technique = 0, techniques = 1;
-    std::uint64_t draws = 0, invalid = 0;   // invalid: draws with unusable numbers, excluded from all that follows
-    Interval above, below, delta, nothing;  // shares of the draws: directions on either side, delta parts, no sample
-    std::uint64_t directions = 0;           // number of draws in all that follows
-    std::array<Interval, 3> mean{};         // of x, y, z
-    Interval length;                        // of the mean vector: 1 if all directions are equal, 0 if they cancel
-    double theta = 0, phi = 0;              // of the mean direction
-    double direction_error = 0;             // half angle of the cone that contains the mean direction
-    std::array<Interval, 6> second{};       // means of xx, yy, zz, xy, xz, yz
-    std::array<Interval, 3> within{};       // angle about the mean direction that contains 50, 90, 99 %
-    Interval solid_angle;                   // of the densest cells that contain 95 %
-    Interval effective;               // 1 / integral of p^2: solid angle of a uniform density with the same integral
+    std::uint64_t draws = 0, invalid = 0;  // invalid: draws with unusable numbers, excluded from all that follows
+    /// Of the draws: directions on either side, delta parts, no sample.
+    Interval above_share, below_share, delta_share, empty_share;
+    std::uint64_t directions = 0;              // number of draws in all that follows
+    std::array<Interval, 3> mean{};            // of x, y, z
+    Interval length;                           // of the mean vector: 1 if all directions are equal, 0 if they cancel
+    double theta = 0, phi = 0;                 // of the mean direction
+    double direction_error = 0;                // half angle of the cone that contains the mean direction
+    std::array<Interval, 6> second_moments{};  // means of xx, yy, zz, xy, xz, yz
+    std::array<Interval, 3> angles{};          // angle about the mean direction that contains 50, 90, 99 %
+    Interval solid_angle;                      // of the densest cells that contain 95 %
+    Interval effective_solid_angle;   // 1 / integral of p^2: solid angle of a uniform density with the same integral
     std::vector<double> theta_edges;  // of the map, radians; sectors are uniform from phi = 0 on
     int sectors = 0;
     std::vector<Interval> map;  // share of the draws by bin, rings first
@@ -43,7 +44,7 @@ struct Description {
 /// Seed and number of draws at each w_o; programs, plugins and Python use fewer.
 struct DescribeSettings {
     std::uint32_t seed = 1;
-    std::uint32_t draws = 1u << 16, draws_of_limited = 1u << 14;
+    std::uint32_t draws = 1u << 16, limited_draws = 1u << 14;
 };
 
 /// One description for each technique of each case, without baselines.

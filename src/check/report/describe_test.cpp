@@ -59,15 +59,15 @@ TEST(DescriptionOfDraws, HasTheMomentsOfACosine) {
     ConeOfDraws s;
     s.cosine = true;
     const Description d = described(s);
-    EXPECT_EQ(d.above.value, 1);
-    EXPECT_EQ(d.below.value, 0);
+    EXPECT_EQ(d.above_share.value, 1);
+    EXPECT_EQ(d.below_share.value, 0);
     expect_near(d.mean[2], 2.0 / 3);
-    expect_near(d.second[0], 0.25);
-    expect_near(d.second[2], 0.5);
-    expect_near(d.second[3], 0);
-    expect_near(d.within[0], std::acos(std::sqrt(0.5)));
+    expect_near(d.second_moments[0], 0.25);
+    expect_near(d.second_moments[2], 0.5);
+    expect_near(d.second_moments[3], 0);
+    expect_near(d.angles[0], std::acos(std::sqrt(0.5)));
     // 1 / integral of cos^2 / pi^2 over the hemisphere = 3 pi / 2.
-    EXPECT_NEAR(d.effective.value, 1.5 * two_pi / 2, 0.1);
+    EXPECT_NEAR(d.effective_solid_angle.value, 1.5 * two_pi / 2, 0.1);
     EXPECT_EQ(d.theta_edges.size(), 10u);
     double sum = 0;
     for (const Interval& i : d.map) sum += i.value;
@@ -83,7 +83,7 @@ TEST(DescriptionOfDraws, HasTheAxisAndTheSolidAngleOfACone) {
     const double solid_angle = two_pi * (1 - std::cos(0.5));
     // Cells at the rim extend beyond it by a few per cent.
     EXPECT_NEAR(d.solid_angle.value / (0.95 * solid_angle), 1, 0.06);
-    EXPECT_NEAR(d.effective.value / solid_angle, 1, 0.06);
+    EXPECT_NEAR(d.effective_solid_angle.value / solid_angle, 1, 0.06);
     EXPECT_LE(d.solid_angle.low, d.solid_angle.value);
     EXPECT_LE(d.solid_angle.value, d.solid_angle.high);
 }
@@ -95,17 +95,17 @@ TEST(DescriptionOfDraws, CountsEachKindOfDraw) {
     s.below = true;
     s.cosine = true;
     const Description d = described(s);
-    expect_near(d.delta, 0.25);
-    expect_near(d.nothing, 0.125);
-    expect_near(d.below, 0.25);
-    expect_near(d.above, 0.375);
+    expect_near(d.delta_share, 0.25);
+    expect_near(d.empty_share, 0.125);
+    expect_near(d.below_share, 0.25);
+    expect_near(d.above_share, 0.375);
     EXPECT_EQ(d.theta_edges.size(), 19u);
     const std::string text = description_text(d);
     for (const char* word : {"above the horizon", "delta parts", "nothing", "effective support", "map"})
         EXPECT_NE(text.find(word), std::string::npos) << text;
     const auto json = description_json({&d, 1});
     EXPECT_EQ(json[0]["map"]["rows"].size(), 18u * 24);
-    EXPECT_NEAR(json[0]["share_below"]["value"].get<double>(), d.below.value, 1e-12);
+    EXPECT_NEAR(json[0]["share_below"]["value"].get<double>(), d.below_share.value, 1e-12);
 }
 
 }  // namespace describe_test

@@ -16,14 +16,14 @@ namespace {
 /// Counts of X by size, both logarithmic, with the fitted tail if there is one.
 Json histogram(const WeightHistogram& w) {
     if (w.counts.empty()) return false;
-    std::vector<double> seen;
-    std::ranges::copy_if(w.counts, std::back_inserter(seen), [](double c) { return c > 0; });
-    seen.push_back(0.5);
+    std::vector<double> positive_counts;
+    std::ranges::copy_if(w.counts, std::back_inserter(positive_counts), [](double c) { return c > 0; });
+    positive_counts.push_back(0.5);
     Axis x = linear_axis("log10 of X = f L cos / p", {w.log10_edges.front(), w.log10_edges.back()});
     x.low = w.log10_edges.front();
     x.high = w.log10_edges.back();
-    bool line = false;
-    Chart chart(420, 220, x, log_axis("draws", seen), "Histogram of the samples X");
+    bool has_line = false;
+    Chart chart(420, 220, x, log_axis("draws", positive_counts), "Histogram of the samples X");
     for (std::size_t i = 0; i < w.counts.size(); ++i)
         if (w.counts[i] > 0)
             chart.band({w.log10_edges[i], w.log10_edges[i + 1]}, {0.5, 0.5}, {w.counts[i], w.counts[i]}, "c1");
@@ -43,12 +43,12 @@ Json histogram(const WeightHistogram& w) {
         }
         if (tail.size() > 1) {
             chart.line(tail, "c2");
-            line = true;
+            has_line = true;
         }
     }
     Json tail = false;
     if (w.exceedances > 0)
-        tail = {{"has_line", line}, {"exceedances", fmt::format("{:.0f}", w.exceedances)},
+        tail = {{"has_line", has_line}, {"exceedances", fmt::format("{:.0f}", w.exceedances)},
             {"k", fmt::format("{:.3f}", w.k)}};
     return {{"chart", chart.str()}, {"tail", tail}, {"zeros", fmt::format("{:.0f}", w.zeros)}};
 }
@@ -99,13 +99,13 @@ Json frame_of(const BinHistogram& m, const std::vector<double>& deviations) {
     const auto furthest = std::ranges::max_element(deviations, {}, [](double d) { return std::fabs(d); });
     const auto bin = static_cast<std::size_t>(furthest - deviations.begin()),
                sectors = static_cast<std::size_t>(m.sectors);
-    constexpr double around = 1.5;
+    constexpr double margin = 1.5;
     const double width = map_width / m.sectors, height = map_height / m.rings;
     return {{"drawn", fmt::format("{:.0f}", m.observed[bin])}, {"expected", fmt::format("{:.1f}", m.expected[bin])},
         {"deviation", fmt::format("{:+.1f}", *furthest)},
-        {"x", pixels(map_left + width * static_cast<double>(bin % sectors) - around)},
-        {"y", pixels(map_top + height * static_cast<double>(bin / sectors) - around)},
-        {"width", pixels(width + 2 * around)}, {"height", pixels(height + 2 * around)}};
+        {"x", pixels(map_left + width * static_cast<double>(bin % sectors) - margin)},
+        {"y", pixels(map_top + height * static_cast<double>(bin / sectors) - margin)},
+        {"width", pixels(width + 2 * margin)}, {"height", pixels(height + 2 * margin)}};
 }
 
 Json map_of(const BinHistogram& m) {
@@ -220,12 +220,13 @@ void add_matrix(const CheckResult& j, Json& to) {
     std::vector<std::string_view> tests;
     for (const Verdict& v : j.verdicts)
         if (std::ranges::find(tests, v.name) == tests.end()) tests.push_back(v.name);
-    const bool one_arm = std::ranges::all_of(j.verdicts, [&](const Verdict& v) { return v.arm == j.verdicts[0].arm; });
+    const bool has_one_arm =
+        std::ranges::all_of(j.verdicts, [&](const Verdict& v) { return v.arm == j.verdicts[0].arm; });
     Json matrix = Json::array();
     for (std::size_t i = 0; i < j.verdicts.size(); ++i) {
         const Verdict& v = j.verdicts[i];
         if (starts_case(j.verdicts, i))
-            matrix.push_back({{"arm", one_arm ? "" : v.arm}, {"case", v.check_case}, {"states", Json::array()}});
+            matrix.push_back({{"arm", has_one_arm ? "" : v.arm}, {"case", v.check_case}, {"states", Json::array()}});
         matrix.back()["states"].push_back(word(v.state));
     }
     to["tests"] = tests;
@@ -238,25 +239,25 @@ Json case_models(const CheckResult& j) {
     std::size_t map = 0, line = 0, weight = 0;
     for (std::size_t i = 0; i < j.verdicts.size();) {
         const std::string arm = j.verdicts[i].arm, check_case = j.verdicts[i].check_case;
-        const auto is_here = [&](const auto& list, std::size_t k) {
+        const auto is_of_case = [&](const auto& list, std::size_t k) {
             return k < list.size() && list[k].arm == arm && list[k].check_case == check_case;
         };
         Json verdicts = Json::array(), implied = Json::array(), maps = Json::array(), weights = Json::array(),
              lines = Json::array();
-        bool open = false;
-        for (; is_here(j.verdicts, i); ++i) {
+        bool is_open = false;
+        for (; is_of_case(j.verdicts, i); ++i) {
             const Verdict& v = j.verdicts[i];
-            open = open || v.state == State::wrong || (v.state == State::inconclusive && !v.expected);
+            is_open = is_open || v.state == State::wrong || (v.state == State::inconclusive && !v.expected);
             verdicts.push_back({{"name", v.name}, {"state", word(v.state)}, {"text", describe(v)},
                 {"expected", v.why_expected.empty() ? Json(false) : expected_of(v)}});
             if (const Json density = implied_of(v); !density.is_null()) implied.push_back(density);
         }
-        open = open || (out.empty() && !implied.empty());  // only the first table of an implied density is open
-        for (; is_here(j.maps, map); ++map) maps.push_back(map_of(j.maps[map]));
-        for (; is_here(j.lines, line); ++line) lines.push_back(line_of(j.lines[line]));
-        for (; is_here(j.weights, weight); ++weight)
+        is_open = is_open || (out.empty() && !implied.empty());  // only the first table of an implied density is open
+        for (; is_of_case(j.maps, map); ++map) maps.push_back(map_of(j.maps[map]));
+        for (; is_of_case(j.lines, line); ++line) lines.push_back(line_of(j.lines[line]));
+        for (; is_of_case(j.weights, weight); ++weight)
             weights.push_back({{"histogram", histogram(j.weights[weight])}, {"rose", rose_of(j.weights[weight])}});
-        out.push_back({{"arm", arm}, {"case", check_case}, {"open", open}, {"verdicts", verdicts}, {"maps", maps},
+        out.push_back({{"arm", arm}, {"case", check_case}, {"open", is_open}, {"verdicts", verdicts}, {"maps", maps},
             {"lines", lines}, {"implied", implied}, {"weights", weights}});
     }
     return out;

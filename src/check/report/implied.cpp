@@ -19,9 +19,9 @@ constexpr double degrees_per_ring = 5;
 /// A share of the draws over a solid angle, 1/sr.
 struct Implied {
     double p = 0, se = 0;
-    Implied(double seen, double draws, double solid_angle)
-        : p(seen / (draws * solid_angle)),
-          se(std::sqrt(seen * std::max(1 - seen / draws, 0.0)) / (draws * solid_angle)) {}
+    Implied(double count, double draws, double solid_angle)
+        : p(count / (draws * solid_angle)),
+          se(std::sqrt(count * std::max(1 - count / draws, 0.0)) / (draws * solid_angle)) {}
 };
 
 std::vector<double> draws_by_node(const CheckAt& c) {
@@ -39,21 +39,21 @@ std::vector<double> draws_by_node(const CheckAt& c) {
 /// Cuts the cell with the most draws first.
 std::vector<std::size_t> cells_of(const Tree& tree, const std::vector<double>& draws) {
     const auto can_be_cut = [&](std::size_t i) { return tree.nodes()[i].child >= 0 && draws[i] >= 2 * draws_of_cell; };
-    const auto emptier = [&](std::size_t a, std::size_t b) {
+    const auto is_emptier = [&](std::size_t a, std::size_t b) {
         return draws[a] < draws[b] || (draws[a] == draws[b] && a > b);
     };
-    std::vector<std::size_t> open = {0}, out;
-    while (!open.empty()) {
-        std::pop_heap(open.begin(), open.end(), emptier);
-        const std::size_t i = open.back();
-        open.pop_back();
-        if (!can_be_cut(i) || open.size() + out.size() + 2 > most_cells) {
+    std::vector<std::size_t> heap = {0}, out;
+    while (!heap.empty()) {
+        std::pop_heap(heap.begin(), heap.end(), is_emptier);
+        const std::size_t i = heap.back();
+        heap.pop_back();
+        if (!can_be_cut(i) || heap.size() + out.size() + 2 > most_cells) {
             out.push_back(i);
             continue;
         }
         for (int half : {0, 1}) {
-            open.push_back(static_cast<std::size_t>(tree.nodes()[i].child + half));
-            std::push_heap(open.begin(), open.end(), emptier);
+            heap.push_back(static_cast<std::size_t>(tree.nodes()[i].child + half));
+            std::push_heap(heap.begin(), heap.end(), is_emptier);
         }
     }
     std::sort(out.begin(), out.end());
@@ -69,8 +69,8 @@ std::vector<ImpliedDensity::Ring> rings_of(const CheckAt& c) {
     for (std::size_t i = 0; i < last; ++i) {
         const double from = static_cast<double>(i) * degrees_per_ring, to = from + degrees_per_ring;
         const double angle = two_pi * (math::cos(from * two_pi / 360) - math::cos(to * two_pi / 360));
-        const Implied here(rings[i], c.observations.independent, angle);
-        out.push_back({from, to, here.p, here.se});
+        const Implied density(rings[i], c.observations.independent, angle);
+        out.push_back({from, to, density.p, density.se});
     }
     return out;
 }
@@ -82,29 +82,29 @@ void note_implied_density(const CheckAt& c, Verdict& v) {
     const std::vector<double> draws = draws_by_node(c);
     const double n = c.observations.independent;
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    double least =
+    double highest_bound =
         0;  // The highest cell is selected by its lower bound: four standard errors exceed the chance of 512 cells
-    std::size_t highest = 0;
+    std::size_t highest_cell = 0;
     for (std::size_t i : cells_of(tree, draws)) {
         const ChartRect& r = tree.nodes()[i].rect;
-        const Implied here(draws[i], n, r.area());
-        rows.push_back({1 - r.t1, 1 - r.t0, r.phi0, r.phi1, here.p, here.se});
-        if (here.p - 4 * here.se > least) {
-            least = here.p - 4 * here.se;
-            highest = i;
+        const Implied density(draws[i], n, r.area());
+        rows.push_back({1 - r.t1, 1 - r.t0, r.phi0, r.phi1, density.p, density.se});
+        if (density.p - 4 * density.se > highest_bound) {
+            highest_bound = density.p - 4 * density.se;
+            highest_cell = i;
         }
     }
-    const ChartRect& r = tree.nodes()[highest].rect;
+    const ChartRect& r = tree.nodes()[highest_cell].rect;
     const Vec3d w = from_chart(r.at(0.5, 0.5));
-    const Implied peak(draws[highest], n, r.area());
+    const Implied peak(draws[highest_cell], n, r.area());
     v.evidence["implied_by"] = "tree";
     v.evidence["implied_peak"] = {{"wi", {w.x, w.y, w.z}}, {"pdf", peak.p}, {"standard_error", peak.se}};
     v.implied = {rings_of(c), peak.p, peak.se};
-    nlohmann::ordered_json by_rings = nlohmann::ordered_json::array();
+    nlohmann::ordered_json ring_rows = nlohmann::ordered_json::array();
     for (const ImpliedDensity::Ring& ring : v.implied->rings)
-        by_rings.push_back({ring.from, ring.to, ring.pdf, ring.error});
+        ring_rows.push_back({ring.from, ring.to, ring.pdf, ring.error});
     v.evidence["implied_rings"] = {
-        {"columns", {"from_deg", "to_deg", "pdf", "standard_error"}}, {"rows", std::move(by_rings)}};
+        {"columns", {"from_deg", "to_deg", "pdf", "standard_error"}}, {"rows", std::move(ring_rows)}};
     v.evidence["implied_bins"] = {
         {"columns", {"cos_theta_from", "cos_theta_to", "phi_from", "phi_to", "pdf", "standard_error"}},
         {"rows", std::move(rows)}};

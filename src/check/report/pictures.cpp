@@ -38,23 +38,23 @@ double quantile_of(std::span<const Spread1d> parts, double share, double low, do
 
 /// Uniform bins over nearly all of the mass, and a few on either side of it.
 std::vector<double> edges_of(std::span<const Spread1d> parts, double low, double high, int bins) {
-    constexpr double outside = 1e-3;    // of the mass, on either side
-    constexpr double zoom_below = 0.6;  // of the range
-    constexpr int margin_bins = 2;      // bins
-    double from = quantile_of(parts, outside, low, high), to = quantile_of(parts, 1 - outside, low, high);
+    constexpr double tail_share = 1e-3;  // of the mass, on either side
+    constexpr double zoom_share = 0.6;   // of the range
+    constexpr int margin_bins = 2;       // bins
+    double from = quantile_of(parts, tail_share, low, high), to = quantile_of(parts, 1 - tail_share, low, high);
     const double margin = 0.02 * (to - from);
     from = std::max(low, from - margin);
     to = std::min(high, to + margin);
-    if (to - from > zoom_below * (high - low)) {
+    if (to - from > zoom_share * (high - low)) {
         from = low;
         to = high;
     }
-    const int before = from > low ? margin_bins : 0, after = to < high ? margin_bins : 0,
-              inside = bins - before - after;
+    const int lower_bins = from > low ? margin_bins : 0, upper_bins = to < high ? margin_bins : 0,
+              middle_bins = bins - lower_bins - upper_bins;
     std::vector<double> out;
-    for (int i = 0; i < before; ++i) out.push_back(low + (from - low) * i / before);
-    for (int i = 0; i < inside; ++i) out.push_back(from + (to - from) * i / inside);
-    for (int i = 0; i < after; ++i) out.push_back(to + (high - to) * i / after);
+    for (int i = 0; i < lower_bins; ++i) out.push_back(low + (from - low) * i / lower_bins);
+    for (int i = 0; i < middle_bins; ++i) out.push_back(from + (to - from) * i / middle_bins);
+    for (int i = 0; i < upper_bins; ++i) out.push_back(to + (high - to) * i / upper_bins);
     out.push_back(high);
     return out;
 }
@@ -131,16 +131,16 @@ MapEdges map_edges(const std::vector<LeafDraws>& leaves, const Vec3d& middle) {
     MapEdges out;
     out.seam = seam_of(middle);
     std::vector<Spread1d> theta, phi;
-    bool below = false;
+    bool extends_below = false;
     for (const LeafDraws& d : leaves) {
         const double mass = d.observed + d.expected;
         theta.push_back({angle_of(d.rect.t0), angle_of(d.rect.t1), mass});
-        below = below || (d.rect.t1 > 1 && mass > 0.5);
+        extends_below = extends_below || (d.rect.t1 > 1 && mass > 0.5);
         const auto pieces = turned_azimuths(d.rect, out.seam);
         for (const auto& [from, to] : pieces)
             phi.push_back({from, to, mass * (to - from) / (d.rect.phi1 - d.rect.phi0)});
     }
-    out.theta = edges_of(theta, 0, below ? two_pi / 2 : two_pi / 4, map_rings);
+    out.theta = edges_of(theta, 0, extends_below ? two_pi / 2 : two_pi / 4, map_rings);
     out.phi = edges_of(phi, 0, two_pi, map_sectors);
     return out;
 }
@@ -154,8 +154,8 @@ MapEdges even_edges() {
 }
 
 /// Degrees in [0, 360]; the last edge is above the first.
-double degrees_from(double seam, double turned) {
-    const double d = (seam + turned) * 360 / two_pi;
+double degrees_from(double seam, double azimuth) {
+    const double d = (seam + azimuth) * 360 / two_pi;
     return d > 360 + 1e-9 ? d - 360 : d;
 }
 
@@ -191,10 +191,10 @@ std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& 
     for (double theta : edges.theta) out.edges.push_back(1 - math::cos(theta));
     for (double phi : edges.phi) out.sector_edges.push_back(degrees_from(edges.seam, phi));
     for (const LeafDraws& d : leaves)
-        share_out(d.rect.t0, d.rect.t1, out.edges, [&](std::size_t ring, double of_ring) {
+        share_out(d.rect.t0, d.rect.t1, out.edges, [&](std::size_t ring, double ring_share) {
             for (const auto& [from, to] : turned_azimuths(d.rect, edges.seam))
-                share_out(from, to, edges.phi, [&](std::size_t sector, double of_sector) {
-                    const double share = of_ring * of_sector * (to - from) / (d.rect.phi1 - d.rect.phi0);
+                share_out(from, to, edges.phi, [&](std::size_t sector, double sector_share) {
+                    const double share = ring_share * sector_share * (to - from) / (d.rect.phi1 - d.rect.phi0);
                     const std::size_t bin = ring * sectors + sector;
                     out.observed[bin] += share * d.observed;
                     out.expected[bin] += share * d.expected;
@@ -218,7 +218,7 @@ std::optional<BinHistogram> bin_map(const CheckCase& check_case, const CheckAt& 
 
 std::optional<LineHistogram> line_picture(const CheckCase& check_case, const CheckAt& c) {
     constexpr int most_bins = 64;
-    constexpr double outside = 2e-3;  // of the mass of an infinite line, at either end
+    constexpr double tail_share = 2e-3;  // of the mass of an infinite line, at either end
     const DomainChart* domain = c.traits.domain.get();
     if (!domain || !domain->is_line() || !c.plan || c.observations.counts.empty()) return {};
     const bool has_density = check_case.adapter->traits().has_pdf;
@@ -234,7 +234,7 @@ std::optional<LineHistogram> line_picture(const CheckCase& check_case, const Che
     for (const LeafDraws& d : leaves) mass.push_back({d.rect.t0, d.rect.t1, d.observed + d.expected});
     double low = 0, high = out.entries ? 2.0 * part.count / std::bit_ceil(part.count) : 2;
     if (part.is_infinite()) {
-        const double from = quantile_of(mass, outside, 0, 2), to = quantile_of(mass, 1 - outside, 0, 2);
+        const double from = quantile_of(mass, tail_share, 0, 2), to = quantile_of(mass, 1 - tail_share, 0, 2);
         if (!std::isfinite(part.from)) low = from;
         if (!std::isfinite(part.to)) high = to;
     }
@@ -281,11 +281,11 @@ WeightHistogram weight_picture(const CheckCase& check_case, std::span<const doub
     if (!tail.fit || tail.fit->exceedances + 1 >= x.size()) return out;
     out.k = tail.fit->k;
     out.exceedances = static_cast<double>(tail.fit->exceedances);
-    std::vector<double> largest(x.begin(), x.end());
-    std::ranges::sort(largest, std::greater<>());
-    out.threshold = largest[tail.fit->exceedances];
+    std::vector<double> sorted_weights(x.begin(), x.end());
+    std::ranges::sort(sorted_weights, std::greater<>());
+    out.threshold = sorted_weights[tail.fit->exceedances];
     const double median =
-        largest[tail.fit->exceedances / 2] - out.threshold;  // of the exceedances; it determines sigma
+        sorted_weights[tail.fit->exceedances / 2] - out.threshold;  // of the exceedances; it determines sigma
     out.sigma = std::fabs(out.k) < 1e-6 ? median / math::log(2.0) : out.k * median / (math::exp2(out.k) - 1);
     return out;
 }

@@ -9,9 +9,9 @@ namespace crescent::check {
 namespace places_test {
 
 using ::testing::HasSubstr;
-using Compared = Concentration::Compared;
+using Comparison = Concentration::Comparison;
 
-const CheckAt& at(const Explained& r) { return r.outcomes.at(0).at.at(0).at(0); }
+const CheckAt& at(const Explained& r) { return r.outcomes.at(0).checks.at(0).at(0); }
 std::optional<ShareDifference> difference_in(const Explained& r) {
     const CheckAt& c = at(r);
     return largest_difference(*c.plan, c.integrals, c.observations);
@@ -27,9 +27,9 @@ TEST(DifferencesOfShares, AreThoseOfTheRegion) {
     const Explained r = checked(made(draw, cosine_pdf, 3));
     const auto d = difference_in(r);
     ASSERT_TRUE(d);
-    EXPECT_TRUE(d->drawn > 0 && d->drawn < 1 && d->claimed > 0 && d->claimed < 1);
+    EXPECT_TRUE(d->drawn_share > 0 && d->drawn_share < 1 && d->claimed_share > 0 && d->claimed_share < 1);
     const Vec3d w = from_chart(d->rect.at(0.5, 0.5));
-    EXPECT_NEAR(d->drawn / d->claimed, w.x > 0 ? 0.8 : 1.2, 5 * d->drawn_error / d->claimed);
+    EXPECT_NEAR(d->drawn_share / d->claimed_share, w.x > 0 ? 0.8 : 1.2, 5 * d->drawn_error / d->claimed_share);
     EXPECT_THAT(sentence_of(*d, {}).text, HasSubstr("Of the draws"));
     const Explained constant = checked(made(cosine_draw, [](Vec3d o, Vec3d v) { return 1.5 * cosine_pdf(o, v); }));
     EXPECT_FALSE(difference_in(constant));  // it changes no share
@@ -49,11 +49,11 @@ TEST(ConcentrationOfDraws, IsComparedWithThatOfP) {
             [=](Vec3d, Vec3d w) { return power_pdf({0, 0, 1}, claimed, w); }, 2, Traits::WoDomain::none));
         const auto out = concentration_of(at(r));
         EXPECT_TRUE(out);
-        return out.value_or(Concentration{}).compared;
+        return out.value_or(Concentration{}).comparison;
     };
-    EXPECT_EQ(compared(30, 20, {0, 0, 1}), Compared::more);
-    EXPECT_EQ(compared(20, 30, {0, 0, 1}), Compared::less);
-    EXPECT_EQ(compared(50, 50, tilt(15, 40)), Compared::same);
+    EXPECT_EQ(compared(30, 20, {0, 0, 1}), Comparison::more);
+    EXPECT_EQ(compared(20, 30, {0, 0, 1}), Comparison::less);
+    EXPECT_EQ(compared(50, 50, tilt(15, 40)), Comparison::same);
 }
 
 TEST(ConcentrationOfDraws, IsThatOfAUniformDensityInItsSupport) {
@@ -61,9 +61,9 @@ TEST(ConcentrationOfDraws, IsThatOfAUniformDensityInItsSupport) {
     const Explained r = checked(made(draw, [](Vec3d, Vec3d w) { return w.z > 0 ? 1 / two_pi : 0; }));
     const auto out = concentration_of(at(r));
     ASSERT_TRUE(out);
-    EXPECT_NEAR(out->drawn / (two_pi / 2), 1, 0.03);
-    EXPECT_NEAR(out->claimed / two_pi, 1, 0.03);
-    EXPECT_EQ(out->compared, Compared::more);
+    EXPECT_NEAR(out->drawn_solid_angle / (two_pi / 2), 1, 0.03);
+    EXPECT_NEAR(out->claimed_solid_angle / two_pi, 1, 0.03);
+    EXPECT_EQ(out->comparison, Comparison::more);
 }
 
 TEST(DifferencesOfShares, AreSaidInOneWordingAtEveryWo) {

@@ -40,8 +40,8 @@ std::string rows_of(const CheckResult& result) {
     for (const std::string& arm : order) {
         out += fmt::format("{:<18}", arm);
         for (std::string_view name : verdict_names) {
-            const auto found = rows[arm].find(std::string(name));
-            out += fmt::format(" {:<12}", found == rows[arm].end() ? "-" : word(found->second));
+            const auto entry = rows[arm].find(std::string(name));
+            out += fmt::format(" {:<12}", entry == rows[arm].end() ? "-" : word(entry->second));
         }
         end_line(out);
     }
@@ -62,19 +62,20 @@ std::string expected_ones(const CheckResult& result) {
 
 }  // namespace
 
-std::string verdict_table(const CheckResult& result, bool with_right) {
+std::string verdict_table(const CheckResult& result, bool includes_right) {
     const std::string summary = summary_of(result);
     std::string out = summary + (summary.empty() ? "" : "\n") + rows_of(result) + expected_ones(result);
     out += details_of(result);
     for (const Verdict& v : result.verdicts)
-        if (with_right)
+        if (includes_right)
             out += fmt::format("\n{} [{}]\n  {}: {}. {}\n", v.arm, v.check_case, v.name, word(v.state), describe(v));
-    for (const std::string& last : {implied_text(result), unseen_text(result), nothing_drawn_text(result)})
-        if (!last.empty()) out += "\n" + last + "\n";
-    const std::string asked = result.questions > 0 ? fmt::format("; {} questions were answered", result.questions) : "";
+    for (const std::string& text : {implied_text(result), unseen_text(result), nothing_drawn_text(result)})
+        if (!text.empty()) out += "\n" + text + "\n";
+    const std::string questions_text =
+        result.questions > 0 ? fmt::format("; {} questions were answered", result.questions) : "";
     out += fmt::format(
         "\n{}; {} statistical tests share a family-wise error of {:g}; {} failed once, {} again on a fresh seed{}\n",
-        word(result.state), result.tests, result.alpha, result.screened, result.confirmed, asked);
+        word(result.state), result.tests, result.alpha, result.screened, result.confirmed, questions_text);
     return out;
 }
 
@@ -84,11 +85,11 @@ std::string verdict_junit(const CheckResult& result) {
     for (const auto& [arm, device] : result.devices) suite.properties.emplace_back("device of " + arm, device.text());
     for (const Verdict& v : result.verdicts) {
         const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
-        const bool open = v.state == State::skipped || v.state == State::inconclusive;
+        const bool is_open = v.state == State::skipped || v.state == State::inconclusive;
         const std::string next = next_step_text(v);
         const Case state = v.state == State::error ? Case::error
             : fails                                ? Case::failed
-            : open                                 ? Case::skipped
+            : is_open                              ? Case::skipped
                                                    : Case::passed;
         suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.check_case), state,
             fmt::format("{}: {}", word(v.state), v.first_sentence()),
@@ -111,8 +112,8 @@ std::string verdict_sarif(
         if (v.waived || (!v.why_expected.empty() && v.expected)) continue;
         const bool fails = v.state == State::wrong || v.state == State::error || !v.expected;
         if (!fails && v.state != State::inconclusive) continue;
-        const bool open = v.state == State::inconclusive;
-        add(v.name, open ? "warning" : "error",
+        const bool is_open = v.state == State::inconclusive;
+        add(v.name, is_open ? "warning" : "error",
             fmt::format("{} is {} at {}: {}{}", v.arm, word(v.state), v.check_case, v.message(),
                 v.cause.empty() ? "" : " " + v.cause),
             fmt::format("{} {} {}", v.arm, v.check_case, v.name));
@@ -141,11 +142,11 @@ std::string more_draws_text(const NextStep& next, const std::string& flag) {
     constexpr double times_of_thorough = 12;
     constexpr double most_times = 1e6;  // a quick check makes 1.2 million draws: 1e12 take days of any machine
     if (next.times > most_times) return "more draws are needed than can be made.";
-    const std::string needed = fmt::format("about {:.2g} times as many draws are needed", next.times);
-    if (next.thorough) return next.times > 0 ? needed + " as " + flag + " makes." : "";
+    const std::string need_text = fmt::format("about {:.2g} times as many draws are needed", next.times);
+    if (next.thorough) return next.times > 0 ? need_text + " as " + flag + " makes." : "";
     if (!(next.times > 0)) return flag + " draws more.";
-    if (next.times <= times_of_thorough) return flag + " draws more (" + needed + ").";
-    return fmt::format("{}; {} makes only {:g} times as many.", needed, flag, times_of_thorough);
+    if (next.times <= times_of_thorough) return flag + " draws more (" + need_text + ").";
+    return fmt::format("{}; {} makes only {:g} times as many.", need_text, flag, times_of_thorough);
 }
 
 }  // namespace

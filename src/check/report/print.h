@@ -12,9 +12,9 @@
 
 namespace crescent {
 
-/// One line for each finding over all w_o, one line for each arm with its verdicts, then the details; `with_right`:
+/// One line for each finding over all w_o, one line for each arm with its verdicts, then the details; `includes_right`:
 /// every verdict.
-std::string verdict_table(const CheckResult& result, bool with_right = false);
+std::string verdict_table(const CheckResult& result, bool includes_right = false);
 std::string verdict_junit(const CheckResult& result);
 /// Verdicts that fail or are inconclusive and that the caller does not expect, at the file and line of the sampler
 /// (line 0: unknown), for code hosts.

@@ -82,9 +82,9 @@ bool is_whole(const WeightHistogram& w) {
 template <class Picture> Json pictures_json(const std::vector<Picture>& pictures) {
     Json out = Json::array();
     for (const Picture& picture : pictures) {
-        Json& one = out.emplace_back(Json::object());
+        Json& entry = out.emplace_back(Json::object());
         visit_members(picture, [&](const char* key, const auto& value) {
-            if (value != std::remove_cvref_t<decltype(value)>{}) one[key] = value;
+            if (value != std::remove_cvref_t<decltype(value)>{}) entry[key] = value;
         });
     }
     return out;
@@ -112,9 +112,9 @@ void read_member(const StoredJson& object, const char* key, auto& to) {
 
 template <class Picture> std::vector<Picture> read_pictures(const StoredJson& list) {
     std::vector<Picture> out;
-    for (const StoredJson& one : list.entries()) {
-        visit_members(out.emplace_back(), [&](const char* key, auto& value) { read_member(one, key, value); });
-        if (!is_whole(out.back())) one.refuse("expected lists as long as the bins of the picture");
+    for (const StoredJson& entry : list.entries()) {
+        visit_members(out.emplace_back(), [&](const char* key, auto& value) { read_member(entry, key, value); });
+        if (!is_whole(out.back())) entry.refuse("expected lists as long as the bins of the picture");
     }
     return out;
 }
@@ -143,11 +143,11 @@ std::optional<ImpliedDensity> implied_in(const StoredJson& evidence) {
 Sentences sentences_in(const StoredJson& verdict) {
     if (!verdict.contains("sentences")) return {{"", verdict.at("message").get<std::string>()}};
     Sentences out;
-    for (const StoredJson& one : verdict.at("sentences").entries()) {
+    for (const StoredJson& entry : verdict.at("sentences").entries()) {
         Sentence& sentence = out.emplace_back();
-        one.at("what").get_to(sentence.what);
-        one.at("text").get_to(sentence.text);
-        read_member(one, "technique", sentence.technique);
+        entry.at("what").get_to(sentence.what);
+        entry.at("text").get_to(sentence.text);
+        read_member(entry, "technique", sentence.technique);
     }
     return out;
 }
@@ -199,12 +199,12 @@ StoredResult stored_result(const StoredJson& json) {
         result.left_out.push_back({l.at("arm").get<std::string>(), l.at("case").get<std::string>(),
             l.at("verdicts").get<std::vector<std::string>>(), l.at("why").get<std::string>()});
     if (json.contains("devices"))
-        for (const StoredJson& one : json.at("devices").entries()) {
+        for (const StoredJson& entry : json.at("devices").entries()) {
             EvaluationDevice& device =
-                result.devices.emplace_back(one.at("arm").get<std::string>(), EvaluationDevice{}).second;
-            read_member(one, "name", device.name);
-            read_member(one, "driver", device.driver);
-            read_member(one, "precision", device.precision);
+                result.devices.emplace_back(entry.at("arm").get<std::string>(), EvaluationDevice{}).second;
+            read_member(entry, "name", device.name);
+            read_member(entry, "driver", device.driver);
+            read_member(entry, "precision", device.precision);
         }
     for (const StoredJson& verdict : json.at("verdicts").entries()) result.verdicts.push_back(read_verdict(verdict));
     result.maps = read_pictures<BinHistogram>(json.at("maps"));
@@ -218,8 +218,8 @@ StoredResult stored_result(const StoredJson& json) {
 Json cases_of(const CheckResult& result) {
     Json out = Json::array();
     for (const Verdict& v : result.verdicts)
-        if (Json one = {{"arm", v.arm}, {"case", v.check_case}}; out.empty() || out.back() != one)
-            out.push_back(std::move(one));
+        if (Json entry = {{"arm", v.arm}, {"case", v.check_case}}; out.empty() || out.back() != entry)
+            out.push_back(std::move(entry));
     return out;
 }
 
@@ -227,8 +227,8 @@ Json verdict_as_json(const Verdict& v) {
     Json out = {{"arm", v.arm}, {"case", v.check_case}, {"name", v.name}, {"state", word(v.state)},
         {"message", v.message()}, {"sentences", Json::array()}};
     for (const Sentence& sentence : v.sentences) {
-        Json& one = out["sentences"].emplace_back(Json{{"what", sentence.what}, {"text", sentence.text}});
-        if (sentence.technique > 0) one["technique"] = sentence.technique;
+        Json& entry = out["sentences"].emplace_back(Json{{"what", sentence.what}, {"text", sentence.text}});
+        if (sentence.technique > 0) entry["technique"] = sentence.technique;
     }
     if (!v.cause.empty()) out["cause"] = v.cause;
     if (const std::string next = next_step_text(v); !next.empty()) out["status"] = next;
@@ -261,11 +261,11 @@ std::string verdict_json(const CheckResult& result, const ResultSource& source) 
     root["failed_twice"] = result.confirmed;
     if (result.questions > 0) root["questions"] = result.questions;
     for (const auto& [arm, device] : result.devices) {
-        Json one = {{"arm", arm}};
+        Json entry = {{"arm", arm}};
         for (const auto& [key, value] :
             {std::pair("name", &device.name), {"driver", &device.driver}, {"precision", &device.precision}})
-            if (!value->empty()) one[key] = *value;
-        root["devices"].push_back(std::move(one));
+            if (!value->empty()) entry[key] = *value;
+        root["devices"].push_back(std::move(entry));
     }
     if (!result.unmet.empty()) root["unmet_expectations"] = result.unmet;
     root["requested"] = cases_of(result);

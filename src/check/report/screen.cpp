@@ -20,22 +20,22 @@ constexpr std::size_t hanging_indent = 2;
 
 /// What a layout leaves out, the least needed first.
 struct Layout {
-    bool right_apart = true;      // a line for each right verdict
-    bool further_in_full = true;  // all sentences of the findings after the first
-    bool further_apart = true;    // a line for each of these findings
-    bool first_in_full = true;    // all sentences of the first
+    bool lists_right = true;       // a line for each right verdict
+    bool completes_others = true;  // all sentences of the findings after the first
+    bool lists_others = true;      // a line for each of these findings
+    bool completes_first = true;   // all sentences of the first
 };
 
 constexpr Layout layouts[] = {
     {},
-    {.right_apart = false},
-    {.right_apart = false, .further_in_full = false},
-    {.right_apart = false, .further_apart = false},
-    {.right_apart = false, .further_apart = false, .first_in_full = false},
+    {.lists_right = false},
+    {.lists_right = false, .completes_others = false},
+    {.lists_right = false, .lists_others = false},
+    {.lists_right = false, .lists_others = false, .completes_first = false},
 };
 
-std::string shortened(const Verdict& v, bool in_full) {
-    return in_one_line(in_full ? v.message() : v.first_sentence());
+std::string shortened(const Verdict& v, bool is_full) {
+    return in_one_line(is_full ? v.message() : v.first_sentence());
 }
 
 /// " as expected" or " as waived" with the reason; "" for a verdict that is not expected.
@@ -43,12 +43,12 @@ std::string expectation_of(const Finding& f) {
     return f.expected ? fmt::format(" as {}", f.worst->waived ? "waived" : "expected") : "";
 }
 
-ScreenLine line_of(const Finding& f, bool in_full) {
+ScreenLine line_of(const Finding& f, bool is_full) {
     if (f.state == State::error) return {f.state, "error", in_one_line(failure_text(f))};
     const std::string where = where_found(f);
     return {f.state, fmt::format("{}: {}{}", f.name, word(f.state), expectation_of(f)),
         fmt::format("{}{}{} {}", where.empty() ? "" : " ", where, f.expected ? ":" : ".",
-            f.expected ? f.worst->why_expected : shortened(*f.worst, in_full))};
+            f.expected ? f.worst->why_expected : shortened(*f.worst, is_full))};
 }
 
 /// Cause and next step of the first finding, below it.
@@ -66,13 +66,13 @@ void add_findings(
     std::map<std::string, std::vector<std::string>> others;  // names by state
     for (std::size_t i = 0; i < findings.size(); ++i) {
         const Finding& f = findings[i];
-        if (i > 0 && !layout.further_apart) {
+        if (i > 0 && !layout.lists_others) {
             others[fmt::format("{}{}", word(f.state), expectation_of(f))].push_back(f.name);
             continue;
         }
-        out.push_back(line_of(f, i == 0 ? layout.first_in_full : layout.further_in_full));
+        out.push_back(line_of(f, i == 0 ? layout.completes_first : layout.completes_others));
         if (i == 0) add_steps(f, front_end, out);
-        else if (layout.further_in_full && !f.named_cause.empty() && f.named_cause != findings[0].cause)
+        else if (layout.completes_others && !f.named_cause.empty() && f.named_cause != findings[0].cause)
             out.back().text += " " + in_one_line(f.named_cause);
     }
     for (const auto& [state, names] : others)
@@ -84,33 +84,33 @@ std::vector<std::pair<std::string, std::size_t>> names_in(const CheckResult& res
     std::vector<std::pair<std::string, std::size_t>> out;
     for (std::string_view name : verdict_names) {
         std::size_t count = 0;
-        bool other = false;
+        bool has_other = false;
         for (const Verdict& v : result.verdicts) {
             if (v.name != name) continue;
             count += v.state == state;
-            other = other || (v.state != state && v.state != State::skipped);
+            has_other = has_other || (v.state != state && v.state != State::skipped);
         }
-        if (count > 0 && !other) out.emplace_back(name, count);
+        if (count > 0 && !has_other) out.emplace_back(name, count);
     }
     return out;
 }
 
 void add_right(const CheckResult& result, const Layout& layout, std::vector<ScreenLine>& out) {
-    const auto right = names_in(result, State::right);
+    const auto right_names = names_in(result, State::right);
     std::set<std::string> cases;
-    bool by_wo = true;
+    bool has_wo = true;
     for (const Verdict& v : result.verdicts) {
         cases.insert(v.check_case);
-        by_wo = by_wo && v.wo;
+        has_wo = has_wo && v.wo;
     }
-    std::string together;
-    for (const auto& [name, count] : right) {
+    std::string joined_names;
+    for (const auto& [name, count] : right_names) {
         const std::string where =
-            cases.size() > 1 ? fmt::format(" at {} of {} {}", count, cases.size(), by_wo ? "w_o" : "cases") : "";
-        if (layout.right_apart) out.push_back({State::right, name + ": right", where});
-        else together += (together.empty() ? " " : ", ") + name;
+            cases.size() > 1 ? fmt::format(" at {} of {} {}", count, cases.size(), has_wo ? "w_o" : "cases") : "";
+        if (layout.lists_right) out.push_back({State::right, name + ": right", where});
+        else joined_names += (joined_names.empty() ? " " : ", ") + name;
     }
-    if (!together.empty()) out.push_back({State::right, "right:", together});
+    if (!joined_names.empty()) out.push_back({State::right, "right:", joined_names});
 }
 
 /// The verdicts that were skipped everywhere, and what most of them need.
@@ -119,8 +119,8 @@ void add_skipped(const CheckResult& result, std::vector<ScreenLine>& out) {
     std::map<std::string, std::size_t> counts;
     for (const auto& [name, count] : names_in(result, State::skipped)) {
         const auto v = std::ranges::find(result.verdicts, name, &Verdict::name);
-        const std::string needed = shortened(*v, false);
-        if (const std::size_t same = ++counts[needed]; same > counts[reason]) reason = needed;
+        const std::string candidate = shortened(*v, false);
+        if (const std::size_t occurrences = ++counts[candidate]; occurrences > counts[reason]) reason = candidate;
         names += (names.empty() ? " " : ", ") + name;
     }
     if (!names.empty()) out.push_back({State::skipped, "skipped:", fmt::format("{}. {}", names, reason)});
@@ -142,9 +142,9 @@ void break_rows(ScreenLine& line, std::size_t columns) {
     const std::size_t mark = line.state ? 2 : 0;
     std::size_t column = mark + line.head.size();
     std::string text;
-    for (std::size_t at = 0; at < line.text.size();) {
-        const std::size_t end = std::min(line.text.find(' ', at + 1), line.text.size());
-        const std::string next = line.text.substr(at, end - at);
+    for (std::size_t start = 0; start < line.text.size();) {
+        const std::size_t end = std::min(line.text.find(' ', start + 1), line.text.size());
+        const std::string next = line.text.substr(start, end - start);
         if (column + next.size() > columns && column > hanging_indent) {
             text += "\n" + std::string(hanging_indent, ' ');
             column = hanging_indent;
@@ -154,7 +154,7 @@ void break_rows(ScreenLine& line, std::size_t columns) {
             text += next;
             column += next.size();
         }
-        at = end;
+        start = end;
     }
     line.text = text;
 }

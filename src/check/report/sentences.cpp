@@ -23,17 +23,17 @@ std::string place_of(const Example& e, const Traits& traits) { return place_text
 
 /// Without a single draw at which p is positive.
 Sentence empty_sentence(const DrawChecks& c, double mass) {
-    const std::uint64_t empty = c.nothing - c.outside, unused = c.tested - c.nothing;
+    const std::uint64_t empty_draws = c.nothing - c.draws_below, unused_draws = c.draws - c.nothing;
     std::vector<std::string> parts;
     const auto add = [&](std::uint64_t count, const char* what) {
         if (count > 0) parts.push_back(fmt::format("{} {}", count, what));
     };
-    add(c.outside, "have a direction below the surface, where pdf(w) is 0");
-    add(empty, "return no sample (their pdf is 0)");
+    add(c.draws_below, "have a direction below the surface, where pdf(w) is 0");
+    add(empty_draws, "return no sample (their pdf is 0)");
     add(c.deltas, "are delta parts");
-    add(unused > c.deltas ? unused - c.deltas : 0, "cannot be used");
+    add(unused_draws > c.deltas ? unused_draws - c.deltas : 0, "cannot be used");
     return {"no draw of p",
-        fmt::format("p integrates to {:.5g}, but no draw is a direction of p: of {} draws {}.", mass, c.tested,
+        fmt::format("p integrates to {:.5g}, but no draw is a direction of p: of {} draws {}.", mass, c.draws,
             crescent::listed(parts))};
 }
 
@@ -43,8 +43,8 @@ bool is_partly_unresolved(const CheckAt& c) {
 }
 
 /// The integral of p where its points resolve it.
-Sentence integral_of_p(const CheckAt& c, double value, double half) {
-    const std::string integral = with_error(value, half);
+Sentence integral_of_p(const CheckAt& c, double value, double half_width) {
+    const std::string integral = with_error(value, half_width);
     if (!is_partly_unresolved(c)) return {"integral", fmt::format("p integrates to {}.", integral)};
     return {"integral",
         fmt::format("p integrates to {} where its points resolve it; {} % of the draws are elsewhere.", integral,
@@ -52,17 +52,18 @@ Sentence integral_of_p(const CheckAt& c, double value, double half) {
 }
 
 Sentences mass_sentences(const CheckAt& c, const Answer& a) {
-    const double drawn = a.expected + a.difference, half = half_width_95 * a.sd;
-    if (!(drawn > 0)) return {empty_sentence(c.observations.checks, a.expected)};
+    const double drawn_share = a.expected + a.difference, half_width = half_width_95 * a.sd;
+    if (!(drawn_share > 0)) return {empty_sentence(c.observations.checks, a.expected)};
     if (!(a.expected > 0))
         return {{"no integral",
             fmt::format("p is 0 at all {:.0f} points at which it is integrated, and {} % of the samples draw a "
                         "direction.",
-                c.integrals.points, crescent::figures(100 * drawn))}};
-    return {integral_of_p(c, a.expected, half),
+                c.integrals.points, crescent::figures(100 * drawn_share))}};
+    return {integral_of_p(c, a.expected, half_width),
         {"expected",
-            drawn > 1 - 1e-9 ? "Expected 1."
-                             : fmt::format("Expected {:.6g}, the share of the samples that draw a direction.", drawn)}};
+            drawn_share > 1 - 1e-9
+                ? "Expected 1."
+                : fmt::format("Expected {:.6g}, the share of the samples that draw a direction.", drawn_share)}};
 }
 
 /// The sum of h p over the leaves below a node.
@@ -76,33 +77,35 @@ double claimed_below(const CheckAt& c, int node) {
 Sentence node_sentence(const CheckAt& c, const Answer& a) {
     const std::vector<TreeNode>& nodes = c.plan->tree.nodes();
     const TreeNode& x = nodes[static_cast<std::size_t>(a.member)];
-    const double first = claimed_below(c, x.child), both = first + claimed_below(c, x.child + 1);
-    const bool is_first = first <= both - first;
-    const double share = (is_first ? first : both - first) / both, per_draw = first / both / a.expected;
-    const ChartRect& half = nodes[static_cast<std::size_t>(is_first ? x.child : x.child + 1)].rect;
+    const double first_mass = claimed_below(c, x.child), total_mass = first_mass + claimed_below(c, x.child + 1);
+    const bool is_first = first_mass <= total_mass - first_mass;
+    const double share = (is_first ? first_mass : total_mass - first_mass) / total_mass,
+                 per_draw = first_mass / total_mass / a.expected;
+    const ChartRect& half_rect = nodes[static_cast<std::size_t>(is_first ? x.child : x.child + 1)].rect;
     if (!(share > 0))
-        return {"draws where p is 0", fmt::format("Draws fall where p expects none: {}.", region_text(half, c.traits))};
+        return {"draws where p is 0",
+            fmt::format("Draws fall where p expects none: {}.", region_text(half_rect, c.traits))};
     const double difference = a.difference * per_draw;
     return {"share of half a region",
         fmt::format("Of the draws{} {} % are {}, where p has {:.4g} %.",
             x.depth == 0 ? "" : " " + region_text(x.rect, c.traits) + ",",
             with_error(
                 100 * (is_first ? share + difference : share - difference), 100 * half_width_95 * a.sd * per_draw),
-            region_text(half, c.traits), 100 * share)};
+            region_text(half_rect, c.traits), 100 * share)};
 }
 
 Sentence band_sentence(int member, const Answer& a, const Traits& traits) {
     const ChartRect r = rect_of_band(member);
     constexpr double degrees = 360 / two_pi;
-    const bool of_phi = r.t0 == 0 && r.t1 == 2;
+    const bool is_of_phi = r.t0 == 0 && r.t1 == 2;
     const std::string where = traits.domain
         ? traits.domain->text(r)
-        : fmt::format("at {} from {:.4g} to {:.4g} degrees", of_phi ? "azimuths" : "polar angles",
-              degrees * (of_phi ? r.phi0 : angle_of(r.t0)), degrees * (of_phi ? r.phi1 : angle_of(r.t1)));
-    const char* compared = a.difference > 0 ? "more" : "fewer";
-    return {fmt::format("{} draws in a band", compared),
+        : fmt::format("at {} from {:.4g} to {:.4g} degrees", is_of_phi ? "azimuths" : "polar angles",
+              degrees * (is_of_phi ? r.phi0 : angle_of(r.t0)), degrees * (is_of_phi ? r.phi1 : angle_of(r.t1)));
+    const char* comparison = a.difference > 0 ? "more" : "fewer";
+    return {fmt::format("{} draws in a band", comparison),
         fmt::format("{} {} draws than p expects {}.",
-            percent_with_error(std::fabs(a.difference) / a.expected, half_width_95 * a.sd / a.expected), compared,
+            percent_with_error(std::fabs(a.difference) / a.expected, half_width_95 * a.sd / a.expected), comparison,
             where)};
 }
 
@@ -112,8 +115,8 @@ Sentence pair_sentence(
         fmt::format("{} for {:.3g} % of the draws, first at {}{}.", what, 100 * share, place_of(e, traits), values)};
 }
 
-std::string channel_of(const Answer& a, bool of_three) {
-    return of_three ? fmt::format(" in channel {}", a.member + 1) : "";
+std::string channel_of(const Answer& a, bool has_three_channels) {
+    return has_three_channels ? fmt::format(" in channel {}", a.member + 1) : "";
 }
 
 /// What the weights are an estimate of.
@@ -123,18 +126,18 @@ const char* integrand(const Traits& traits) {
 }
 
 Sentences light_sentences(const Answer& a, Family family, const Traits& traits) {
-    const double half = half_width_95 * a.sd;
-    const bool of_three = traits.channels == 3;
+    const double half_width = half_width_95 * a.sd;
+    const bool has_three_channels = traits.channels == 3;
     if (family == Family::support)
         return {{"support",
             fmt::format("p is 0 over {} that carry {} of {}.", traits.domain ? "points" : "directions",
-                percent_with_error(a.difference / a.expected, half / a.expected), integrand(traits))}};
+                percent_with_error(a.difference / a.expected, half_width / a.expected), integrand(traits))}};
     if (family == Family::albedo)
         return {{"albedo",
                     fmt::format("f returns {} times the power of a uniform light{}.",
-                        with_error(1 + a.difference, half), channel_of(a, of_three))},
+                        with_error(1 + a.difference, half_width), channel_of(a, has_three_channels))},
             {"expected", "Expected at most 1."}};
-    const std::string ratio = with_error(1 + a.difference / a.expected, half / a.expected);
+    const std::string ratio = with_error(1 + a.difference / a.expected, half_width / a.expected);
     if (traits.reciprocal_weight)
         return {{"weighted draws",
                     fmt::format("The draws with their weights W give {} times the integral of {} over the support of "
@@ -143,7 +146,7 @@ Sentences light_sentences(const Answer& a, Family family, const Traits& traits) 
             {"expected", "Expected 1."}};
     return {{"weighted draws",
                 fmt::format("The weighted draws give {} times the integral of {}{}.", ratio,
-                    traits.domain ? "f" : "f cos", channel_of(a, of_three))},
+                    traits.domain ? "f" : "f cos", channel_of(a, has_three_channels))},
         {"expected", "Expected 1."}};
 }
 
@@ -158,19 +161,19 @@ Sentence bridge_sentence(const Answer& a) {
 
 /// The sentence of a whole sum.
 Sentence sum_sentence(const Finding& f, const Answer& a, const Traits& traits) {
-    const double half = half_width_95 * a.sd;
+    const double half_width = half_width_95 * a.sd;
     switch (f.first.family) {
         case Family::slope:
         case Family::slope_sets:
             return {"mean of h ln p",
                 fmt::format("The mean of h ln p over the draws is {} than p expects, by {}; h = q / (p + q).",
-                    a.difference > 0 ? "larger" : "smaller", with_error(std::fabs(a.difference), half))};
+                    a.difference > 0 ? "larger" : "smaller", with_error(std::fabs(a.difference), half_width))};
         case Family::centre:
         case Family::centre_sets:
             if (traits.domain) return {"mean", "The mean of the draws differs from that of p."};
             return {"mean direction",
                 fmt::format("The mean direction of the draws is off that of p by {} in {}.",
-                    with_error(2 * a.difference, 2 * half), "xyz"[std::clamp(f.first.member, 0, 2)])};
+                    with_error(2 * a.difference, 2 * half_width), "xyz"[std::clamp(f.first.member, 0, 2)])};
         case Family::depth:
             return {a.expected < few_nodes ? "chi^2" : "chi^2 of many places",
                 fmt::format("Draws and p differ{}: chi^2 is {:.4g}, {:g} expected.",
@@ -180,19 +183,19 @@ Sentence sum_sentence(const Finding& f, const Answer& a, const Traits& traits) {
 }
 
 Sentence invalid_sentence(const InvalidAnswers& a, const Traits& traits) {
-    const bool of_pdf = a.first == InvalidAnswers::Function::pdf;
-    return {of_pdf ? "unusable pdf(w)" : "unusable f(w)",
-        fmt::format("{} is not a number >= 0 at {} of {} {}, first {:g} at {}.", of_pdf ? "pdf(w)" : "f(w)",
-            of_pdf ? a.pdf : a.f, of_pdf ? a.of_pdf : a.of_f, traits.domain ? "points" : "directions", a.value,
-            place_text(traits, a.wi))};
+    const bool is_of_pdf = a.first == InvalidAnswers::Function::pdf;
+    return {is_of_pdf ? "unusable pdf(w)" : "unusable f(w)",
+        fmt::format("{} is not a number >= 0 at {} of {} {}, first {:g} at {}.", is_of_pdf ? "pdf(w)" : "f(w)",
+            is_of_pdf ? a.pdf : a.f, is_of_pdf ? a.pdf_evaluations : a.f_evaluations,
+            traits.domain ? "points" : "directions", a.value, place_text(traits, a.wi))};
 }
 
 }  // namespace
 
-std::vector<double> numbers_of(const Example& e, const Traits& traits, bool of_draw) {
+std::vector<double> numbers_of(const Example& e, const Traits& traits, bool is_draw) {
     std::vector<double> out;
     for (int k = 0; k < traits.own_numbers(); ++k) out.push_back(e.u[k]);
-    if (!of_draw && std::ranges::all_of(out, [](double u) { return u == 0; })) return {};
+    if (!is_draw && std::ranges::all_of(out, [](double u) { return u == 0; })) return {};
     return out;
 }
 
@@ -265,15 +268,15 @@ namespace {
 
 /// A direction, with its length if rounding moved it: at length 1 the fault may not be there.
 std::string with_length(Vec3d w) {
-    const double more = std::sqrt(dot(w, w)) - 1;
-    if (!(std::fabs(more) > 1e-9)) return direction_text(w);
-    return fmt::format("{} of length 1 {} {:.2g}", direction_text(w), more < 0 ? '-' : '+', std::fabs(more));
+    const double excess = std::sqrt(dot(w, w)) - 1;
+    if (!(std::fabs(excess) > 1e-9)) return direction_text(w);
+    return fmt::format("{} of length 1 {} {:.2g}", direction_text(w), excess < 0 ? '-' : '+', std::fabs(excess));
 }
 
 }  // namespace
 
 Sentence sentence_of(const SmallFault& f, const Traits& traits) {
-    std::string out = fmt::format("{}: {:g} of {:g}", f.what, f.times, f.of);
+    std::string out = fmt::format("{}: {:g} of {:g}", f.what, f.times, f.trials);
     if (f.family == Family::jacobian) out += fmt::format(", by up to {:.3g} %", 100 * std::fabs(f.size));
     else if (f.family == Family::mis)
         out += fmt::format(" draws, by up to {:.3g}{}", std::fabs(f.size),
@@ -307,14 +310,15 @@ Sentences valid_sentences(const CheckAt& c) {
 }
 
 Sentences albedo_sentence(const CheckAt& c) {
-    double largest = 0, half = 0;
+    double largest_albedo = 0, half_width = 0;
     for (const Answer& a : c.answers)
-        if (a.family == Family::albedo && a.difference + a.expected > largest) {
-            largest = a.difference + a.expected;
-            half = half_width_95 * a.sd;
+        if (a.family == Family::albedo && a.difference + a.expected > largest_albedo) {
+            largest_albedo = a.difference + a.expected;
+            half_width = half_width_95 * a.sd;
         }
-    if (!(largest > 0)) return {};
-    return {{"albedo", fmt::format("{} of a uniform light is reflected or transmitted.", with_error(largest, half))}};
+    if (!(largest_albedo > 0)) return {};
+    return {{"albedo",
+        fmt::format("{} of a uniform light is reflected or transmitted.", with_error(largest_albedo, half_width))}};
 }
 
 Sentences mean_sentence(const CheckAt& c) {
@@ -330,12 +334,12 @@ Sentences mean_sentence(const CheckAt& c) {
 }  // namespace
 
 Sentences sentences_of_right(const CheckAt& c, std::string_view verdict) {
-    const Estimate& whole = c.integrals.sums[mass];
+    const Estimate& integral = c.integrals.sums[mass];
     if (verdict == "valid") return valid_sentences(c);
     if (verdict == "support")
         return {{"support",
             fmt::format("{} is 0 wherever p is 0, at {:.0f} points.", integrand(c.traits), c.integrals.light.points)}};
-    if (verdict == "normalised") return {integral_of_p(c, whole.value, half_interval(whole))};
+    if (verdict == "normalised") return {integral_of_p(c, integral.value, half_interval(integral))};
     if (verdict == "physics") return albedo_sentence(c);
     if (verdict == "mean") return mean_sentence(c);
     if (const auto [p, families] = least_p(c, verdict); families > 0 && verdict == "density")
@@ -351,20 +355,20 @@ Sentences sentences_of_open(const CheckAt& c, std::string_view verdict) {
         double size, target, ratio;
     };
     const Sizes& s = c.sizes;
-    const Estimate& whole = c.integrals.sums[mass];
+    const Estimate& integral = c.integrals.sums[mass];
     if (verdict == "normalised" && c.is_integral_open())
         return {{"undetermined integral",
             fmt::format("{:.0f} points do not determine the integral of p to {:g} %: they give about {:.2g}, and a "
                         "pole of p may have any integral.",
-                c.integrals.points, 100 * c.most_ratio() * target_constant, whole.value)}};
-    std::vector<Open> open;
+                c.integrals.points, 100 * c.most_ratio() * target_constant, integral.value)}};
+    std::vector<Open> open_sizes;
     const auto add = [&](const char* what, std::optional<double> Sizes::* size, double target) {
-        Sizes only;
-        only.by_leak = s.by_leak;
-        only.by_rotation = s.by_rotation;
-        only.by_parameter = s.by_parameter;
-        only.*size = s.*size;
-        if (s.*size) open.push_back({what, *(s.*size), target, worst_ratio(only)});
+        Sizes sizes;
+        sizes.leak_change = s.leak_change;
+        sizes.rotation_change = s.rotation_change;
+        sizes.parameter_change = s.parameter_change;
+        sizes.*size = s.*size;
+        if (s.*size) open_sizes.push_back({what, *(s.*size), target, worst_ratio(sizes)});
     };
     if (verdict == "normalised") {
         add("relative constant factor of p", &Sizes::constant, target_constant);
@@ -376,8 +380,8 @@ Sentences sentences_of_open(const CheckAt& c, std::string_view verdict) {
             target_rotation);
         add("relative change of an exponent", &Sizes::parameter, target_parameter);
     }
-    if (open.empty()) return {};
-    const Open& worst = *std::ranges::max_element(open, {}, &Open::ratio);
+    if (open_sizes.empty()) return {};
+    const Open& worst = *std::ranges::max_element(open_sizes, {}, &Open::ratio);
     return {{fmt::format("least {}", worst.what),
                 fmt::format("The least {} that would have been found is {:.2g}.", worst.what, worst.size)},
         {"required", fmt::format("Right requires at most {:g}.", c.most_ratio() * worst.target)}};
@@ -393,8 +397,8 @@ bool has_all_weights(const CheckAt& c) { return c.observations.weighted_draws > 
 void note_density(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
     note_implied_density(c, v);
     v.state = State::skipped;
-    const bool of_deltas = static_cast<double>(c.observations.checks.deltas) == c.observations.independent;
-    if (of_deltas || (sampler.has_f() && has_all_weights(c))) return;
+    const bool draws_only_deltas = static_cast<double>(c.observations.checks.deltas) == c.observations.independent;
+    if (draws_only_deltas || (sampler.has_f() && has_all_weights(c))) return;
     v.state = State::inconclusive;
     v.sentences.push_back({"not examined",
         fmt::format("There is {}: whether the draws are right could not be examined.",
@@ -404,14 +408,14 @@ void note_density(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
 }
 
 void note_mean(const SamplerAdapter& sampler, const CheckAt& c, Verdict& v) {
-    const bool tested = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
-    if (tested || c.nothing_drawn) return;  // of several techniques, another one may have draws
-    const bool dark = c.integrals.light.points > 0 && c.integrals.light.all[0].value == 0 &&
-        c.integrals.light.all[1].value == 0 && c.integrals.light.all[2].value == 0;
+    const bool has_mean = std::ranges::any_of(c.answers, [](const Answer& a) { return a.family == Family::mean; });
+    if (has_mean || c.nothing_drawn) return;  // of several techniques, another one may have draws
+    const bool is_dark = c.integrals.light.points > 0 && c.integrals.light.integral[0].value == 0 &&
+        c.integrals.light.integral[1].value == 0 && c.integrals.light.integral[2].value == 0;
     if (c.observations.weightless > 0) {
         v.state = State::skipped;
         v.sentences = {{"no weights", "The draws come with neither a pdf nor a weight."}};
-    } else if (dark) {
+    } else if (is_dark) {
         v.sentences = {{"no light", fmt::format("f is 0 at all {:.0f} points.", c.integrals.light.points)}};
     } else if (has_all_weights(c) && (!sampler.traits().has_pdf || c.scatter.pdf() || c.scatter.f())) {
         v.state = State::inconclusive;

@@ -64,7 +64,7 @@ TEST(SentencesOfRightVerdicts, HaveTheMeasuredNumbers) {
     s.f_value = lambert(0.5);
     s.weights = [](Vec3d, Vec3d) { return Vec3d{0.5, 0, 0}; };
     const Explained r = checked(s);
-    const CheckAt& at = r.outcomes.at(0).at.at(0).at(0);
+    const CheckAt& at = r.outcomes.at(0).checks.at(0).at(0);
     EXPECT_THAT(text_of(sentences_of_right(at, "normalised")), HasSubstr("p integrates to 1.0000"));
     EXPECT_NEAR(std::stod(text_of(sentences_of_right(at, "physics"))), 0.5, 1e-3);
     EXPECT_THAT(text_of(sentences_of_right(at, "mean")), HasSubstr("Weights average to 1.000"));
@@ -73,7 +73,7 @@ TEST(SentencesOfRightVerdicts, HaveTheMeasuredNumbers) {
 
 TEST(SentencesOfFindings, HaveTheSizeOfTheFault) {
     const Explained r = checked(made(cosine_draw, [](Vec3d o, Vec3d w) { return 1.25 * cosine_pdf(o, w); }));
-    const CheckAt& at = r.outcomes.at(0).at.at(0).at(0);
+    const CheckAt& at = r.outcomes.at(0).checks.at(0).at(0);
     const auto mass_finding =
         std::ranges::find_if(at.findings, [](const Finding& f) { return f.first.family == Family::mass; });
     ASSERT_NE(mass_finding, at.findings.end());
@@ -105,7 +105,7 @@ TEST(Sentences, OfANodeStateWhatItsTestMeasured) {
 
 /// pow(1 - cos, 5) is not a number there, and is one at the normal itself.
 TEST(Sentences, HaveTheLengthThatRoundingLeaves) {
-    SmallFault f{.family = Family::corners, .times = 1, .of = 8, .what = "The pdf is not a number >= 0"};
+    SmallFault f{.family = Family::corners, .times = 1, .trials = 8, .what = "The pdf is not a number >= 0"};
     f.wo = Vec3d{0, 0, 1};
     EXPECT_NE(sentence_of(f, {}).text.find("first at w_o = (0, 0, 1), "), std::string::npos);
     f.wo = Vec3d{0, 0, 1 + 0x1p-22};

@@ -32,7 +32,7 @@ std::map<Key, std::set<std::string>> left_out_of(const CheckResult& j) {
 
 struct Count {
     std::size_t cases = 0;
-    bool by_wo = true;  // whether they differ only by w_o
+    bool differs_by_wo = true;  // whether they differ only by w_o
 };
 
 std::map<std::string, Count> count_cases(const CheckResult& j) {
@@ -65,14 +65,15 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& verdicts) {
         for (const Sentence& sentence : v->sentences) {
             const auto states_same = [&](const Sentence& s) { return s.states_same(sentence); };
             if (sentence.what == Sentence::expected || std::ranges::any_of(f.worst->sentences, states_same)) continue;
-            auto same = std::ranges::find_if(others, [&](const Stated& other) { return states_same(*other.sentence); });
-            if (same == others.end()) same = others.insert(others.end(), {&sentence, v->size});
-            const bool larger = !same->cases.empty() && v->size > same->size;
-            if (larger) {
-                same->sentence = &sentence;
-                same->size = v->size;
+            auto match =
+                std::ranges::find_if(others, [&](const Stated& other) { return states_same(*other.sentence); });
+            if (match == others.end()) match = others.insert(others.end(), {&sentence, v->size});
+            const bool is_larger = !match->cases.empty() && v->size > match->size;
+            if (is_larger) {
+                match->sentence = &sentence;
+                match->size = v->size;
             }
-            same->cases.insert(larger ? same->cases.begin() : same->cases.end(), v->check_case);
+            match->cases.insert(is_larger ? match->cases.begin() : match->cases.end(), v->check_case);
         }
     for (Stated& other : others) f.sentences.emplace_back(other.sentence->text, std::move(other.cases));
 }
@@ -81,32 +82,34 @@ void list_sentences(Finding& f, const std::vector<const Verdict*>& verdicts) {
 /// them has.
 void note_range(Finding& f, const std::vector<const Verdict*>& verdicts) {
     double low = 1e300, high = -1e300;
-    const Verdict *least = nullptr, *greatest = nullptr;
-    bool every_wo = true;
+    const Verdict *least_verdict = nullptr, *greatest_verdict = nullptr;
+    bool has_every_wo = true;
     for (const Verdict* v : verdicts) {
         if (f.named_cause.empty()) f.named_cause = v->cause;
-        every_wo = every_wo && v->wo;
+        has_every_wo = has_every_wo && v->wo;
         if (v->wo) {
             low = std::min(low, v->wo->first);
             high = std::max(high, v->wo->first);
         }
         if (!v->integral) continue;
-        if (!least || *v->integral < *least->integral) least = v;
-        if (!greatest || *v->integral > *greatest->integral) greatest = v;
+        if (!least_verdict || *v->integral < *least_verdict->integral) least_verdict = v;
+        if (!greatest_verdict || *v->integral > *greatest_verdict->integral) greatest_verdict = v;
     }
-    if (every_wo && f.count < f.total && high > low) f.range = fmt::format(" ({:g} to {:g} deg)", low, high);
+    if (has_every_wo && f.count < f.total && high > low) f.range = fmt::format(" ({:g} to {:g} deg)", low, high);
     constexpr double one_value = 1.02, no_value = 0.01;
-    if (least && *greatest->integral > one_value * *least->integral + no_value && f.named_cause.empty())
+    if (least_verdict && *greatest_verdict->integral > one_value * *least_verdict->integral + no_value &&
+        f.named_cause.empty())
         f.named_cause = fmt::format("Over these {} p integrates to {:.4g} ({}) up to {:.4g} ({}).", f.cases,
-            *least->integral, least->check_case, *greatest->integral, greatest->check_case);
+            *least_verdict->integral, least_verdict->check_case, *greatest_verdict->integral,
+            greatest_verdict->check_case);
 }
 
 /// The cause of the worst verdict or of another wrong verdict of the same arm, preferably with the same name.
 std::string cause_of(const Finding& f, const CheckResult& j) {
     std::string out = f.worst->cause;
-    for (const bool of_name : {true, false})
+    for (const bool needs_name : {true, false})
         for (const Verdict& v : j.verdicts)
-            if (out.empty() && v.arm == f.arm && v.state == State::wrong && (!of_name || v.name == f.name))
+            if (out.empty() && v.arm == f.arm && v.state == State::wrong && (!needs_name || v.name == f.name))
                 out = v.cause;
     return out;
 }
@@ -129,23 +132,23 @@ std::string describe(const Verdict& v, FrontEnd front_end) { return described(v,
 std::vector<Finding> findings_of(const CheckResult& j) {
     const auto left_out = left_out_of(j);
     const std::map<std::string, Count> counts = count_cases(j);
-    std::map<std::tuple<std::string, std::string, State, bool>, std::size_t> place;
+    std::map<std::tuple<std::string, std::string, State, bool>, std::size_t> positions;
     std::vector<Finding> out;
     std::vector<std::vector<const Verdict*>> members;
     for (const Verdict& v : j.verdicts) {
         if (v.state == State::right || v.state == State::skipped) continue;
-        const auto found = left_out.find({v.arm, v.check_case});
-        if (found != left_out.end() && found->second.count(v.name)) continue;
+        const auto skipped_case = left_out.find({v.arm, v.check_case});
+        if (skipped_case != left_out.end() && skipped_case->second.count(v.name)) continue;
         const bool expected = v.expected && !v.why_expected.empty();
-        const auto [at, fresh] =
-            place.try_emplace({v.arm, v.state == State::error ? "" : v.name, v.state, expected}, out.size());
-        if (fresh) {
+        const auto [entry, is_new] =
+            positions.try_emplace({v.arm, v.state == State::error ? "" : v.name, v.state, expected}, out.size());
+        if (is_new) {
             out.push_back({v.arm, v.name, v.state, expected, 0, counts.at(v.arm).cases,
-                counts.at(v.arm).by_wo ? "w_o" : "cases", nullptr, {}});
+                counts.at(v.arm).differs_by_wo ? "w_o" : "cases", nullptr, {}});
             members.emplace_back();
         }
-        add(out[at->second], v);
-        members[at->second].push_back(&v);
+        add(out[entry->second], v);
+        members[entry->second].push_back(&v);
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
         if (out[i].state == State::wrong) {
@@ -172,8 +175,8 @@ std::vector<Finding> findings_of(const CheckResult& j) {
 std::string where_found(const Finding& f) {
     if (f.count == 1 && !f.worst->place.empty()) return "at " + f.worst->place;
     if (f.total == 1 && f.worst->check_case == without_wo) return "";
-    const char* as = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
-    return fmt::format("at {} of {} {}{}, {} {}", f.count, f.total, f.cases, f.range, as, f.worst->check_case);
+    const char* words = f.count == 1 ? "at" : f.state == State::wrong ? "worst at" : "as at";
+    return fmt::format("at {} of {} {}{}, {} {}", f.count, f.total, f.cases, f.range, words, f.worst->check_case);
 }
 
 std::string failure_text(const Finding& f, FrontEnd front_end) {
@@ -195,12 +198,12 @@ std::string skipped_text(const CheckResult& j) {
     std::set<Key> cases;
     for (const Verdict& v : j.verdicts) cases.insert({v.arm, v.check_case});
     std::vector<std::string> check_cases;
-    bool valid_alone = true;
+    bool keeps_valid = true;
     for (const SkippedCase& l : j.left_out) {
         check_cases.push_back(l.check_case);
-        valid_alone = valid_alone && l.verdicts.size() + 1 == verdict_names.size();
+        keeps_valid = keeps_valid && l.verdicts.size() + 1 == verdict_names.size();
     }
-    return fmt::format("Left out: {} at {} of {} w_o ({}). {}", valid_alone ? "all but valid" : "some verdicts",
+    return fmt::format("Left out: {} at {} of {} w_o ({}). {}", keeps_valid ? "all but valid" : "some verdicts",
         check_cases.size(), cases.size(), fmt::join(check_cases, "; "), j.left_out[0].why);
 }
 
@@ -208,9 +211,9 @@ namespace {
 
 /// The first of many cases, and how many follow.
 std::string listed_cases(const std::vector<std::string>& cases) {
-    constexpr std::size_t shown = 3;
-    if (cases.size() <= shown + 1) return fmt::format("{}", fmt::join(cases, "; "));
-    return fmt::format("{}; {} more", fmt::join(std::span(cases).first(shown), "; "), cases.size() - shown);
+    constexpr std::size_t most_cases = 3;
+    if (cases.size() <= most_cases + 1) return fmt::format("{}", fmt::join(cases, "; "));
+    return fmt::format("{}; {} more", fmt::join(std::span(cases).first(most_cases), "; "), cases.size() - most_cases);
 }
 
 }  // namespace
@@ -242,12 +245,12 @@ std::string in_one_line(std::string text) {
 namespace {
 
 /// One line each for the message, the place and the cause.
-std::vector<std::string> lines_of(const Finding& f, bool with_cause) {
+std::vector<std::string> lines_of(const Finding& f, bool includes_cause) {
     if (f.state == State::error) return {in_one_line(describe(f, FrontEnd::cpp))};
     std::vector<std::string> out = {
         in_one_line(fmt::format("{} is {}: {}", f.name, word(f.state), f.worst->message()))};
     if (const std::string where = where_found(f); !where.empty()) out.push_back("  " + where);
-    if (with_cause && !f.cause.empty()) out.push_back("  " + in_one_line(f.cause));
+    if (includes_cause && !f.cause.empty()) out.push_back("  " + in_one_line(f.cause));
     return out;
 }
 
@@ -265,24 +268,25 @@ std::string next_step_of(const Finding& f) {
 std::string what_is_wrong(const CheckResult& result, std::size_t most_lines) {
     std::vector<Finding> findings = findings_of(result);
     std::erase_if(findings, [](const Finding& f) { return f.expected; });
-    std::vector<std::string> last;
-    if (const std::string skipped = skipped_text(result); !skipped.empty()) last.push_back(in_one_line(skipped));
+    std::vector<std::string> closing_lines;
+    if (const std::string skipped = skipped_text(result); !skipped.empty())
+        closing_lines.push_back(in_one_line(skipped));
     if (!findings.empty())
-        if (const std::string next = next_step_of(findings[0]); !next.empty()) last.push_back(next);
+        if (const std::string next = next_step_of(findings[0]); !next.empty()) closing_lines.push_back(next);
     std::vector<std::string> lines;
-    std::size_t shown = 0;
-    for (; shown < findings.size(); ++shown) {
-        const std::vector<std::string> more =
-            lines_of(findings[shown], shown == 0 || findings[shown].cause != findings[0].cause);
-        const bool others = shown + 1 < findings.size();
-        if (shown > 0 && lines.size() + more.size() + others + last.size() > most_lines) break;
-        lines.insert(lines.end(), more.begin(), more.end());
+    std::size_t index = 0;
+    for (; index < findings.size(); ++index) {
+        const std::vector<std::string> finding_lines =
+            lines_of(findings[index], index == 0 || findings[index].cause != findings[0].cause);
+        const bool has_others = index + 1 < findings.size();
+        if (index > 0 && lines.size() + finding_lines.size() + has_others + closing_lines.size() > most_lines) break;
+        lines.insert(lines.end(), finding_lines.begin(), finding_lines.end());
     }
     std::vector<std::string> others;
-    for (; shown < findings.size(); ++shown)
-        others.push_back(fmt::format("{} ({})", findings[shown].name, word(findings[shown].state)));
+    for (; index < findings.size(); ++index)
+        others.push_back(fmt::format("{} ({})", findings[index].name, word(findings[index].state)));
     if (!others.empty()) lines.push_back(fmt::format("Also not right: {}", fmt::join(others, ", ")));
-    lines.insert(lines.end(), last.begin(), last.end());
+    lines.insert(lines.end(), closing_lines.begin(), closing_lines.end());
     return lines.empty() ? "" : fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
@@ -294,8 +298,8 @@ std::string unseen_text(const CheckResult& result) {
             if (v.state == State::right) largest[kind] = std::max(largest[kind], size);
     std::vector<std::string> sizes;
     const auto add = [&](const char* kind, const char* words, double unit) {
-        if (const auto found = largest.find(kind); found != largest.end())
-            sizes.push_back(fmt::format(fmt::runtime(words), std::min(unit * found->second, unit)));
+        if (const auto entry = largest.find(kind); entry != largest.end())
+            sizes.push_back(fmt::format(fmt::runtime(words), std::min(unit * entry->second, unit)));
     };
     add("constant", "a constant factor of {:.2g} %", 100);
     add("leak", "{:.2g} % of the draws uniform", 100);
@@ -359,17 +363,17 @@ std::string with_error(double v, double se) {
 }
 
 /// The mean over the rings between two angles.
-std::string ring_text(const std::vector<ImpliedDensity::Ring>& fine, double from, double to) {
-    double sum = 0, square = 0, covered = 0;
-    for (const ImpliedDensity::Ring& r : fine) {
+std::string ring_text(const std::vector<ImpliedDensity::Ring>& fine_rings, double from, double to) {
+    double sum = 0, square = 0, covered_angle = 0;
+    for (const ImpliedDensity::Ring& r : fine_rings) {
         if (r.from < from || r.to > to) continue;
         const double angle = math::cos(r.from * pi / 180) - math::cos(r.to * pi / 180);
         sum += r.pdf * angle;
         square += sqr(r.error * angle);
-        covered += angle;
+        covered_angle += angle;
     }
-    if (to > 90) covered = 1;  // the list ends at the last ring with draws
-    return covered > 0 ? with_error(sum / covered, std::sqrt(square) / covered) : "-";
+    if (to > 90) covered_angle = 1;  // the list ends at the last ring with draws
+    return covered_angle > 0 ? with_error(sum / covered_angle, std::sqrt(square) / covered_angle) : "-";
 }
 
 std::string line_of(const ImpliedDensity& d, const std::string& name) {
@@ -382,11 +386,11 @@ std::string line_of(const ImpliedDensity& d, const std::string& name) {
 
 std::string implied_text(const CheckResult& j) {
     std::vector<const Verdict*> verdicts;
-    bool one_arm = true;
+    bool has_one_arm = true;
     for (const Verdict& v : j.verdicts)
         if (v.implied) {
             verdicts.push_back(&v);
-            one_arm = one_arm && v.arm == verdicts[0]->arm;
+            has_one_arm = has_one_arm && v.arm == verdicts[0]->arm;
         }
     if (verdicts.empty()) return "";
     std::string out = fmt::format("{:<20}", "degrees from n");
@@ -395,7 +399,7 @@ std::string implied_text(const CheckResult& j) {
     out += " highest\n";
     for (std::size_t i = 0; i < std::min(verdicts.size(), most_lines); ++i)
         out += line_of(*verdicts[i]->implied,
-            one_arm ? verdicts[i]->check_case : verdicts[i]->arm + " " + verdicts[i]->check_case);
+            has_one_arm ? verdicts[i]->check_case : verdicts[i]->arm + " " + verdicts[i]->check_case);
     if (verdicts.size() > most_lines) out += fmt::format("and {} more\n", verdicts.size() - most_lines);
     return "The density that the draws imply, since there is no pdf(w): 1/sr, the mean over each ring and one standard "
            "error.\n" +

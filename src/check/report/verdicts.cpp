@@ -16,10 +16,10 @@ namespace crescent::check {
 
 namespace {
 
-void add_sizes(const Sizes& s, bool of_points, Verdict& v) {
+void add_sizes(const Sizes& s, bool is_of_points, Verdict& v) {
     const auto add = [&](const char* name, const std::optional<double>& size) {
-        constexpr double nearly_all = 0.99;  // of the draws or of p: no fault of this kind would be found
-        if (!size || *size > nearly_all) return;
+        constexpr double undetectable_share = 0.99;  // of the draws or of p: no fault of this kind would be found
+        if (!size || *size > undetectable_share) return;
         double& largest = v.hidden[name];
         largest = std::max(largest, *size);
         v.evidence["would_have_found"][name] = largest;
@@ -28,13 +28,13 @@ void add_sizes(const Sizes& s, bool of_points, Verdict& v) {
     if (v.name == "mean") add("bias", s.bias);
     if (v.name != "density") return;
     add("leak", s.leak);
-    add(of_points ? "gap" : "cap", s.cap);
-    add(of_points ? "shift" : "rotation", s.rotation);
+    add(is_of_points ? "gap" : "cap", s.cap);
+    add(is_of_points ? "shift" : "rotation", s.rotation);
     add("parameter", s.parameter);
 }
 
 /// The share of the answers or tests that fail, as the size of a fault.
-double share_of(const SmallFault& f) { return std::max(std::fabs(f.size), f.times / std::max(f.of, 1.0)); }
+double share_of(const SmallFault& f) { return std::max(std::fabs(f.size), f.times / std::max(f.trials, 1.0)); }
 
 /// Adds a fault of the answers or of one test, and the random numbers of its first place.
 void add_fault(const SmallFault& f, const Traits& traits, Verdict& v) {
@@ -81,9 +81,10 @@ Sentences describe_worst(const CheckAt& c, const Finding& worst, Verdict& v) {
             out.push_back(sentence_of(*place, c.traits));
             size = std::fabs(place->difference());
             if (const auto spread = concentration_of(c))
-                if (std::optional<Sentence> more = sentence_of(*spread, c.traits)) out.push_back(std::move(*more));
-            v.evidence["largest_difference"] = {{"drawn", place->drawn}, {"drawn_error", place->drawn_error},
-                {"p", place->claimed}, {"p_error", place->claimed_error}};
+                if (std::optional<Sentence> sentence = sentence_of(*spread, c.traits))
+                    out.push_back(std::move(*sentence));
+            v.evidence["largest_difference"] = {{"drawn", place->drawn_share}, {"drawn_error", place->drawn_error},
+                {"p", place->claimed_share}, {"p_error", place->claimed_error}};
         }
     if (out.empty()) out = sentences_of(c, worst);
     if (const Count& invalid = c.observations.checks.invalid; a.family == Family::values && invalid.times > 0)
@@ -97,10 +98,10 @@ Sentences describe_worst(const CheckAt& c, const Finding& worst, Verdict& v) {
 Sentences decide_at(const CheckAt& c, Verdict& v) {
     Sentences out;
     const DrawChecks& checks = c.observations.checks;
-    if (v.name == verdict_names[0] && checks.tested > 0) {
-        const auto tested = static_cast<double>(checks.tested);
-        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing - checks.outside) / tested);
-        v.outside = std::max(v.outside, static_cast<double>(checks.outside) / tested);
+    if (v.name == verdict_names[0] && checks.draws > 0) {
+        const auto draw_count = static_cast<double>(checks.draws);
+        v.nothing = std::max(v.nothing, static_cast<double>(checks.nothing - checks.draws_below) / draw_count);
+        v.outside = std::max(v.outside, static_cast<double>(checks.draws_below) / draw_count);
     }
     for (const SmallFault& f : c.small)
         if (info(f.family).verdict == v.name) {
@@ -138,18 +139,18 @@ Sentences decide_at(const CheckAt& c, Verdict& v) {
             {"required", fmt::format("Right requires at most {:g} %.", 100 * c.most_ratio() * target_bias_of_weights)}};
     }
     if (v.name == "density" || v.name == "normalised") {
-        Sizes only;
+        Sizes sizes;
         if (v.name == "normalised") {
-            only.constant = c.sizes.constant;
-            only.integral = c.sizes.integral;
+            sizes.constant = c.sizes.constant;
+            sizes.integral = c.sizes.integral;
         } else {
-            only = c.sizes;
-            only.constant.reset();
-            only.integral.reset();
+            sizes = c.sizes;
+            sizes.constant.reset();
+            sizes.integral.reset();
         }
-        if (worst_ratio(only) <= c.most_ratio()) return out;
+        if (worst_ratio(sizes) <= c.most_ratio()) return out;
         v.state = State::inconclusive;
-        v.next = {NextStep::Kind::more_draws, worst_ratio(only) * worst_ratio(only) / 25};
+        v.next = {NextStep::Kind::more_draws, worst_ratio(sizes) * worst_ratio(sizes) / 25};
         return sentences_of_open(c, v.name);
     }
     return out;
@@ -168,31 +169,31 @@ void name_technique(const CheckCase& check_case, const CheckAt& c, Sentences& se
 
 /// Faults of the sampler as a whole are reported with its first w_o, but have places of their own.
 void add_faults_of_sampler(const CheckOutcome& outcome, const Traits& traits, Verdict& v) {
-    const bool here = v.state == State::wrong;
+    const bool is_wrong = v.state == State::wrong;
     for (const SmallFault& f : outcome.small) {
         if (info(f.family).verdict != v.name) continue;
         add_fault(f, traits, v);
         v.sentences.push_back(sentence_of(f, traits));
-        if (!here) v.place = f.wo ? "w_o = " + direction_text(*f.wo) : "pairs of directions";
+        if (!is_wrong) v.place = f.wo ? "w_o = " + direction_text(*f.wo) : "pairs of directions";
     }
 }
 
 /// Whether the sampler draws at another w_o.
 bool draws_elsewhere(const CheckOutcome& outcome) {
-    return std::ranges::any_of(outcome.at, [](const std::vector<CheckAt>& techniques) {
+    return std::ranges::any_of(outcome.checks, [](const std::vector<CheckAt>& techniques) {
         return std::ranges::any_of(techniques, [](const CheckAt& c) { return !c.nothing_drawn || c.draws_elsewhere; });
     });
 }
 
 /// A verdict at a w_o where nothing is drawn and p is 0 everywhere: nothing was tested. It is skipped if the sampler
 /// has nothing to draw there or draws elsewhere.
-void note_nothing_drawn(const CheckAt& c, bool elsewhere, bool has_f, Verdict& v) {
+void note_nothing_drawn(const CheckAt& c, bool has_draws_elsewhere, bool has_f, Verdict& v) {
     if (v.name == "valid" || v.name == "physics" || v.state == State::wrong) return;
-    const bool dark = has_f && c.integrals.light.lit.value == 0;
-    v.state = elsewhere || dark ? State::skipped : State::inconclusive;
+    const bool is_dark = has_f && c.integrals.light.lit.value == 0;
+    v.state = has_draws_elsewhere || is_dark ? State::skipped : State::inconclusive;
     v.sentences = {{"not tested",
         fmt::format(
-            "Not tested: none of {} samples is a direction, and p is 0 everywhere.", c.observations.checks.tested)}};
+            "Not tested: none of {} samples is a direction, and p is 0 everywhere.", c.observations.checks.draws)}};
     v.next = {};
     if (v.state == State::inconclusive) v.next_step = "A sampler that draws directions.";
 }
@@ -244,22 +245,22 @@ std::vector<Verdict> verdicts_of(
                 out.push_back(std::move(v));
                 continue;
             }
-            for (const CheckAt& c : outcome.at[k]) {
-                Sentences found = decide_at(c, v);
-                name_technique(check_case, c, found);
-                std::ranges::move(found, std::back_inserter(v.sentences));
+            for (const CheckAt& c : outcome.checks[k]) {
+                Sentences sentences = decide_at(c, v);
+                name_technique(check_case, c, sentences);
+                std::ranges::move(sentences, std::back_inserter(v.sentences));
                 if (kind.add) kind.add(c, v);
                 v.seconds += c.seconds / static_cast<double>(verdict_names.size());
             }
             if (name == "tail") test_tail(check_case, outcome.tails[k], v);
             if (name == "mean") test_plain_mean(outcome.tails[k], v);
-            for (const CheckAt& c : outcome.at[k]) note_limits(*check_case.adapter, c, v);
-            for (const CheckAt& c : outcome.at[k]) withhold(c, v);
-            if (!outcome.at[k].empty() && std::ranges::all_of(outcome.at[k], &CheckAt::nothing_drawn))
-                note_nothing_drawn(outcome.at[k][0], draws_elsewhere(outcome), check_case.adapter->has_f(), v);
+            for (const CheckAt& c : outcome.checks[k]) note_limits(*check_case.adapter, c, v);
+            for (const CheckAt& c : outcome.checks[k]) withhold(c, v);
+            if (!outcome.checks[k].empty() && std::ranges::all_of(outcome.checks[k], &CheckAt::nothing_drawn))
+                note_nothing_drawn(outcome.checks[k][0], draws_elsewhere(outcome), check_case.adapter->has_f(), v);
             if (k == 0) add_faults_of_sampler(outcome, check_case.adapter->traits(), v);
-            if (v.state == State::right && v.sentences.empty() && !outcome.at[k].empty())
-                v.sentences = sentences_of_right(outcome.at[k][0], name);
+            if (v.state == State::right && v.sentences.empty() && !outcome.checks[k].empty())
+                v.sentences = sentences_of_right(outcome.checks[k][0], name);
             out.push_back(std::move(v));
         }
     }

@@ -15,8 +15,8 @@ namespace crescent::check {
 
 Sentences sentences_of(const CheckAt& check, const Finding& finding);
 Sentence sentence_of(const SmallFault& fault, const Traits& traits);
-/// The random numbers of an example; none if it is no draw. `of_draw`: whether it is one even if all its numbers are 0.
-std::vector<double> numbers_of(const Example& example, const Traits& traits, bool of_draw = false);
+/// The random numbers of an example; none if it is no draw. `is_draw`: whether it is one even if all its numbers are 0.
+std::vector<double> numbers_of(const Example& example, const Traits& traits, bool is_draw = false);
 std::vector<double> numbers_of(const SmallFault& fault, const Traits& traits);
 /// The measurement of a right verdict; none for a verdict without one.
 Sentences sentences_of_right(const CheckAt& check, std::string_view verdict);
@@ -30,8 +30,8 @@ Sentences sentences_of_open(const CheckAt& check, std::string_view verdict);
 /// the integral of p, so that a constant factor of p changes neither.
 struct ShareDifference {
     ChartRect rect{};
-    double drawn = 0, drawn_error = 0, claimed = 0, claimed_error = 0;
-    double difference() const { return drawn - claimed; }
+    double drawn_share = 0, drawn_error = 0, claimed_share = 0, claimed_error = 0;
+    double difference() const { return drawn_share - claimed_share; }
     double errors() const;
 };
 /// The largest difference that is clear, in the smallest node that has most of it; none if no node differs clearly.
@@ -46,9 +46,9 @@ std::string share_text(double share, double error);
 /// The solid angles over which draws and p are spread: exp(entropy) over the same cells, sr. A uniform density has the
 /// solid angle of its support.
 struct Concentration {
-    enum class Compared { unknown, more, less, same } compared = Compared::unknown;
-    double drawn = 0, claimed = 0;
-    double error = 0;  // of ln(drawn / claimed)
+    enum class Comparison { unknown, more, less, same } comparison = Comparison::unknown;
+    double drawn_solid_angle = 0, claimed_solid_angle = 0;
+    double error = 0;  // of ln(drawn_solid_angle / claimed_solid_angle)
 };
 /// None over an infinite line.
 std::optional<Concentration> concentration_of(const CheckAt& check);

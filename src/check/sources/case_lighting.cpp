@@ -12,10 +12,10 @@ std::optional<double> CaseDiskLight::distance(Vec3d wi) const {
 }
 
 std::optional<double> CaseAreaLight::distance(Vec3d wi) const {
-    const Vec3d here{};
+    const Vec3d origin{};
     return std::visit(
         [&](const auto& light) -> std::optional<double> {
-            const double t = light.shines_on(here) ? light.body().intersect(here, wi).t : never;
+            const double t = light.shines_on(origin) ? light.body().intersect(origin, wi).t : never;
             return t < never ? std::optional(t) : std::nullopt;
         },
         form);
@@ -25,31 +25,31 @@ double CaseAreaLight::power() const {
     return radiance * std::visit([](const auto& light) { return light.disk_area(); }, form);
 }
 
-std::optional<CaseLighting::Met> CaseLighting::first_met(Vec3d wi) const {
-    std::optional<Met> first;
-    const auto look = [&](const auto& lights) {
+std::optional<CaseLighting::Hit> CaseLighting::first_hit(Vec3d wi) const {
+    std::optional<Hit> nearest;
+    const auto visit = [&](const auto& lights) {
         for (const auto& light : lights)
-            if (const std::optional<double> d = light.distance(wi); d && (!first || *d < first->distance))
-                first = Met{*d, light.radiance};
+            if (const std::optional<double> d = light.distance(wi); d && (!nearest || *d < nearest->distance))
+                nearest = Hit{*d, light.radiance};
     };
-    look(disks);
-    look(area_lights);
-    return first;
+    visit(disks);
+    visit(area_lights);
+    return nearest;
 }
 
 double CaseLighting::operator()(Vec3d wi) const {
     if (wi.z <= 0) return 0;
-    const std::optional<Met> met = first_met(wi);
+    const std::optional<Hit> hit = first_hit(wi);
     if (around) {
         const Vec3d w = frame.to_world(wi);
         if (around->triangles) {
             const std::uint32_t k = around->triangles->nearest(position, w);
-            if (k != no_triangle && (!met || around->triangles->distance(k, position, w) < met->distance))
+            if (k != no_triangle && (!hit || around->triangles->distance(k, position, w) < hit->distance))
                 return crescent::luminance(around->triangles->triangles()[k].radiance);
         }
-        if (!met && around->sky) return crescent::luminance(around->sky->radiance(around->sky->texel_at(w)));
+        if (!hit && around->sky) return crescent::luminance(around->sky->radiance(around->sky->texel_at(w)));
     }
-    return met ? met->radiance : fill;
+    return hit ? hit->radiance : fill;
 }
 
 }  // namespace crescent

@@ -41,10 +41,10 @@ struct CaseLighting {
     Frame<double> frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // of the surface point in that world
     bool even() const { return disks.empty() && area_lights.empty() && !around; }
     /// The nearest light along wi: its distance and its radiance.
-    struct Met {
+    struct Hit {
         double distance, radiance;
     };
-    std::optional<Met> first_met(Vec3d wi) const;
+    std::optional<Hit> first_hit(Vec3d wi) const;
     /// Radiance from wi.
     double operator()(Vec3d wi) const;
 };

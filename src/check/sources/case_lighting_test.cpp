@@ -27,7 +27,7 @@ TEST(CaseLights, TheNearestCounts) {
     light.disks = {{12, {0, 0, 3}, {0, 0, -1}, 3}, overhead};
     EXPECT_FALSE(light.even());
     EXPECT_EQ(light({0, 0, 1}), 20);
-    EXPECT_EQ(light.first_met({0, 0, 1})->distance, 2);
+    EXPECT_EQ(light.first_hit({0, 0, 1})->distance, 2);
     EXPECT_EQ(light(tilt(40)), 12);
     EXPECT_EQ(light(tilt(80)), 0.5);
     EXPECT_EQ(light(tilt(100)), 0);

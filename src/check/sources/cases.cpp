@@ -18,9 +18,9 @@ namespace {
 
 /// A sky of 16 x 8 texels, brighter towards the horizon, with one bright texel at 56 deg from up; and five triangles,
 /// of which the nearest hides a part of the others.
-std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles) {
+std::shared_ptr<const Surroundings> surroundings_named(bool has_sky, bool has_triangles) {
     auto out = std::make_shared<Surroundings>();
-    if (sky) {
+    if (has_sky) {
         auto image = std::make_shared<RgbImage>();
         image->width = 16;
         image->height = 8;
@@ -34,7 +34,7 @@ std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles)
         light.image = std::move(image);
         out->sky.emplace(light);
     }
-    if (triangles) {
+    if (has_triangles) {
         const std::array<Vec3d, 7> p = {{{0.5, 0.1, 1.1}, {1.5, 0.3, 1.0}, {0.8, 1.1, 1.3}, {1.6, 1.3, 1.2},
             {-1.2, 0.4, 0.9}, {-0.4, -0.9, 1.6}, {0.9, 0.5, 0.7}}};
         const std::array<std::array<std::size_t, 3>, 5> corners = {
@@ -43,8 +43,8 @@ std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles)
         for (std::uint32_t k = 0; k < corners.size(); ++k) {
             EmittingTriangle& t = emitting.emplace_back();
             for (std::size_t c = 0; c < 3; ++c) t.corner[c] = p[corners[k][c]];
-            const Vec3d across = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
-            if (dot(across, t.corner[0]) > 0) std::swap(t.corner[1], t.corner[2]);  // its front faces the point
+            const Vec3d normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
+            if (dot(normal, t.corner[0]) > 0) std::swap(t.corner[1], t.corner[2]);  // its front faces the point
             const double radiance = 5.0 + 4.0 * k;
             t.radiance = {radiance, radiance, radiance};
             t.triangle = k;
@@ -58,17 +58,17 @@ std::shared_ptr<const Surroundings> surroundings_named(bool sky, bool triangles)
 /// distance decides and not order; one directly above that faces down (the axis of its frame is -z); and the example of
 /// every other kind of light. Radiances, m.
 CaseLighting light_named(const std::string& name) {
-    const CaseDiskLight oblique{
+    const CaseDiskLight oblique_disk{
         .radiance = 20, .center = 2.0 * tilt(35, 20), .normal = -1.0 * tilt(20, 60), .radius = 0.5};
-    const CaseDiskLight behind{
+    const CaseDiskLight far_disk{
         .radiance = 12, .center = 3.2 * tilt(48, 35), .normal = -1.0 * tilt(60, 40), .radius = 0.9};
-    const CaseDiskLight overhead{.radiance = 20, .center = {0.1, -0.05, 2}, .normal = {0, 0, -1}, .radius = 0.6};
+    const CaseDiskLight overhead_disk{.radiance = 20, .center = {0.1, -0.05, 2}, .normal = {0, 0, -1}, .radius = 0.6};
     const auto has = [&](std::string_view word) { return name.find(word) != std::string::npos; };
     CaseLighting light;
     light.fill = has("fill") ? 1 : 0;
-    if (has("two disks")) light.disks = {behind, oblique};
-    else if (has("overhead")) light.disks = {overhead};
-    else if (has("disk")) light.disks = {oblique};
+    if (has("two disks")) light.disks = {far_disk, oblique_disk};
+    else if (has("overhead")) light.disks = {overhead_disk};
+    else if (has("disk")) light.disks = {oblique_disk};
     for_each_area_light([&]<class Kind>() {
         if (has(Kind::name)) light.area_lights.push_back({10, Kind::example()});
     });
@@ -83,13 +83,14 @@ using Setups = std::vector<CaseSetup>;
 /// The surfaces that an arm declares; without any, every lobe at a medium width, and Lambert.
 Setups setups_of(const SamplerInfo& arm) {
     Setups setups;
-    for (const CaseSurface& on : arm.check_cases)
-        setups.push_back(case_setup(lobe_named(on.lobe), on.lambert, std::string(on.light), on.sharpness));
+    for (const CaseSurface& surface : arm.check_cases)
+        setups.push_back(
+            case_setup(lobe_named(surface.lobe), surface.lambert, std::string(surface.light), surface.sharpness));
     // An arm that is checked only under a disk samples lights, so it is also checked under every other kind.
     const auto add = [&](std::string_view light) {
         setups.push_back(case_setup(LobeKind::none, true, std::string(light), 32));
     };
-    if (std::ranges::any_of(arm.check_cases, [](const CaseSurface& on) { return on.light == "disk"; })) {
+    if (std::ranges::any_of(arm.check_cases, [](const CaseSurface& surface) { return surface.light == "disk"; })) {
         for_each_area_light([&]<class Kind>() { add(Kind::name); });
         add("disk + rectangle");
     }
@@ -101,23 +102,23 @@ Setups setups_of(const SamplerInfo& arm) {
 }
 
 /// The expected behaviour of an arm on a surface at theta_R = theta.
-ExpectedBehaviour theory_of(const SamplerInfo& arm, const CaseSetup& on, double theta_deg) {
-    const SurfaceSetup& f = on.surface;
+ExpectedBehaviour theory_of(const SamplerInfo& arm, const CaseSetup& setup, double theta_deg) {
+    const SurfaceSetup& f = setup.surface;
     return arm.theory ? arm.theory({.rho_d = f.rho_d,
                             .rho_s = f.rho_s,
                             .s = f.s,
                             .alpha = f.alpha,
-                            .fill = on.light.fill,
+                            .fill = setup.light.fill,
                             .theta_deg = theta_deg})
                       : ExpectedBehaviour{};
 }
 
 /// Sets the parameters of this surface and light; removes the keys that it uses from `unused`.
 void apply(const Settings& settings, CaseSetup& setup, Settings& unused) {
-    const auto set = [&](const char* key, bool has, double& to) {
-        const auto found = settings.find(key);
-        if (found == settings.end() || !has) return;
-        to = found->second;
+    const auto set = [&](const char* key, bool applies, double& to) {
+        const auto setting = settings.find(key);
+        if (setting == settings.end() || !applies) return;
+        to = setting->second;
         unused.erase(key);
     };
     SurfaceSetup& f = setup.surface;
@@ -156,33 +157,33 @@ double brdf_value(const SurfaceSetup& f, Vec3d wo, Vec3d wi) {
 }
 
 std::shared_ptr<const SamplerAdapter> sampler_on(const std::string& name, const CheckCase& check_case) {
-    CaseSetup on;
-    on.surface = check_case.surface;
-    on.light = check_case.light;
-    return make_adapter(name, on, check_case.wo);
+    CaseSetup setup;
+    setup.surface = check_case.surface;
+    setup.light = check_case.light;
+    return make_adapter(name, setup, check_case.wo);
 }
 
-std::vector<std::pair<double, double>> wo_grid(bool full) {
+std::vector<std::pair<double, double>> wo_grid(bool is_full) {
     std::vector<std::pair<double, double>> grid = {
         {0, 0}, {1, 200}, {30, 0}, {45, 130}, {60, 250}, {75, 310}, {85, 75}, {89, 180}};
-    if (full)
-        for (std::pair<double, double> extra : {std::pair{0.1, 10.0}, {5.0, 100.0}, {15.0, 20.0}, {40.0, 90.0},
+    if (is_full)
+        for (std::pair<double, double> direction : {std::pair{0.1, 10.0}, {5.0, 100.0}, {15.0, 20.0}, {40.0, 90.0},
                  {55.0, 300.0}, {70.0, 45.0}, {80.0, 165.0}, {87.0, 270.0}})
-            grid.push_back(extra);
+            grid.push_back(direction);
     return grid;
 }
 
-CaseSetup case_setup(LobeKind lobe, bool lambert, const std::string& lighting, double sharpness) {
+CaseSetup case_setup(LobeKind lobe, bool has_lambert, const std::string& lighting, double sharpness) {
     CaseSetup out;
     const LobeInfo* info = lobe == LobeKind::none ? nullptr : &lobe_info(lobe);
     out.surface.lobe = lobe;
-    out.surface.rho_d = lambert ? 0.5 : 0;
+    out.surface.rho_d = has_lambert ? 0.5 : 0;
     out.surface.rho_s = lobe == LobeKind::none ? 0 : 0.4;
     out.has_alpha = info && info->parameter == LobeParameter::alpha;
     out.has_s = info && info->parameter == LobeParameter::s;
     (out.has_alpha ? out.surface.alpha : out.surface.s) = sharpness;
     out.brdf = info ? info->label : "";
-    if (lambert) out.brdf = out.brdf.empty() ? "Lambert" : "Lambert + " + out.brdf;
+    if (has_lambert) out.brdf = out.brdf.empty() ? "Lambert" : "Lambert + " + out.brdf;
     out.lighting = lighting;
     out.light = light_named(lighting);
     return out;
@@ -205,15 +206,16 @@ CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std
     return t;
 }
 
-std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settings, bool full, const Grid& given_grid) {
+std::vector<CheckCase> make_cases(
+    const std::string& arm, const Settings& settings, bool is_full, const Grid& given_grid) {
     std::vector<CheckCase> check_cases;
     const std::vector<std::string> names = sampler_names();
     if (!arm.empty() && std::find(names.begin(), names.end(), arm) == names.end()) {
-        const std::string near = nearest(arm, names);
+        const std::string suggestion = nearest(arm, names);
         throw InputError({"crescent check", 0, 0},
             "no sampler '" + arm + "'" +
-                (near.empty() ? fmt::format("; the list has {}", fmt::join(names, ", "))
-                              : "; did you mean '" + near + "'?"));
+                (suggestion.empty() ? fmt::format("; the list has {}", fmt::join(names, ", "))
+                                    : "; did you mean '" + suggestion + "'?"));
     }
     Settings unused = settings;
     for (const std::string& name : names) {
@@ -221,12 +223,12 @@ std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settin
         Setups setups;
         for (CaseSetup s : setups_of(*find_arm_info(name))) {
             apply(settings, s, unused);
-            bool seen = false;
-            for (const CaseSetup& other : setups) seen = seen || alike(s, other);
-            if (!seen) setups.push_back(s);
+            bool is_listed = false;
+            for (const CaseSetup& other : setups) is_listed = is_listed || alike(s, other);
+            if (!is_listed) setups.push_back(s);
         }
         for (const CaseSetup& s : setups)
-            for (const auto& [theta, azimuth] : given_grid.empty() ? wo_grid(full) : given_grid) {
+            for (const auto& [theta, azimuth] : given_grid.empty() ? wo_grid(is_full) : given_grid) {
                 CheckCase t = make_case_on(s, theta, azimuth, name, make_adapter(name, s, tilt(theta, azimuth)));
                 t.theory = theory_of(*find_arm_info(name), s, theta);
                 check_cases.push_back(std::move(t));
@@ -257,10 +259,10 @@ std::shared_ptr<const SamplerAdapter> with_f_of(
         else inner.evaluate(query, out);
     };
     const auto declare = [owner](SamplerDeclaration& declaration) {
-        const SamplerDeclaration given = owner->declaration();
-        declaration.has_f = declaration.has_drawn_f = given.has_f;
-        declaration.serial = given.serial;
-        declaration.limited = given.limited;
+        const SamplerDeclaration owner_declaration = owner->declaration();
+        declaration.has_f = declaration.has_drawn_f = owner_declaration.has_f;
+        declaration.serial = owner_declaration.serial;
+        declaration.limited = owner_declaration.limited;
     };
     return std::make_shared<DecoratedSampler>(std::move(arm), evaluate, declare);
 }
@@ -281,24 +283,24 @@ namespace {
 
 /// The grid of w_o of a sampler: one w_o if it does not depend on w_o, and w_o below the surface too if it accepts both
 /// sides.
-Grid grid_for(const Traits& traits, bool full) {
+Grid grid_for(const Traits& traits, bool is_full) {
     if (traits.wo == Traits::WoDomain::none) return {{0, 0}};
-    Grid grid = wo_grid(full);
+    Grid grid = wo_grid(is_full);
     if (traits.wo != Traits::WoDomain::both) return grid;
-    for (const auto& [theta, azimuth] : wo_grid(full))
-        if (full || theta == 0 || theta == 30 || theta == 60 || theta == 85) grid.emplace_back(180 - theta, azimuth);
+    for (const auto& [theta, azimuth] : wo_grid(is_full))
+        if (is_full || theta == 0 || theta == 30 || theta == 60 || theta == 85) grid.emplace_back(180 - theta, azimuth);
     return grid;
 }
 
 }  // namespace
 
 std::vector<CheckCase> make_user_cases(
-    const std::shared_ptr<const SamplerAdapter>& given, bool full, const Grid& given_grid) {
+    const std::shared_ptr<const SamplerAdapter>& sampler, bool is_full, const Grid& given_grid) {
     std::vector<CheckCase> check_cases;
     const std::shared_ptr<const SamplerAdapter> adapter =
-        given->traits().reciprocal_weight ? with_bounded_weights(given) : given;
+        sampler->traits().reciprocal_weight ? with_bounded_weights(sampler) : sampler;
     const Traits traits = adapter->traits();
-    const Grid grid = given_grid.empty() ? grid_for(traits, full) : given_grid;
+    const Grid grid = given_grid.empty() ? grid_for(traits, is_full) : given_grid;
     for (const auto& [theta, azimuth] : grid) {
         check_cases.push_back(make_user_case(adapter, theta, azimuth));
         const bool can_be_ranked =
@@ -344,23 +346,23 @@ namespace {
 std::shared_ptr<const SamplerAdapter> on_chart(
     std::shared_ptr<const SamplerAdapter> sampler, const std::shared_ptr<const DomainChart>& chart) {
     const Traits traits = sampler->traits();
-    const auto evaluate = [own = traits.domain, chart, has_pdf = traits.has_pdf](
+    const auto evaluate = [own_chart = traits.domain, chart, has_pdf = traits.has_pdf](
                               const SamplerAdapter& inner, SamplerQuery query, const SamplerAnswers& out) {
-        std::vector<Pair> on_own_chart(query.pairs.begin(), query.pairs.end());
-        for (Pair& p : on_own_chart) p.wi = chart->in_chart(*own, p.wi);
+        std::vector<Pair> own_pairs(query.pairs.begin(), query.pairs.end());
+        for (Pair& p : own_pairs) p.wi = chart->in_chart(*own_chart, p.wi);
         const std::span<const Pair> pairs = query.pairs;
-        query.pairs = on_own_chart;
+        query.pairs = own_pairs;
         inner.evaluate(query, out);
         for (Draw& d : out.draws) {
             if (!(d.pdf > 0) || !std::isfinite(dot(d.wi, d.wi))) continue;
-            const Vec3d moved = own->in_chart(*chart, d.wi);
-            if (has_pdf) d.pdf = own->density(d.wi, d.pdf) / chart->density(moved, 1);
-            d.wi = moved;
+            const Vec3d wi = own_chart->in_chart(*chart, d.wi);
+            if (has_pdf) d.pdf = own_chart->density(d.wi, d.pdf) / chart->density(wi, 1);
+            d.wi = wi;
         }
         if (query.kind == SamplerQuery::Kind::mis_weight) return;
         // From a density on the sampler's own chart to one on the common chart.
         for (std::size_t i = 0; i < pairs.size(); ++i) {
-            const double factor = own->density(on_own_chart[i].wi, 1) / chart->density(pairs[i].wi, 1);
+            const double factor = own_chart->density(own_pairs[i].wi, 1) / chart->density(pairs[i].wi, 1);
             if (!out.values.empty()) out.values[i] *= factor;
             if (!out.channels.empty()) out.channels[i] = out.channels[i] * factor;
         }
@@ -378,17 +380,17 @@ std::shared_ptr<const SamplerAdapter> over_the_domain_of(
     if (a.traits().reciprocal_weight || b->traits().reciprocal_weight)
         throw InputError({"--against", 0, 0}, "is not for samplers with weight=reciprocal, which have no density");
     const std::shared_ptr<const DomainChart> chart = a.traits().domain;
-    const bool infinite = chart && chart->domain().is_infinite();
-    return infinite ? on_chart(b, chart) : b;
+    const bool is_infinite = chart && chart->domain().is_infinite();
+    return is_infinite ? on_chart(b, chart) : b;
 }
 
 }  // namespace
 
 std::vector<CheckCase> sampler_against(
-    const std::shared_ptr<const SamplerAdapter>& given, std::span<const CheckCase> a) {
+    const std::shared_ptr<const SamplerAdapter>& sampler, std::span<const CheckCase> a) {
     std::vector<CheckCase> out;
     const std::shared_ptr<const SamplerAdapter> adapter =
-        a.empty() || !a.front().adapter ? given : over_the_domain_of(*a.front().adapter, given);
+        a.empty() || !a.front().adapter ? sampler : over_the_domain_of(*a.front().adapter, sampler);
     for (const CheckCase& t : a) {
         out.push_back(t);
         out.back().arm = adapter->name();

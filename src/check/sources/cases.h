@@ -86,7 +86,7 @@ public:
           disks_double_(disks_of<double>(light)),
           others_single_(others_of<float>(light)),
           others_double_(others_of<double>(light)),
-          around_(light.around),
+          surroundings_(light.around),
           single_(with_around(point_of<float>(surface, wo, disks_single_, others_single_), light)),
           double_(with_around(point_of<double>(surface, wo, disks_double_, others_double_), light)) {}
     BuiltIn(const BuiltIn&) = delete;
@@ -94,7 +94,7 @@ public:
 
     std::string name() const override { return std::string(A<float>::name); }
     int techniques() const override {
-        if constexpr (paired) return A<float>::techniques;
+        if constexpr (is_paired) return A<float>::techniques;
         else return 1;
     }
     void sample(int technique, Vec3d wo, std::span<const PrimarySample> u, std::span<Draw> out) const override {
@@ -114,7 +114,7 @@ public:
     void mis_weight(int technique, std::span<const Pair> pairs, std::span<double> out) const override {
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             out[i] = 1;
-            if constexpr (paired) {
+            if constexpr (is_paired) {
                 const Vec3<float> o = as<float>(pairs[i].wo), w = as<float>(pairs[i].wi);
                 const float p = density(single_, technique, o, w);
                 const Drawn<float> d{w, {p}};
@@ -129,16 +129,16 @@ public:
     }
 
 protected:
-    static constexpr bool paired = requires { A<float>::techniques; };
+    static constexpr bool is_paired = requires { A<float>::techniques; };
 
     Drawn<float> draw(int technique, Vec3<float> wo, Vec2<float> u) const {
-        if constexpr (paired)
+        if constexpr (is_paired)
             return technique == 0 ? single_.template sample_technique<0>(wo, u)
                                   : single_.template sample_technique<1>(wo, u);
         else return single_.sample(wo, u);
     }
     template <class F> static F density(const A<F>& arm, int technique, Vec3<F> wo, Vec3<F> wi) {
-        if constexpr (paired)
+        if constexpr (is_paired)
             return technique == 0 ? arm.template pdf_technique<0>(wo, wi).v : arm.template pdf_technique<1>(wo, wi).v;
         else return arm.pdf(wo, wi).v;
     }
@@ -148,7 +148,7 @@ protected:
     std::vector<LocalDisk<double>> disks_double_;
     std::vector<LocalLight<float>> others_single_;
     std::vector<LocalLight<double>> others_double_;
-    std::shared_ptr<const Surroundings> around_;
+    std::shared_ptr<const Surroundings> surroundings_;
     A<float> single_;
     A<double> double_;
 };
@@ -157,10 +157,11 @@ protected:
 using Settings = std::map<std::string, double>;
 
 /// Directions from the normal to 89 deg, each with its own azimuth.
-Grid wo_grid(bool full);
+Grid wo_grid(bool is_full);
 /// Every case of one arm, or of all arms if the name is empty, over `grid` or, if that is empty, wo_grid. Throws
 /// InputError for an unknown name.
-std::vector<CheckCase> make_cases(const std::string& arm, const Settings& settings, bool full, const Grid& grid = {});
+std::vector<CheckCase> make_cases(
+    const std::string& arm, const Settings& settings, bool is_full, const Grid& grid = {});
 
 /// Built-in arm `name` on the surface, light and w_o of each of these cases, with A's f if A is not built in.
 std::vector<CheckCase> sampler_named_against(const std::string& name, std::span<const CheckCase> a);
@@ -178,7 +179,7 @@ struct CaseSetup {
     bool has_s = false, has_alpha = false;
 };
 /// A surface and light of the built-in list: a lobe, with or without a Lambert part, under "fill", "disk" or both.
-CaseSetup case_setup(LobeKind lobe, bool lambert, const std::string& lighting, double s_or_alpha);
+CaseSetup case_setup(LobeKind lobe, bool has_lambert, const std::string& lighting, double s_or_alpha);
 /// The case of `sampler` on a surface at one w_o, without its expected behaviour.
 CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std::string arm,
     std::shared_ptr<const SamplerAdapter> adapter);

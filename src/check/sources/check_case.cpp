@@ -11,8 +11,8 @@
 namespace crescent {
 
 std::string CheckCase::text() const {
-    const bool none = adapter && adapter->traits().wo == Traits::WoDomain::none;
-    std::string s = none ? std::string(without_wo) : fmt::format("w_o {:g} deg", theta_deg);
+    const bool has_no_wo = adapter && adapter->traits().wo == Traits::WoDomain::none;
+    std::string s = has_no_wo ? std::string(without_wo) : fmt::format("w_o {:g} deg", theta_deg);
     if (theta_deg > 0) s += fmt::format(" az {:g}", azimuth_deg);
     for (const auto& [name, value] : parameters) s += fmt::format(", {}={:g}", name, value);
     for (const std::string& part : {brdf, lighting})

@@ -64,7 +64,7 @@ using Grid = std::vector<std::pair<double, double>>;
 /// A sampler without BRDF whose draws and p do not depend on w_o, such as that of an environment light, is checked
 /// once.
 std::vector<CheckCase> make_user_cases(
-    const std::shared_ptr<const SamplerAdapter>& adapter, bool full, const Grid& grid = {});
+    const std::shared_ptr<const SamplerAdapter>& adapter, bool is_full, const Grid& grid = {});
 /// The same at one w_o.
 CheckCase make_user_case(const std::shared_ptr<const SamplerAdapter>& adapter, double theta, double azimuth);
 

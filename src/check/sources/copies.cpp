@@ -8,21 +8,21 @@
 namespace crescent {
 
 Copies::Copies(Start start, std::size_t limit)
-    : start_(std::move(start)), limit_(limit), all_{start_()}, free_{all_.front()} {}
+    : start_(std::move(start)), limit_(limit), copies_{start_()}, free_copies_{copies_.front()} {}
 
 SamplerDeclaration Copies::declaration() const {
     const std::lock_guard<std::mutex> guard(lock_);
-    SamplerDeclaration out = all_.front()->declaration();
+    SamplerDeclaration out = copies_.front()->declaration();
     out.serial = false;
     return out;
 }
 
 QueryUsage Copies::spending() const {
     const std::lock_guard<std::mutex> guard(lock_);
-    QueryUsage out = all_.front()->spending();
+    QueryUsage out = copies_.front()->spending();
     out.answers = 0;
-    for (const Copy& copy : all_) out.answers += copy->spending().answers;
-    out.answers -= asked_at_start_;
+    for (const Copy& copy : copies_) out.answers += copy->spending().answers;
+    out.answers -= start_answers_;
     return out;
 }
 
@@ -46,29 +46,29 @@ void Copies::evaluate(const SamplerQuery& query, const SamplerAnswers& out) cons
 Copies::Copy Copies::take() const {
     std::unique_lock<std::mutex> guard(lock_);
     for (;;) {
-        changed_.wait(guard, [&] { return fault_ || !free_.empty() || all_.size() + starting_ < limit_; });
+        changed_.wait(guard, [&] { return fault_ || !free_copies_.empty() || copies_.size() + starting_ < limit_; });
         if (fault_) std::rethrow_exception(fault_);
-        if (!free_.empty()) {
-            Copy copy = std::move(free_.back());
-            free_.pop_back();
+        if (!free_copies_.empty()) {
+            Copy copy = std::move(free_copies_.back());
+            free_copies_.pop_back();
             return copy;
         }
         ++starting_;
         guard.unlock();
-        const Copy copy = started();
+        const Copy copy = start_copy();
         guard.lock();
         --starting_;
         if (copy) {
-            all_.push_back(copy);
-            asked_at_start_ += copy->spending().answers;
+            copies_.push_back(copy);
+            start_answers_ += copy->spending().answers;
             return copy;
         }
-        limit_ = all_.size();
+        limit_ = copies_.size();
     }
 }
 
 /// A further one; null if it cannot start.
-Copies::Copy Copies::started() const {
+Copies::Copy Copies::start_copy() const {
     try {
         return start_();
     } catch (const std::exception&) { return nullptr; }
@@ -76,7 +76,7 @@ Copies::Copy Copies::started() const {
 
 void Copies::give_back(Copy copy) const {
     const std::lock_guard<std::mutex> guard(lock_);
-    free_.push_back(std::move(copy));
+    free_copies_.push_back(std::move(copy));
     changed_.notify_one();
 }
 

@@ -30,7 +30,7 @@ public:
 private:
     using Copy = std::shared_ptr<const SamplerAdapter>;
     Copy take() const;
-    Copy started() const;
+    Copy start_copy() const;
     void give_back(Copy copy) const;
     void give_up(std::exception_ptr fault) const;
 
@@ -38,9 +38,9 @@ private:
     mutable std::mutex lock_;  // guards what follows
     mutable std::condition_variable changed_;
     mutable std::size_t limit_, starting_ = 0;
-    mutable std::vector<Copy> all_, free_;
-    mutable std::uint64_t asked_at_start_ = 0;  // of the further ones
-    mutable std::exception_ptr fault_;          // what queries throw from then on
+    mutable std::vector<Copy> copies_, free_copies_;
+    mutable std::uint64_t start_answers_ = 0;  // of the further ones
+    mutable std::exception_ptr fault_;         // what queries throw from then on
 };
 
 }  // namespace crescent

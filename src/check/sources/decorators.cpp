@@ -36,7 +36,7 @@ struct KeyHash {
 
 template <class Value> using Cache = std::unordered_map<Key, Value, KeyHash>;
 
-bool same(const PrimarySample& a, const PrimarySample& b) { return a.x == b.x && a.y == b.y && a.more == b.more; }
+bool are_same(const PrimarySample& a, const PrimarySample& b) { return a.x == b.x && a.y == b.y && a.more == b.more; }
 
 /// Counts the calls of one case, independent of other cases of the same sampler.
 class Counted : public DecoratedSampler {
@@ -47,8 +47,8 @@ public:
         inner().evaluate(query, out);
     }
     QueryUsage spending() const override {
-        const QueryUsage of_all = inner().spending();
-        return {answers_, of_all.seconds, of_all.allowed};
+        const QueryUsage total = inner().spending();
+        return {answers_, total.seconds, total.allowed};
     }
 
 private:
@@ -64,16 +64,16 @@ public:
     SamplerDeclaration declaration() const override { return declaration_; }
     void evaluate(const SamplerQuery& query, const SamplerAnswers& out) const override {
         const std::size_t technique = static_cast<std::size_t>(query.technique);
-        const bool of_two = technique < pdf_.size();
+        const bool has_cache = technique < pdf_.size();
         switch (query.kind) {
             case Kind::sample:
                 if (caches_draws_) return sample(query, out.draws);
                 break;
             case Kind::pdf:
-                if (caches_draws_ && of_two) return answer(query, plain_pdf_[technique], out.values);
+                if (caches_draws_ && has_cache) return answer(query, plain_pdf_[technique], out.values);
                 break;
             case Kind::exact_pdf:
-                if (of_two) return answer(query, pdf_[technique], out.values);
+                if (has_cache) return answer(query, pdf_[technique], out.values);
                 break;
             case Kind::f: return f(query, out.values);
             case Kind::f_channels: return answer(query, channels_, out.channels);
@@ -87,7 +87,7 @@ public:
     const SamplerAdapter& uncached_sampler() const { return inner(); }
 
 private:
-    struct Drawn {
+    struct DrawSet {
         int technique;
         Vec3d wo;
         std::vector<PrimarySample> u;
@@ -95,7 +95,7 @@ private:
     };
     SamplerDeclaration declaration_;
     bool caches_draws_;
-    mutable std::vector<Drawn> drawn_;
+    mutable std::vector<DrawSet> draw_sets_;
     mutable std::array<Cache<double>, 2> plain_pdf_;  // by technique
     mutable std::array<Cache<double>, 2> pdf_;        // by technique
     mutable Cache<double> f_;
@@ -104,24 +104,24 @@ private:
     void sample(const SamplerQuery& query, std::span<Draw> out) const {
         std::vector<PrimarySample> room;
         const std::span<const PrimarySample> u = query.u.samples(room);
-        for (const Drawn& d : drawn_)
+        for (const DrawSet& d : draw_sets_)
             if (d.technique == query.technique && Key({query.wo, query.wo}) == Key({d.wo, d.wo}) &&
-                std::ranges::equal(d.u, u, same)) {
+                std::ranges::equal(d.u, u, are_same)) {
                 std::ranges::copy(d.draws, out.begin());
                 return;
             }
         inner().evaluate(query, {.draws = out});
-        drawn_.push_back({query.technique, query.wo, {u.begin(), u.end()}, {out.begin(), out.end()}});
+        draw_sets_.push_back({query.technique, query.wo, {u.begin(), u.end()}, {out.begin(), out.end()}});
     }
     void f(const SamplerQuery& query, std::span<double> out) const {
-        SamplerQuery of_f = query;
+        SamplerQuery f_query = query;
         if (declaration_.traits.channels == 1) {
-            of_f.kind = Kind::f;
-            return answer(of_f, f_, out);
+            f_query.kind = Kind::f;
+            return answer(f_query, f_, out);
         }
-        of_f.kind = Kind::f_channels;
+        f_query.kind = Kind::f_channels;
         std::vector<Vec3d> by_channel(out.size());
-        answer(of_f, channels_, std::span(by_channel));
+        answer(f_query, channels_, std::span(by_channel));
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = luminance(by_channel[i]);
     }
     static SamplerAnswers answers_to(std::span<double> out) { return {.values = out}; }
@@ -129,19 +129,19 @@ private:
 
     /// Answers from the cache; the inner sampler is called once with the new pairs, in their order.
     template <class Value> void answer(const SamplerQuery& query, Cache<Value>& cache, std::span<Value> out) const {
-        std::vector<Pair> fresh;
+        std::vector<Pair> new_pairs;
         for (const Pair& p : query.pairs)
-            if (cache.try_emplace(Key(p)).second) fresh.push_back(p);
-        std::vector<Value> values(fresh.size());
-        SamplerQuery of_fresh = query;
-        of_fresh.pairs = fresh;
+            if (cache.try_emplace(Key(p)).second) new_pairs.push_back(p);
+        std::vector<Value> values(new_pairs.size());
+        SamplerQuery new_query = query;
+        new_query.pairs = new_pairs;
         try {
-            if (!fresh.empty()) inner().evaluate(of_fresh, answers_to(std::span(values)));
+            if (!new_pairs.empty()) inner().evaluate(new_query, answers_to(std::span(values)));
         } catch (...) {
-            for (const Pair& p : fresh) cache.erase(Key(p));
+            for (const Pair& p : new_pairs) cache.erase(Key(p));
             throw;
         }
-        for (std::size_t i = 0; i < fresh.size(); ++i) cache[Key(fresh[i])] = values[i];
+        for (std::size_t i = 0; i < new_pairs.size(); ++i) cache[Key(new_pairs[i])] = values[i];
         for (std::size_t i = 0; i < query.pairs.size(); ++i) out[i] = cache[Key(query.pairs[i])];
     }
 };
@@ -158,8 +158,8 @@ Side PerDirectionCache::of(const CheckCase& check_case, std::uint32_t stream) {
     if (!check_case.adapter->serial())
         return out.check_case.adapter = cached(check_case.adapter), out;  // called by many threads
     const std::array<double, 3> wo = {check_case.wo.x, check_case.wo.y, check_case.wo.z};
-    if (cached_of_ != check_case.adapter || wo != wo_) {
-        cached_of_ = check_case.adapter;
+    if (sampler_ != check_case.adapter || wo != wo_) {
+        sampler_ = check_case.adapter;
         wo_ = wo;
         stream_ = stream;
         cache_ = cached(check_case.adapter, true);
@@ -193,9 +193,9 @@ std::shared_ptr<const SamplerAdapter> limited_in_time(std::shared_ptr<const Samp
     using Clock = std::chrono::steady_clock;
     if (!(seconds > 0)) return sampler;
     return std::make_shared<DecoratedSampler>(std::move(sampler),
-        [seconds, began = Clock::now()](
+        [seconds, start = Clock::now()](
             const SamplerAdapter& inner, const SamplerQuery& query, const SamplerAnswers& out) {
-            if (query.is_counted() && std::chrono::duration<double>(Clock::now() - began).count() > seconds)
+            if (query.is_counted() && std::chrono::duration<double>(Clock::now() - start).count() > seconds)
                 throw SamplerTimeout("the limit of time is reached");
             inner.evaluate(query, out);
         });

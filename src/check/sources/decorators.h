@@ -41,7 +41,7 @@ public:
     Side of(const CheckCase& check_case, std::uint32_t stream);
 
 private:
-    std::shared_ptr<const SamplerAdapter> cached_of_, cache_;
+    std::shared_ptr<const SamplerAdapter> sampler_, cache_;
     std::array<double, 3> wo_{};
     std::uint32_t stream_ = 0;
 };

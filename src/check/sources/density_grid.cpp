@@ -34,16 +34,16 @@ std::size_t cell_of(const std::vector<double>& edges, double v) {
     return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(cell, 0, static_cast<std::ptrdiff_t>(edges.size()) - 2));
 }
 
-std::size_t nearest_of(const std::vector<double>& sorted, double v) {
-    const auto above = std::lower_bound(sorted.begin(), sorted.end(), v);
-    if (above == sorted.end() || (above != sorted.begin() && v - above[-1] < *above - v))
-        return static_cast<std::size_t>(above - sorted.begin()) - 1;
-    return static_cast<std::size_t>(above - sorted.begin());
+std::size_t nearest_of(const std::vector<double>& values, double v) {
+    const auto upper = std::lower_bound(values.begin(), values.end(), v);
+    if (upper == values.end() || (upper != values.begin() && v - upper[-1] < *upper - v))
+        return static_cast<std::size_t>(upper - values.begin()) - 1;
+    return static_cast<std::size_t>(upper - values.begin());
 }
 
 std::size_t product_of_sizes(const std::vector<std::vector<double>>& entries) {
     std::size_t out = 1;
-    for (const std::vector<double>& of_axis : entries) out *= of_axis.size();
+    for (const std::vector<double>& axis_entries : entries) out *= axis_entries.size();
     return out;
 }
 
@@ -59,18 +59,18 @@ DensityGrid::DensityGrid(std::vector<GridAxis> axes, std::span<const double> row
             entries_[a] = distinct(std::move(values), tolerance * axes_[a].scale);
         }
     std::string sizes;
-    bool full = count > 0 && product_of_sizes(entries_) == count;
+    bool is_full = count > 0 && product_of_sizes(entries_) == count;
     for (std::size_t a = 0; a < axes_.size(); ++a) {
-        full = full && entries_[a].size() >= axes_[a].fewest;
+        is_full = is_full && entries_[a].size() >= axes_[a].fewest_values;
         sizes += fmt::format("{}{} values of {}", sizes.empty() ? "" : " and ", entries_[a].size(), axes_[a].name);
     }
-    if (!full) throw std::invalid_argument(fmt::format("expected a full grid: {} are not {} entries", sizes, count));
+    if (!is_full) throw std::invalid_argument(fmt::format("expected a full grid: {} are not {} entries", sizes, count));
     for (std::size_t a = 0; a < axes_.size(); ++a) {
         const GridAxis& axis = axes_[a];
-        const auto wanted = static_cast<std::size_t>(axis.integral ? axis.to - axis.from + 1 : 0);
-        if (axis.integral && entries_[a].size() != wanted)
+        const auto expected_count = static_cast<std::size_t>(axis.is_integral ? axis.to - axis.from + 1 : 0);
+        if (axis.is_integral && entries_[a].size() != expected_count)
             throw std::invalid_argument(
-                fmt::format("expected all {} values of {}, not {}", wanted, axis.name, entries_[a].size()));
+                fmt::format("expected all {} values of {}, not {}", expected_count, axis.name, entries_[a].size()));
         edges_.push_back(edges_of(entries_[a], axis));
     }
     values_.assign(count, std::nan(""));
@@ -97,8 +97,8 @@ double DensityGrid::bend_along(std::size_t axis, std::size_t index) const {
     const std::vector<double>& x = entries_[axis];
     const std::size_t n = x.size(), step = stride(axis), i = index / step % n;
     const auto p = [&](std::size_t k) { return values_[index - i * step + k * step]; };
-    if (axes_[axis].integral) return 0;
-    if (axes_[axis].periodic) return std::fabs(p(i) - 0.5 * (p((i + n - 1) % n) + p((i + 1) % n)));
+    if (axes_[axis].is_integral) return 0;
+    if (axes_[axis].is_periodic) return std::fabs(p(i) - 0.5 * (p((i + n - 1) % n) + p((i + 1) % n)));
     if (n < 3) return 0;
     const std::size_t c = std::clamp<std::size_t>(i, 1, n - 2);
     const double t = (x[c] - x[c - 1]) / (x[c + 1] - x[c - 1]);
@@ -111,18 +111,18 @@ void DensityGrid::find_bends() {
         for (std::size_t a = 0; a < axes_.size(); ++a) bends_[i] += bend_along(a, i);
     for (std::size_t i = 0; i < values_.size(); ++i) bends_[i] = std::max(bends_[i], spreads_[i]);
     for (std::size_t a = 0; a + 1 < axes_.size(); ++a) {
-        const std::size_t n = entries_[a].size(), around = entries_[a + 1].size(), step = stride(a + 1);
+        const std::size_t n = entries_[a].size(), ring_size = entries_[a + 1].size(), step = stride(a + 1);
         for (std::size_t i = 0; i < values_.size(); ++i) {
             const std::size_t row = i / stride(a) % n;
-            const bool last = row + 1 == n;
-            if ((row > 0 && !last) || !axes_[a].poles[last] || i / step % around > 0) continue;
-            double least = values_[i], largest = values_[i];
-            for (std::size_t k = 1; k < around; ++k) {
-                least = std::min(least, values_[i + k * step]);
-                largest = std::max(largest, values_[i + k * step]);
+            const bool is_last = row + 1 == n;
+            if ((row > 0 && !is_last) || !axes_[a].poles[is_last] || i / step % ring_size > 0) continue;
+            double least_value = values_[i], largest_value = values_[i];
+            for (std::size_t k = 1; k < ring_size; ++k) {
+                least_value = std::min(least_value, values_[i + k * step]);
+                largest_value = std::max(largest_value, values_[i + k * step]);
             }
-            double& variation = variation_at_pole_[a][last];
-            variation = std::max(variation, largest - least);
+            double& variation = variation_at_pole_[a][is_last];
+            variation = std::max(variation, largest_value - least_value);
         }
     }
 }
@@ -136,12 +136,12 @@ bool DensityGrid::contains(std::span<const double> x) const {
 std::size_t DensityGrid::cell_index(std::span<const double> x) const {
     std::size_t index = 0;
     for (std::size_t a = 0; a < axes_.size(); ++a)
-        index =
-            index * entries_[a].size() + (axes_[a].integral ? nearest_of(entries_[a], x[a]) : cell_of(edges_[a], x[a]));
+        index = index * entries_[a].size() +
+            (axes_[a].is_integral ? nearest_of(entries_[a], x[a]) : cell_of(edges_[a], x[a]));
     return index;
 }
 
-double DensityGrid::of_cell(std::span<const double> x) const { return values_[cell_index(x)]; }
+double DensityGrid::cell_value(std::span<const double> x) const { return values_[cell_index(x)]; }
 
 GridCell DensityGrid::cell(std::size_t index) const {
     GridCell out{.value = values_[index]};
@@ -164,48 +164,48 @@ template <class Each> void DensityGrid::for_each_near(std::size_t index, std::si
         count *= sizes[a];
     }
     for (std::size_t k = 0; k < count; ++k) {
-        std::size_t rest = k, near = 0;
+        std::size_t remainder = k, neighbour = 0;
         for (std::size_t a = 0; a < axes_.size(); ++a) {
-            near += (first[a] + rest % sizes[a]) * stride(a);
-            rest /= sizes[a];
+            neighbour += (first[a] + remainder % sizes[a]) * stride(a);
+            remainder /= sizes[a];
         }
-        each(near);
+        each(neighbour);
     }
 }
 
 void DensityGrid::replace(std::vector<double> values) {
     values_ = std::move(values);
     spreads_.assign(values_.size(), 0);
-    std::vector<std::size_t> unknown;
+    std::vector<std::size_t> unknown_cells;
     for (std::size_t i = 0; i < values_.size(); ++i)
-        if (std::isnan(values_[i])) unknown.push_back(i);
-    while (!unknown.empty() && unknown.size() < values_.size()) {
-        std::vector<std::size_t> later;
-        std::vector<std::pair<std::size_t, double>> found;
-        for (std::size_t i : unknown) {
-            double sum = 0, least = INFINITY, largest = -INFINITY, error = 0;
-            std::size_t neighbours = 0;
-            for_each_near(i, 1, [&](std::size_t near) {
-                if (std::isnan(values_[near])) return;
-                sum += values_[near];
-                ++neighbours;
+        if (std::isnan(values_[i])) unknown_cells.push_back(i);
+    while (!unknown_cells.empty() && unknown_cells.size() < values_.size()) {
+        std::vector<std::size_t> later_cells;
+        std::vector<std::pair<std::size_t, double>> means;
+        for (std::size_t i : unknown_cells) {
+            double sum = 0, least_value = INFINITY, largest_value = -INFINITY, error = 0;
+            std::size_t neighbour_count = 0;
+            for_each_near(i, 1, [&](std::size_t neighbour) {
+                if (std::isnan(values_[neighbour])) return;
+                sum += values_[neighbour];
+                ++neighbour_count;
             });
-            if (neighbours == 0) {
-                later.push_back(i);
+            if (neighbour_count == 0) {
+                later_cells.push_back(i);
                 continue;
             }
-            for_each_near(i, 2, [&](std::size_t near) {
-                if (std::isnan(values_[near])) return;
-                least = std::min(least, values_[near]);
-                largest = std::max(largest, values_[near]);
-                error = std::max(error, spreads_[near]);
+            for_each_near(i, 2, [&](std::size_t neighbour) {
+                if (std::isnan(values_[neighbour])) return;
+                least_value = std::min(least_value, values_[neighbour]);
+                largest_value = std::max(largest_value, values_[neighbour]);
+                error = std::max(error, spreads_[neighbour]);
             });
-            spreads_[i] = largest - least + error;
-            found.emplace_back(i, sum / static_cast<double>(neighbours));
+            spreads_[i] = largest_value - least_value + error;
+            means.emplace_back(i, sum / static_cast<double>(neighbour_count));
         }
-        if (found.empty()) break;
-        for (const auto& [i, value] : found) values_[i] = value;
-        unknown = std::move(later);
+        if (means.empty()) break;
+        for (const auto& [i, value] : means) values_[i] = value;
+        unknown_cells = std::move(later_cells);
     }
     for (double& value : values_)
         if (std::isnan(value)) value = 0;
@@ -216,14 +216,14 @@ DensityGrid::Interval DensityGrid::interval_at(std::size_t axis, double x) const
     const std::vector<double>& entries = entries_[axis];
     const std::size_t n = entries.size();
     if (n == 1) return {0, 0, 0};
-    const auto above = std::upper_bound(entries.begin(), entries.end(), x) - entries.begin();
-    if (!axes_[axis].periodic) {
+    const auto upper = std::upper_bound(entries.begin(), entries.end(), x) - entries.begin();
+    if (!axes_[axis].is_periodic) {
         const auto low =
-            static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(n) - 2));
+            static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(upper - 1, 0, static_cast<std::ptrdiff_t>(n) - 2));
         return {low, low + 1, (x - entries[low]) / (entries[low + 1] - entries[low])};
     }
     const double period = axes_[axis].to - axes_[axis].from;
-    const auto next = static_cast<std::size_t>(above);
+    const auto next = static_cast<std::size_t>(upper);
     Interval out{(next + n - 1) % n, next % n, 0};
     const double from = entries[out.low] - (next == 0 ? period : 0), to = entries[out.high] + (next == n ? period : 0);
     if (to > from) out.share = (x - from) / (to - from);
@@ -241,14 +241,14 @@ template <class Each> void DensityGrid::for_each_corner(const Intervals& interva
     for (std::size_t corner = 0; corner < corners; ++corner) {
         std::size_t index = 0;
         for (std::size_t a = 0; a < axes_.size(); ++a) {
-            const bool high = corner >> (axes_.size() - 1 - a) & 1;
-            index = index * entries_[a].size() + (high ? intervals[a].high : intervals[a].low);
+            const bool is_high = corner >> (axes_.size() - 1 - a) & 1;
+            index = index * entries_[a].size() + (is_high ? intervals[a].high : intervals[a].low);
         }
         each(index);
     }
 }
 
-double DensityGrid::between(std::span<const double> x) const {
+double DensityGrid::value_between(std::span<const double> x) const {
     const Intervals intervals = intervals_at(x);
     std::array<double, 1 << most_axes> values{};
     std::size_t count = 0;

@@ -13,10 +13,10 @@ struct GridAxis {
     std::string name;             // of its column
     double from = 0, to = 1;      // the ends of the domain; either may be infinite: then the outer cells are symmetric
     double scale = 1;             // of its values, for what counts as equal
-    bool periodic = false;        // `to` is the same place as `from`
+    bool is_periodic = false;     // `to` is the same place as `from`
     std::array<bool, 2> poles{};  // whether the next axis goes around the first and the last end
-    bool integral = false;        // has all integers from `from` to `to`
-    std::size_t fewest = 1;       // distinct values
+    bool is_integral = false;     // has all integers from `from` to `to`
+    std::size_t fewest_values = 1;  // distinct values
 };
 
 /// An entry of a grid with the cell around it.
@@ -37,12 +37,12 @@ public:
     DensityGrid(std::vector<GridAxis> axes, std::span<const double> rows);
 
     /// p of the cell; 0 outside the grid.
-    double of_cell(std::span<const double> x) const;
+    double cell_value(std::span<const double> x) const;
     /// p between the entries.
-    double between(std::span<const double> x) const;
-    /// The error of between().
+    double value_between(std::span<const double> x) const;
+    /// The error of value_between().
     double error_between(std::span<const double> x) const;
-    /// The error of of_cell(): 0 but for the values that replace() found from others.
+    /// The error of cell_value(): 0 but for the values that replace() found from others.
     double error_of_cell(std::span<const double> x) const { return spreads_[cell_index(x)]; }
     /// Whether x belongs to a cell.
     bool contains(std::span<const double> x) const;

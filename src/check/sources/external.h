@@ -67,8 +67,8 @@ struct Handshake {
 
 /// The expected handshake, and the received one; both empty if it is valid.
 struct HandshakeError {
-    std::string expected, got;
-    explicit operator bool() const { return !got.empty(); }
+    std::string expected, answer_text;
+    explicit operator bool() const { return !answer_text.empty(); }
 };
 /// Reads the first line of a program.
 HandshakeError read_handshake(std::string_view answer, Handshake& out);

@@ -13,13 +13,13 @@ namespace crescent {
 namespace {
 
 constexpr double degree = pi / 180, farthest_normal = 60 * degree, farthest_wo = 15 * degree;
-constexpr double least_cosine = 0.1;             // of w_o about a neighbour's normal
-constexpr int shadow_period = 8, in_shadow = 3;  // the fourth of eight
+constexpr double least_cosine = 0.1;                // of w_o about a neighbour's normal
+constexpr int shadow_period = 8, shadow_index = 3;  // the fourth of eight
 
 /// At this angle from an axis, and at an azimuth of a share of a turn.
 Vec3d tilted(Vec3d axis, double angle, double turn) {
-    const math::SinCos polar = math::sincos(angle), around = math::sincos(2 * pi * turn);
-    return frame_about(axis).to_world({polar.sin * around.cos, polar.sin * around.sin, polar.cos});
+    const math::SinCos polar = math::sincos(angle), azimuth = math::sincos(2 * pi * turn);
+    return frame_about(axis).to_world({polar.sin * azimuth.cos, polar.sin * azimuth.sin, polar.cos});
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ std::vector<Neighbour> neighbours_of(Vec3d wo, int count) {
         }
         if (side * dot(next.wo, next.n) < least_cosine) next.wo = wo;
         if (side * dot(next.wo, next.n) <= 0) next.n = {0, 0, 1};
-        next.light = k % shadow_period == in_shadow ? 0 : math::exp(math::log(2.0) * (2 * u[4] - 1));
+        next.light = k % shadow_period == shadow_index ? 0 : math::exp(math::log(2.0) * (2 * u[4] - 1));
         out.push_back(next);
     }
     return out;
@@ -50,8 +50,10 @@ std::vector<Neighbour> neighbours_of(Vec3d wo, int count) {
 
 void add_neighbours(std::span<const Neighbour> neighbours, std::vector<double>& to) {
     to.push_back(static_cast<double>(neighbours.size()));
-    for (const Neighbour& each : neighbours)
-        to.insert(to.end(), {each.wo.x, each.wo.y, each.wo.z, each.n.x, each.n.y, each.n.z, each.light});
+    for (const Neighbour& neighbour : neighbours)
+        to.insert(to.end(),
+            {neighbour.wo.x, neighbour.wo.y, neighbour.wo.z, neighbour.n.x, neighbour.n.y, neighbour.n.z,
+                neighbour.light});
 }
 
 Vec3d to_local(const Neighbour& neighbour, Vec3d w) {

@@ -33,10 +33,10 @@ namespace {
 /// A multiple of 2^-24, which single precision represents exactly: u itself, or else an odd one, the middle of an
 /// interval of 2^-23. Multiples rounded down would favour one side of every threshold within the sampler.
 double for_float(double u) {
-    const double in_steps = u * 0x1p24;
-    const auto below = static_cast<std::uint32_t>(in_steps);
-    const bool is_multiple = below == in_steps;
-    return std::min((is_multiple ? below : below | 1) * 0x1p-24, 1 - 0x1p-24);
+    const double steps = u * 0x1p24;
+    const auto lower = static_cast<std::uint32_t>(steps);
+    const bool is_multiple = lower == steps;
+    return std::min((is_multiple ? lower : lower | 1) * 0x1p-24, 1 - 0x1p-24);
 }
 
 /// The mistake that a program found in its input: "FILE:LINE:COLUMN: TEXT", "FILE: TEXT" or TEXT about `label`.
@@ -58,14 +58,14 @@ InputError error_of_program(std::string_view text, const std::string& label) {
 class PipeSampler : public BatchSampler {
 public:
     PipeSampler(const std::string& command, const PipeLimits& limits, const std::string& label,
-        const std::optional<Domain>& domain, int neighbours, bool offer_memory)
-        : connection_(command, limits, label, offer_memory), neighbours_(neighbours) {
+        const std::optional<Domain>& domain, int neighbours, bool offers_memory)
+        : connection_(command, limits, label, offers_memory), neighbours_(neighbours) {
         try {
             handshake_with_program(label, domain);
         } catch (const ProgramEnded& error) {
             connection_.stop();
-            const bool unknown = error.end.code == 126 || error.end.code == 127;  // of the shell
-            if (unknown && hello_.name.empty())
+            const bool is_unknown = error.end.code == 126 || error.end.code == 127;  // of the shell
+            if (is_unknown && hello_.name.empty())
                 throw InputError({"--exec", 0, 0}, "the shell cannot start '" + printable(command) + "'");
             throw;
         } catch (...) {
@@ -125,24 +125,24 @@ private:
 
     void draw_rows(const SamplerQuery& query, std::span<Draw> out) const override {
         const std::size_t lights = lights_of(query), numbers = own_numbers();
-        std::vector<double> room, around;
+        std::vector<double> room, columns;
         std::span<const double> u = query.u.packed(numbers, room);
         const std::span<double> in = first_of(request_, out.size() * columns_of_sample(lights));
         double* to = in.data();
         for_each_run(query, [&](Vec3d wo, std::size_t rows, const std::vector<double>& context) {
-            around = context;
-            if (hello_.merge) add_neighbours(neighbours_of(wo, neighbours_), around);
-            to = write_rows(wo, u.first(rows * numbers), around, to);
+            columns = context;
+            if (hello_.merge) add_neighbours(neighbours_of(wo, neighbours_), columns);
+            to = write_rows(wo, u.first(rows * numbers), columns, to);
             u = u.subspan(rows * numbers);
         });
-        std::vector<PrimarySample> all_numbers;  // which spread a point of the domain
+        std::vector<PrimarySample> sample_room;  // which spread a point of the domain
         if (domain()) {
-            const std::span<const PrimarySample> samples = query.u.samples(all_numbers);
+            const std::span<const PrimarySample> samples = query.u.samples(sample_room);
             query_samples(in, lights, out.size(),
                 [&](std::size_t i, std::span<const double> a, bool) { out[i] = drawn_point(a, samples[i]); });
         } else {
             query_samples(in, lights, out.size(),
-                [&](std::size_t i, std::span<const double> a, bool delta) { out[i] = drawn(a, delta); });
+                [&](std::size_t i, std::span<const double> a, bool delta) { out[i] = draw_of(a, delta); });
         }
     }
     void pdf_rows(const SamplerQuery& query, std::span<double> out) const override {
@@ -173,9 +173,9 @@ private:
         return hello_.weight || is_number() ? static_cast<std::size_t>(hello_.traits.channels) : 0;
     }
     /// Columns of the answer to a request for a sample.
-    std::size_t columns_of_draw() const { return (is_number() ? 0 : columns_of_point() + with_pdf()) + weights(); }
+    std::size_t columns_of_draw() const { return (is_number() ? 0 : columns_of_point() + pdf_columns()) + weights(); }
     /// Whether an answer has a pdf next to the weight.
-    std::size_t with_pdf() const { return hello_.traits.reciprocal_weight ? 0 : 1; }
+    std::size_t pdf_columns() const { return hello_.traits.reciprocal_weight ? 0 : 1; }
     Vec3d wo_to_send(Vec3d wo) const { return hello_.traits.wo == Traits::WoDomain::none ? Vec3d{0, 0, 1} : wo; }
     std::string sample_expected() const {
         std::string out =
@@ -198,9 +198,9 @@ private:
     }
     double number_for(double u) const { return hello_.traits.u_bits == 53 ? u : for_float(u); }
     std::size_t columns_of_sample(std::size_t lights) const {
-        const std::size_t merged =
+        const std::size_t merge_columns =
             hello_.merge ? 1 + Neighbour::columns * static_cast<std::size_t>(neighbours_) : std::size_t{0};
-        return columns_of_wo() + own_numbers() + context_columns(hello_.uses, lights) + merged;
+        return columns_of_wo() + own_numbers() + context_columns(hello_.uses, lights) + merge_columns;
     }
     /// Writes the rows of a request for samples at one w_o. u: their random numbers, row by row. Returns the end.
     double* write_rows(Vec3d wo, std::span<const double> u, std::span<const double> context, double* to) const {
@@ -220,10 +220,10 @@ private:
     /// Returns the end of its columns.
     double* write_wo(Vec3d wo, double* to) const {
         if (columns_of_wo() == 0) return to;
-        const Vec3d sent = wo_to_send(wo);
-        to[0] = sent.x;
-        to[1] = sent.y;
-        to[2] = sent.z;
+        const Vec3d direction = wo_to_send(wo);
+        to[0] = direction.x;
+        to[1] = direction.y;
+        to[2] = direction.z;
         return to + 3;
     }
     /// Writes w_i, or the point that it is. Returns the factor of a density there, 0 if there is no point.
@@ -237,19 +237,20 @@ private:
     /// Requests samples for rows of w_o, u and the context; calls take(i, answer, delta) for each row in order.
     template <class Take>
     void query_samples(std::span<const double> in, std::size_t lights, std::size_t count, const Take& take) const {
-        const std::size_t given = columns_of_sample(lights), got = columns_of_draw();
-        const std::span<double> answers = first_of(answers_, count * got);
+        const std::size_t request_columns = columns_of_sample(lights), answer_columns = columns_of_draw();
+        const std::span<double> answers = first_of(answers_, count * answer_columns);
         std::vector<bool> delta(hello_.blocks() ? 0 : count);
-        if (hello_.blocks()) query_block("smpl", "sample", count, given, got, in, answers, lights);
+        if (hello_.blocks()) query_block("smpl", "sample", count, request_columns, answer_columns, in, answers, lights);
         else
-            connection_.lines(
-                count, sample_expected(), writer("sample", given, in), [&](std::size_t i, std::string_view s) {
-                    return read_sample(s, answers.subspan(i * got, got), delta, i);
+            connection_.lines(count, sample_expected(), writer("sample", request_columns, in),
+                [&](std::size_t i, std::string_view s) {
+                    return read_sample(s, answers.subspan(i * answer_columns, answer_columns), delta, i);
                 });
-        for (std::size_t i = 0; i < count; ++i) take(i, answers.subspan(i * got, got), !hello_.blocks() && delta[i]);
+        for (std::size_t i = 0; i < count; ++i)
+            take(i, answers.subspan(i * answer_columns, answer_columns), !hello_.blocks() && delta[i]);
     }
-    void query_block(const char* operation, const char* verb, std::size_t count, std::size_t given, std::size_t got,
-        std::span<const double> in, std::span<double> out, std::size_t lights) const {
+    void query_block(const char* operation, const char* verb, std::size_t count, std::size_t request_columns,
+        std::size_t answer_columns, std::span<const double> in, std::span<double> out, std::size_t lights) const {
         if (count == 0) return;
         std::string header;
         const auto add_count = [&](std::size_t number) {
@@ -257,13 +258,14 @@ private:
         };
         if (hello_.uses_lights()) add_count(lights);
         if (hello_.merge && std::string_view(verb) == "sample") add_count(static_cast<std::size_t>(neighbours_));
-        const PipeConnection::Write write = writer(verb, given, in);
+        const PipeConnection::Write write = writer(verb, request_columns, in);
         connection_.blocks({.operation = operation,
             .count = count,
             .in = in,
             .out = out,
-            .single = hello_.single_blocks(),
-            .expected = fmt::format("a block of {} {} a row", got, hello_.single_blocks() ? "floats" : "doubles"),
+            .is_single = hello_.single_blocks(),
+            .expected =
+                fmt::format("a block of {} {} a row", answer_columns, hello_.single_blocks() ? "floats" : "doubles"),
             .describe =
                 [&](std::size_t i) {
                     std::string line;
@@ -285,7 +287,7 @@ private:
         return blank(s);
     }
     /// No sample if pdf is 0, or if the draw is below the horizon of a sampler of the hemisphere.
-    Draw drawn(std::span<const double> a, bool delta) const {
+    Draw draw_of(std::span<const double> a, bool delta) const {
         if (is_number()) {
             Draw value{{0, 0, 1}, 1};
             take_weight(a, value);
@@ -302,11 +304,11 @@ private:
             delta = true;
             d.pdf = -d.pdf;
         }
-        const bool nothing = !delta && d.pdf == 0;
+        const bool is_empty = !delta && d.pdf == 0;
         const auto weight = a.subspan(4);
-        const bool finite = std::ranges::all_of(weight, [](double v) { return std::isfinite(v); });
-        if (nothing && !finite) return {{0, 0, 1}, 0, std::nan("")};
-        if (nothing || (hello_.hemisphere && d.wi.z <= 0 && d.pdf >= 0)) return {{0, 0, 1}, 0};
+        const bool is_finite = std::ranges::all_of(weight, [](double v) { return std::isfinite(v); });
+        if (is_empty && !is_finite) return {{0, 0, 1}, 0, std::nan("")};
+        if (is_empty || (hello_.hemisphere && d.wi.z <= 0 && d.pdf >= 0)) return {{0, 0, 1}, 0};
         if (!hello_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
         if (delta) {
             d.delta = d.pdf != 0 ? d.pdf : delta_never_chosen;
@@ -328,7 +330,7 @@ private:
         // W of a reservoir represents the pdf: 0 is no sample.
         Draw d = draw_of_point(*domain(), a.first(columns), a[columns], u, hello_.traits.own_numbers());
         if (!hello_.traits.has_pdf && d.pdf > 0) d.pdf = 1;
-        if (d.pdf > 0) take_weight(a.subspan(columns + with_pdf()), d);
+        if (d.pdf > 0) take_weight(a.subspan(columns + pdf_columns()), d);
         return d;
     }
 
@@ -337,8 +339,8 @@ private:
         std::size_t columns, std::span<double> out) const {
         const std::span<const Pair> pairs = query.pairs;
         const std::size_t lights = lights_of(query);
-        const std::size_t given = columns_of_wo() + columns_of_point() + context_columns(hello_.uses, lights);
-        const std::span<double> room = first_of(request_, pairs.size() * given),
+        const std::size_t request_columns = columns_of_wo() + columns_of_point() + context_columns(hello_.uses, lights);
+        const std::span<double> room = first_of(request_, pairs.size() * request_columns),
                                 factor = first_of(factors_, pairs.size());
         double* to = room.data();
         std::size_t row = 0;
@@ -355,50 +357,51 @@ private:
             }
         });
         const std::span<double> in = room.first(static_cast<std::size_t>(to - room.data()));
-        const std::size_t count = in.size() / given;
+        const std::size_t count = in.size() / request_columns;
         const std::span<double> answers = first_of(answers_, count * columns);
-        if (hello_.blocks()) query_block(operation, verb, count, given, columns, in, answers, lights);
+        if (hello_.blocks()) query_block(operation, verb, count, request_columns, columns, in, answers, lights);
         else if (count > 0)
-            connection_.lines(count, expected, writer(verb, given, in), [&](std::size_t i, std::string_view s) {
-                if (operation[0] == 'f' && s == "-") {
-                    std::ranges::fill(answers.subspan(i * columns, columns), std::nan(""));
-                    return true;
-                }
-                for (std::size_t k = 0; k < columns; ++k)
-                    if (!take_float(s, answers[i * columns + k])) return false;
-                return blank(s);
-            });
+            connection_.lines(
+                count, expected, writer(verb, request_columns, in), [&](std::size_t i, std::string_view s) {
+                    if (operation[0] == 'f' && s == "-") {
+                        std::ranges::fill(answers.subspan(i * columns, columns), std::nan(""));
+                        return true;
+                    }
+                    for (std::size_t k = 0; k < columns; ++k)
+                        if (!take_float(s, answers[i * columns + k])) return false;
+                    return blank(s);
+                });
         std::size_t next = 0;
         for (std::size_t i = 0; i < pairs.size(); ++i) {
-            const bool requested = factor[i] > 0;
+            const bool is_requested = factor[i] > 0;
             for (std::size_t k = 0; k < columns; ++k)
-                out[i * columns + k] = requested ? answers[next * columns + k] * factor[i] : 0;
-            next += requested;
+                out[i * columns + k] = is_requested ? answers[next * columns + k] * factor[i] : 0;
+            next += is_requested;
         }
     }
 
-    void handshake_with_program(const std::string& label, const std::optional<Domain>& given) {
+    void handshake_with_program(const std::string& label, const std::optional<Domain>& expected_domain) {
         connection_.lines(
             1, handshake_form, [](std::size_t, std::string& line) { line = "hello 2"; },
             [&](std::size_t, std::string_view s) {
                 if (s.starts_with("error ")) throw error_of_program(s.substr(6), label);
                 if (s.starts_with("missing ")) throw OutputError(label + ": " + printable(s.substr(8)));
                 Handshake hello;
-                if (given) {
-                    hello.hemisphere = given->name() == "hemisphere";
-                    if (!given->is_direction()) hello.domain = given;
+                if (expected_domain) {
+                    hello.hemisphere = expected_domain->name() == "hemisphere";
+                    if (!expected_domain->is_direction()) hello.domain = expected_domain;
                 }
                 if (const HandshakeError fault = read_handshake(s, hello); fault)
-                    connection_.fault("hello 2", 0, fault.got, fault.expected);
+                    connection_.fault("hello 2", 0, fault.answer_text, fault.expected);
                 if (hello.memory && !connection_.use_memory())
                     connection_.fault("hello 2", 0, "got memory=yes", "no memory=, since none was offered");
-                const std::string stated = hello.traits.number ? "number"
-                    : hello.domain                             ? hello.domain->name()
-                    : hello.hemisphere                         ? "hemisphere"
-                                                               : "sphere";
-                if (given && stated != given->name())
-                    throw InputError(
-                        {"--domain " + given->name(), 0, 0}, "the program draws " + stated + " by its handshake");
+                const std::string domain_name = hello.traits.number ? "number"
+                    : hello.domain                                  ? hello.domain->name()
+                    : hello.hemisphere                              ? "hemisphere"
+                                                                    : "sphere";
+                if (expected_domain && domain_name != expected_domain->name())
+                    throw InputError({"--domain " + expected_domain->name(), 0, 0},
+                        "the program draws " + domain_name + " by its handshake");
                 hello_ = hello;
                 hello_.traits.neighbours = hello.merge ? neighbours_ : 0;
                 example_ = example_context(hello.uses);
@@ -426,9 +429,9 @@ private:
             const std::span<const double> point = a.first(columns_of_point());
             if (a[point.size()] > 0) points.insert(points.end(), point.begin(), point.end());
         });
-        auto fitted = std::make_shared<DomainChart>(*domain());
-        fitted->fit(points);
-        hello_.traits.domain = std::move(fitted);
+        auto chart = std::make_shared<DomainChart>(*domain());
+        chart->fit(points);
+        hello_.traits.domain = std::move(chart);
     }
     /// Determines whether there is a BRDF: none if the answer is `-` or, in blocks, NaN at all of these pairs of
     /// directions. At w_o = w_i = n alone a BRDF may fail.
@@ -443,8 +446,8 @@ private:
     /// Whether f is a number at one of these pairs.
     bool answers_f(const std::vector<Pair>& pairs) {
         const std::size_t columns = static_cast<std::size_t>(hello_.traits.channels);
-        const std::size_t given = columns_of_wo() + columns_of_point() + example_.size();
-        std::vector<double> in(given * pairs.size());
+        const std::size_t request_columns = columns_of_wo() + columns_of_point() + example_.size();
+        std::vector<double> in(request_columns * pairs.size());
         double* to = in.data();
         for (const Pair& pair : pairs) {
             double* const point = write_wo(pair.wo, to);
@@ -452,23 +455,23 @@ private:
             to = std::copy(example_.begin(), example_.end(), point + columns_of_point());
         }
         std::vector<double> answer(pairs.size() * columns);
-        bool any = false;
+        bool has_number = false;
         if (hello_.blocks()) {
-            query_block("f___", "f", pairs.size(), given, columns, in, answer, example_lights);
-            for (std::size_t i = 0; i < pairs.size(); ++i) any = any || !std::isnan(answer[i * columns]);
-            return any;
+            query_block("f___", "f", pairs.size(), request_columns, columns, in, answer, example_lights);
+            for (std::size_t i = 0; i < pairs.size(); ++i) has_number = has_number || !std::isnan(answer[i * columns]);
+            return has_number;
         }
         connection_.lines(pairs.size(),
             columns == 1 ? "one number, or '-' where there is no BRDF"
                          : "three numbers, one a channel, or '-' where there is no BRDF",
-            writer("f", given, in), [&](std::size_t i, std::string_view s) {
+            writer("f", request_columns, in), [&](std::size_t i, std::string_view s) {
                 if (s == "-") return true;
-                any = true;
+                has_number = true;
                 for (std::size_t k = 0; k < columns; ++k)
                     if (!take_float(s, answer[i * columns + k])) return false;
                 return blank(s);
             });
-        return any;
+        return has_number;
     }
 };
 
@@ -484,11 +487,11 @@ std::shared_ptr<const SamplerAdapter> start_pipe(const std::string& command, con
 
 namespace {
 
-bool one_of(std::string_view value, std::initializer_list<std::string_view> words, int& which) {
-    which = 0;
+bool one_of(std::string_view value, std::initializer_list<std::string_view> words, int& index) {
+    index = 0;
     for (std::string_view w : words) {
         if (w == value) return true;
-        ++which;
+        ++index;
     }
     return false;
 }
@@ -504,9 +507,9 @@ bool indices(std::string_view value, std::optional<Vec3d>& out) {
     std::string text(value);
     for (char& c : text)
         if (c == ',') c = ' ';
-    for (std::string_view rest = text; !blank(rest);) {
+    for (std::string_view remainder = text; !blank(remainder);) {
         v.emplace_back();
-        if (!take_float(rest, v.back()) || !(v.back() > 0) || !(v.back() < 1e6)) return false;
+        if (!take_float(remainder, v.back()) || !(v.back() > 0) || !(v.back() < 1e6)) return false;
     }
     if (v.size() != 1 && v.size() != 3) return false;
     out = v.size() == 1 ? Vec3d{v[0], v[0], v[0]} : Vec3d{v[0], v[1], v[2]};
@@ -559,11 +562,11 @@ const std::array<HandshakeKey, 20>& keys() {
             }},
         {"wo", "upper, both or none",
             [](S v, Handshake& g) {
-                int which = 0;
-                const bool is_word = one_of(v, {"upper", "both", "none"}, which);
+                int index = 0;
+                const bool is_word = one_of(v, {"upper", "both", "none"}, index);
                 g.states_wo = true;
-                g.traits.wo = which == 1 ? Traits::WoDomain::both
-                    : which == 2         ? Traits::WoDomain::none
+                g.traits.wo = index == 1 ? Traits::WoDomain::both
+                    : index == 2         ? Traits::WoDomain::none
                                          : Traits::WoDomain::upper;
                 return is_word;
             }},
@@ -615,29 +618,30 @@ HandshakeError unknown(std::string_view name) {
     std::vector<std::string> names;
     for (const HandshakeKey& k : keys()) names.emplace_back(k.name);
     return {fmt::format("one of {} before the '='", fmt::join(names, ", ")),
-        fmt::format("got the unknown key {}{}", shown(name), did_you_mean(name, names))};
+        fmt::format("got the unknown key {}{}", quote(name), did_you_mean(name, names))};
 }
 
 HandshakeError read_key(std::string_view word, Handshake& out) {
     const std::size_t equals = word.find('=');
     const std::string_view name = word.substr(0, equals), value = equals == word.npos ? "" : word.substr(equals + 1);
-    if (equals == word.npos) return {"KEY=VALUE", fmt::format("got the word {} after the keys", shown(word))};
+    if (equals == word.npos) return {"KEY=VALUE", fmt::format("got the word {} after the keys", quote(word))};
     for (const HandshakeKey& k : keys()) {
         if (name != k.name) continue;
         if (k.read(value, out)) return {};
-        return {fmt::format("{} for {}", k.values, k.name), "got " + shown(value)};
+        return {fmt::format("{} for {}", k.values, k.name), "got " + quote(value)};
     }
     return unknown(name);
 }
 
 /// The end of KEY=VALUE. The names of a product of domains may have spaces about their x.
-std::size_t end_of_word(std::string_view rest) {
-    const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
-    if (!rest.starts_with("domain=")) return end;
-    std::size_t past = end;
-    for (std::string_view more = rest.substr(end); more.starts_with(" x ") && more.size() > 3; more = rest.substr(past))
-        past += 3 + std::min(more.substr(3).find_first_of(" \t"), more.size() - 3);
-    return past;
+std::size_t end_of_word(std::string_view text) {
+    const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
+    if (!text.starts_with("domain=")) return end;
+    std::size_t position = end;
+    for (std::string_view remainder = text.substr(end); remainder.starts_with(" x ") && remainder.size() > 3;
+        remainder = text.substr(position))
+        position += 3 + std::min(remainder.substr(3).find_first_of(" \t"), remainder.size() - 3);
+    return position;
 }
 
 /// What the domain decides: without wo=, no w_o; and the numbers that spread a point.
@@ -680,26 +684,26 @@ HandshakeError read_handshake(std::string_view answer, Handshake& out) {
         if (answer.starts_with(version))
             return {handshake_form,
                 fmt::format(
-                    "got {}; write {}", shown(answer), shown(fmt::format("{}{}", start, answer.substr(start.size()))))};
+                    "got {}; write {}", quote(answer), quote(fmt::format("{}{}", start, answer.substr(start.size()))))};
     if (!answer.starts_with(start) || blank(answer.substr(start.size())))
-        return {handshake_form, "got " + shown(answer) + only_answers};
-    std::string_view rest = answer.substr(start.size()), name = rest;
-    const std::size_t key = rest.find('=');
-    if (key != rest.npos) {
-        const std::size_t before = rest.find_last_of(" \t", key);
-        if (before == rest.npos || blank(rest.substr(0, before)))
-            return {handshake_form, "got no name in " + shown(answer)};
-        name = rest.substr(0, before);
-        rest = rest.substr(before);
-        std::set<std::string_view> seen;
-        while (!blank(rest)) {
-            rest.remove_prefix(rest.find_first_not_of(" \t"));
-            const std::size_t end = end_of_word(rest);
-            if (const HandshakeError fault = read_key(rest.substr(0, end), out); fault) return fault;
-            const std::string_view name_of_key = rest.substr(0, rest.find('='));
-            if (!seen.insert(name_of_key).second)
-                return {"each key once", fmt::format("got the key {} twice", shown(name_of_key))};
-            rest.remove_prefix(end);
+        return {handshake_form, "got " + quote(answer) + only_answers};
+    std::string_view remainder = answer.substr(start.size()), name = remainder;
+    const std::size_t key = remainder.find('=');
+    if (key != remainder.npos) {
+        const std::size_t name_end = remainder.find_last_of(" \t", key);
+        if (name_end == remainder.npos || blank(remainder.substr(0, name_end)))
+            return {handshake_form, "got no name in " + quote(answer)};
+        name = remainder.substr(0, name_end);
+        remainder = remainder.substr(name_end);
+        std::set<std::string_view> names;
+        while (!blank(remainder)) {
+            remainder.remove_prefix(remainder.find_first_not_of(" \t"));
+            const std::size_t end = end_of_word(remainder);
+            if (const HandshakeError fault = read_key(remainder.substr(0, end), out); fault) return fault;
+            const std::string_view key_name = remainder.substr(0, remainder.find('='));
+            if (!names.insert(key_name).second)
+                return {"each key once", fmt::format("got the key {} twice", quote(key_name))};
+            remainder.remove_prefix(end);
         }
     }
     name.remove_prefix(name.find_first_not_of(" \t"));
@@ -718,21 +722,21 @@ HandshakeError read_handshake(std::string_view answer, Handshake& out) {
 
 bool names_python_sampler(const std::string& word) {
     if (word.ends_with(".py")) return true;
-    const auto in_name = [](char c) {
+    const auto is_name_char = [](char c) {
         return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
     };
     const std::size_t colon = word.rfind(':');
     if (colon == std::string::npos || colon == 0) return false;
-    const std::string where = word.substr(0, colon), name = word.substr(colon + 1);
-    if (name.empty() || !std::ranges::all_of(name, in_name)) return false;
-    return where.ends_with(".py") || std::ranges::all_of(where, [&](char c) { return in_name(c) || c == '.'; });
+    const std::string module = word.substr(0, colon), name = word.substr(colon + 1);
+    if (name.empty() || !std::ranges::all_of(name, is_name_char)) return false;
+    return module.ends_with(".py") || std::ranges::all_of(module, [&](char c) { return is_name_char(c) || c == '.'; });
 }
 
 namespace {
 
 std::string python_interpreter() {
-    const char* given = std::getenv("CRESCENT_PYTHON");
-    return given && *given ? given : "python3";
+    const char* path = std::getenv("CRESCENT_PYTHON");
+    return path && *path ? path : "python3";
 }
 
 /// Whether the interpreter finds a module. It is started for that, at most this long.
@@ -750,12 +754,12 @@ bool can_import(const char* module) {
 
 /// Starts a module of the package `package`, which answers for the file `label`.
 std::shared_ptr<const SamplerAdapter> start_python_module(const char* module, const std::vector<std::string>& words,
-    const char* package, const PipeLimits& limits, const std::string& label, int neighbours, bool offer_memory) {
+    const char* package, const PipeLimits& limits, const std::string& label, int neighbours, bool offers_memory) {
     // An interpreter that the shell cannot start (126, 127) is reported in the same way as a missing package.
     const std::string command =
         python_command(module, words) + "; code=$?; [ $code -lt 126 ] || [ $code -gt 127 ] || code=1; exit $code";
     try {
-        return std::make_shared<PipeSampler>(command, limits, label, std::nullopt, neighbours, offer_memory);
+        return std::make_shared<PipeSampler>(command, limits, label, std::nullopt, neighbours, offers_memory);
     } catch (const ProgramEnded& error) {
         if (error.end.code != 1 || can_import(module)) throw;  // what the user's file did
         throw OutputError(fmt::format(
@@ -798,8 +802,8 @@ std::shared_ptr<const SamplerAdapter> start_shader(
     };
     // While a device computes for one, another converts its numbers; a device computes on all of its cores. There are
     // no more than threads that ask.
-    constexpr std::size_t enough = 4;
-    return std::make_shared<Copies>(start, std::max<std::size_t>(enough / shaders, 1));
+    constexpr std::size_t most_copies = 4;
+    return std::make_shared<Copies>(start, std::max<std::size_t>(most_copies / shaders, 1));
 }
 
 }  // namespace crescent

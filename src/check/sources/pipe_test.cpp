@@ -68,7 +68,7 @@ TEST(Greetings, SayWhatAProgramIs) {
                        "transport=importance f=cos reciprocal=no random=own real=f32 block=f64 u_bits=53 "
                        "device=a%20%3Ddevice driver=Mesa%2025%25",
             g)
-            .got,
+            .answer_text,
         "");
     EXPECT_EQ(g.name, "my glass");
     EXPECT_EQ(g.traits.numbers, 3);
@@ -84,7 +84,7 @@ TEST(Greetings, SayWhatAProgramIs) {
 
 TEST(Greetings, SayWhatAProgramUsesOfTheSurface) {
     Handshake g;
-    EXPECT_EQ(read_handshake("hello 2 mine uses=lights,rho_d,s", g).got, "");
+    EXPECT_EQ(read_handshake("hello 2 mine uses=lights,rho_d,s", g).answer_text, "");
     EXPECT_EQ(g.uses, (std::vector<std::string>{"lights", "rho_d", "s"}));
     EXPECT_TRUE(g.uses_lights());
     EXPECT_EQ(context_columns(g.uses, 2), 1 + 2 * 18 + 3 + 1);
@@ -98,7 +98,7 @@ TEST(Greetings, SayWhatIsKnownWhereAKeyIsNot) {
     const auto fault = [](const char* answer) {
         Handshake g;
         const HandshakeError fault = read_handshake(answer, g);
-        return fault ? "expected " + fault.expected + ", " + fault.got : "";
+        return fault ? "expected " + fault.expected + ", " + fault.answer_text : "";
     };
     EXPECT_NE(fault("hello 2 x colour=3").find("expected one of u, domain, wo, channels"), std::string::npos);
     EXPECT_NE(fault("hello 2 x colour=3").find("got the unknown key 'colour'"), std::string::npos);
@@ -203,8 +203,8 @@ TEST(PipeNumbers, AreReadAndWrittenExactly) {
     }
     EXPECT_TRUE(blank(" \t"));
     EXPECT_FALSE(blank(" x"));
-    EXPECT_EQ(shown(std::string("a\x01", 2)), "'a\\x01'");
-    EXPECT_EQ(shown(std::string(90, 'a')).size(), 80u + 5);
+    EXPECT_EQ(quote(std::string("a\x01", 2)), "'a\\x01'");
+    EXPECT_EQ(quote(std::string(90, 'a')).size(), 80u + 5);
 }
 
 TEST(PipeLines, AreAnsweredInOrder) {
@@ -241,7 +241,7 @@ TEST(PipeBlocks, MayBeInMemory) {
             .count = in.size(),
             .in = in,
             .out = out,
-            .single = true,
+            .is_single = true,
             .expected = "the same rows",
             .describe = [](std::size_t i) { return "row " + std::to_string(i); }});
         EXPECT_EQ(out, in) << k;

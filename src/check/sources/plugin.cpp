@@ -33,7 +33,7 @@ using Clock = std::chrono::steady_clock;
 struct PluginInfo {
     std::string name;
     int numbers = 2;
-    bool pdf = false, f = false, serial = false;
+    bool has_pdf = false, has_f = false, is_serial = false;
     std::vector<std::string> uses{};  // of context_names(); empty: s, alpha, diffuse and lobe
 };
 
@@ -67,9 +67,9 @@ public:
     /// Sends one request: its runs, and the random numbers or directions of its rows. The answer is valid until the
     /// next request.
     PluginRows query(
-        char operation, const SceneRows& batch, std::span<const double> given, std::size_t rows, const Call& call) {
-        const PluginRows block(memory_.at(), rows, given.size() / rows);
-        std::ranges::copy(given, block.given);
+        char operation, const SceneRows& batch, std::span<const double> input, std::size_t rows, const Call& call) {
+        const PluginRows block(memory_.at(), rows, input.size() / rows);
+        std::ranges::copy(input, block.input);
         const std::size_t lights = batch.lights.size();
         const std::size_t surface = info_.uses.empty() ? 4 : context_columns(info_.uses, lights);
         const PluginRequest head{.operation = operation,
@@ -140,8 +140,8 @@ private:
             "cannot open the plugin {}: expected a handshake of one line of at most {} bytes, found '{}...'", library_,
             longest, printable(line, 60)));
     }
-    void wait(bool to_write, Clock::time_point last, const std::string& what) {
-        process_.wait_ready(to_write, !to_write, 50);
+    void wait(bool is_write, Clock::time_point last, const std::string& what) {
+        process_.wait_ready(is_write, !is_write, 50);
         if (limits_.stop && limits_.stop->load()) throw Interrupted{};
         if (std::chrono::duration<double>(Clock::now() - last).count() > limits_.call_seconds)
             throw SamplerError(
@@ -165,25 +165,25 @@ private:
 
     void read_handshake(std::string_view line) {
         const std::string expected = fmt::format("{}... name=NAME", plugin_handshake);
-        const auto reject = [&](std::string_view got) {
+        const auto reject = [&](std::string_view answer) {
             throw OutputError(fmt::format("cannot open the plugin {}: {} answers '{}', expected '{}'", library_,
-                printable(host_program()), printable(got, 200), expected));
+                printable(host_program()), printable(answer, 200), expected));
         };
         if (!line.starts_with(plugin_handshake)) reject(line);
-        std::string_view rest = line.substr(std::strlen(plugin_handshake));
-        if (rest.starts_with("error "))
-            throw OutputError(fmt::format("cannot open the plugin {}: {}", library_, printable(rest.substr(6))));
-        while (!rest.empty() && info_.name.empty()) {
-            const std::size_t equals = std::min(rest.find('='), rest.size() - 1);
-            const std::string_view key = rest.substr(0, equals);
-            rest.remove_prefix(equals + 1);
-            const std::string_view value = key == "name" ? rest : rest.substr(0, rest.find(' '));
-            rest.remove_prefix(std::min(value.size() + 1, rest.size()));
+        std::string_view remainder = line.substr(std::strlen(plugin_handshake));
+        if (remainder.starts_with("error "))
+            throw OutputError(fmt::format("cannot open the plugin {}: {}", library_, printable(remainder.substr(6))));
+        while (!remainder.empty() && info_.name.empty()) {
+            const std::size_t equals = std::min(remainder.find('='), remainder.size() - 1);
+            const std::string_view key = remainder.substr(0, equals);
+            remainder.remove_prefix(equals + 1);
+            const std::string_view value = key == "name" ? remainder : remainder.substr(0, remainder.find(' '));
+            remainder.remove_prefix(std::min(value.size() + 1, remainder.size()));
             if (key == "name") info_.name = printable(value);
             if (key == "numbers") std::from_chars(value.data(), value.data() + value.size(), info_.numbers);
-            if (key == "pdf") info_.pdf = value == "1";
-            if (key == "f") info_.f = value == "1";
-            if (key == "serial") info_.serial = value == "1";
+            if (key == "pdf") info_.has_pdf = value == "1";
+            if (key == "f") info_.has_f = value == "1";
+            if (key == "serial") info_.is_serial = value == "1";
             if (key == "uses") read_uses(value);
         }
         if (info_.name.empty()) reject(line);
@@ -194,16 +194,16 @@ class Plugin : public BatchSampler {
 public:
     Plugin(const std::string& path, const PipeLimits& limits, const SurfaceParameters& surface)
         : path_(path), limits_(limits), surface_(surface) {
-        free_.push_back(std::make_unique<Host>(path_, limits_));
-        info_ = free_.front()->info();
+        free_hosts_.push_back(std::make_unique<Host>(path_, limits_));
+        info_ = free_hosts_.front()->info();
     }
 
     SamplerDeclaration declaration() const override {
         return {.name = info_.name,
-            .traits = {.numbers = info_.numbers, .has_pdf = info_.pdf},
-            .has_f = info_.f,
-            .has_drawn_f = info_.f,
-            .serial = info_.serial,
+            .traits = {.numbers = info_.numbers, .has_pdf = info_.has_pdf},
+            .has_f = info_.has_f,
+            .has_drawn_f = info_.has_f,
+            .serial = info_.is_serial,
             .limited = true,
             .uses = info_.uses};
     }
@@ -216,7 +216,7 @@ private:
         if (query.scene) return work(*query.scene, std::size_t{0}, query.rows());
         std::vector<SurfaceRun> runs;
         std::vector<LightAtPoint> lights_at;
-        const bool with_light = std::ranges::find(info_.uses, "lights") != info_.uses.end();
+        const bool has_light = std::ranges::find(info_.uses, "lights") != info_.uses.end();
         for (std::size_t first = 0; first < query.rows(); first += plugin_rows) {
             const std::size_t rows = std::min<std::size_t>(plugin_rows, query.rows() - first);
             runs.clear();
@@ -227,7 +227,7 @@ private:
                     ++runs.back().rows;
                 }
             SceneRows scene{.runs = runs};
-            if (with_light) {
+            if (has_light) {
                 lights_at.assign(runs.size(), example_.at);
                 scene.lights = {&example_.light, 1};
                 scene.lights_at = lights_at;
@@ -281,7 +281,7 @@ private:
     /// Calls with a host that no other thread uses. After a failure neither the host nor the plugin is used again.
     template <class Work> void on_host(const Work& work) const {
         std::unique_lock<std::mutex> one_at_a_time(serial_, std::defer_lock);
-        if (info_.serial) one_at_a_time.lock();
+        if (info_.is_serial) one_at_a_time.lock();
         std::unique_ptr<Host> host = take_host();
         try {
             if (!host) host = std::make_unique<Host>(path_, limits_);
@@ -292,14 +292,14 @@ private:
             throw;
         }
         const std::lock_guard<std::mutex> guard(lock_);
-        free_.push_back(std::move(host));
+        free_hosts_.push_back(std::move(host));
     }
     std::unique_ptr<Host> take_host() const {
         const std::lock_guard<std::mutex> guard(lock_);
         if (!fault_.empty()) throw SamplerExited("the plugin was given up: " + fault_);
-        if (free_.empty()) return nullptr;
-        std::unique_ptr<Host> host = std::move(free_.back());
-        free_.pop_back();
+        if (free_hosts_.empty()) return nullptr;
+        std::unique_ptr<Host> host = std::move(free_hosts_.back());
+        free_hosts_.pop_back();
         return host;
     }
 
@@ -310,7 +310,7 @@ private:
     ExampleLight example_ = example_light();
     mutable std::atomic<std::uint64_t> answers_{0};
     mutable std::mutex serial_, lock_;
-    mutable std::vector<std::unique_ptr<Host>> free_;  // both guarded by lock_
+    mutable std::vector<std::unique_ptr<Host>> free_hosts_;  // both guarded by lock_
     mutable std::string fault_;
 };
 

@@ -63,11 +63,11 @@ struct Pipes {
         return true;
     }
     void write(const void* from, std::size_t size) const {
-        for (const auto* rest = static_cast<const char*>(from); size > 0;) {
-            const ssize_t n = ::write(out, rest, size);
+        for (const auto* position = static_cast<const char*>(from); size > 0;) {
+            const ssize_t n = ::write(out, position, size);
             if (n < 0 && errno == EINTR) continue;
             if (n <= 0) leave();
-            rest += n;
+            position += n;
             size -= static_cast<std::size_t>(n);
         }
     }
@@ -89,12 +89,12 @@ void reset_signals() {
 }
 
 void start_watching(int& input) {
-    sigset_t signals, before;
+    sigset_t signals, old_signals;
     sigfillset(&signals);
-    pthread_sigmask(SIG_SETMASK, &signals, &before);  // signals are for the plugin's thread
+    pthread_sigmask(SIG_SETMASK, &signals, &old_signals);  // signals are for the plugin's thread
     pthread_t thread;
     if (pthread_create(&thread, nullptr, watch, &input) != 0) ::_exit(1);
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    pthread_sigmask(SIG_SETMASK, &old_signals, nullptr);
 #ifdef __linux__
     ::prctl(PR_SET_PDEATHSIG, 0);  // it would end this process alone, but not its group
 #endif
@@ -107,19 +107,19 @@ struct Fault {
 /// Calls a function of the plugin with the default floating-point environment.
 template <class Call> auto called(const char* function, Call&& call) {
     const pid_t self = ::getpid();
-    const auto same_process = [&] {
+    const auto require_same_process = [&] {
         if (::getpid() != self) ::_exit(0);  // a child process of the plugin that returned here too
     };
     std::fesetenv(FE_DFL_ENV);
     try {
         const auto result = call();
-        same_process();
+        require_same_process();
         return result;
     } catch (const std::exception& e) {
-        same_process();
+        require_same_process();
         throw Fault{std::string("threw '") + e.what() + "'", function};
     } catch (...) {
-        same_process();
+        require_same_process();
         throw Fault{"threw something", function};
     }
 }
@@ -129,7 +129,7 @@ struct Library {
     int (*sample)(size_t, const double*, const double*, const double*, double*, double*) = nullptr;
     Answer pdf = nullptr, f = nullptr;
     unsigned numbers = 2;
-    bool serial = false;
+    bool is_serial = false;
     std::string name, uses;
 
     explicit Library(const std::string& path) {
@@ -144,26 +144,26 @@ struct Library {
             to = reinterpret_cast<F>(::dlsym(library, symbol));
             return to != nullptr;
         };
-        unsigned (*abi)() = nullptr, (*how_many)() = nullptr;
-        int (*one_at_a_time)() = nullptr;
-        const char* (*calls_itself)() = nullptr, *(*names)() = nullptr;
-        if (!find("crescent_sampler_abi", abi)) throw missing("crescent_sampler_abi");
-        const unsigned version = called("crescent_sampler_abi", abi);
+        unsigned (*give_abi)() = nullptr, (*give_numbers)() = nullptr;
+        int (*give_serial)() = nullptr;
+        const char* (*give_name)() = nullptr, *(*give_uses)() = nullptr;
+        if (!find("crescent_sampler_abi", give_abi)) throw missing("crescent_sampler_abi");
+        const unsigned version = called("crescent_sampler_abi", give_abi);
         if (version != CRESCENT_SAMPLER_ABI)
             throw Fault{"it has version " + std::to_string(version) + " of the interface; this program has version " +
                 std::to_string(CRESCENT_SAMPLER_ABI) + ": compile it with the sampler_plugin.h of this program"};
-        if (find("crescent_sampler_uses", names)) uses = text_of("crescent_sampler_uses", names);
+        if (find("crescent_sampler_uses", give_uses)) uses = text_of("crescent_sampler_uses", give_uses);
         if (uses.find_first_of(" \n") != std::string::npos)
             throw Fault{"crescent_sampler_uses gives '" + uses + "': expected names separated by commas"};
         if (!find("crescent_sampler_sample", sample)) throw missing("crescent_sampler_sample");
         find("crescent_sampler_pdf", pdf);
         find("crescent_sampler_f", f);
-        if (find("crescent_sampler_numbers", how_many)) numbers = called("crescent_sampler_numbers", how_many);
+        if (find("crescent_sampler_numbers", give_numbers)) numbers = called("crescent_sampler_numbers", give_numbers);
         if (numbers < 1 || numbers > 8)
             throw Fault{"it takes " + std::to_string(numbers) + " random numbers a sample: expected 1 to 8"};
-        if (find("crescent_sampler_serial", one_at_a_time))
-            serial = called("crescent_sampler_serial", one_at_a_time) != 0;
-        if (find("crescent_sampler_name", calls_itself)) name = text_of("crescent_sampler_name", calls_itself);
+        if (find("crescent_sampler_serial", give_serial))
+            is_serial = called("crescent_sampler_serial", give_serial) != 0;
+        if (find("crescent_sampler_name", give_name)) name = text_of("crescent_sampler_name", give_name);
         if (name.empty()) name = path.substr(path.rfind('/') + 1);
         std::replace(name.begin(), name.end(), '\n', ' ');
     }
@@ -204,22 +204,22 @@ struct Columns {
 };
 
 void answer(
-    const Pipes& pipes, const Library& library, const PluginRequest& request, const Columns& with, void* memory) {
+    const Pipes& pipes, const Library& library, const PluginRequest& request, const Columns& columns, void* memory) {
     const char* function = "crescent_sampler_sample";
-    Library::Answer at_directions = nullptr;
+    Library::Answer evaluate = nullptr;
     if (request.operation == 'p') {
         function = "crescent_sampler_pdf";
-        at_directions = library.pdf;
+        evaluate = library.pdf;
     }
     if (request.operation == 'f') {
         function = "crescent_sampler_f";
-        at_directions = library.f;
+        evaluate = library.f;
     }
     const std::size_t n = request.rows;
-    const PluginRows rows(memory, n, at_directions ? 3 : library.numbers);
+    const PluginRows rows(memory, n, evaluate ? 3 : library.numbers);
     const int code = called(function, [&] {
-        if (at_directions) return at_directions(n, with.wo.data(), rows.given, with.surface.data(), rows.values);
-        return library.sample(n, with.wo.data(), rows.given, with.surface.data(), rows.wi, rows.values);
+        if (evaluate) return evaluate(n, columns.wo.data(), rows.input, columns.surface.data(), rows.values);
+        return library.sample(n, columns.wo.data(), rows.input, columns.surface.data(), rows.wi, rows.values);
     });
     if (code != 0) throw Fault{"gave " + std::to_string(code) + ", expected 0,"};
     const PluginAnswer head{request.rows, 0};
@@ -229,7 +229,7 @@ void answer(
 std::string handshake(const Library& library) {
     const auto number = [](const char* key, unsigned value) { return key + std::to_string(value) + " "; };
     return plugin_handshake + number("numbers=", library.numbers) + number("pdf=", library.pdf != nullptr) +
-        number("f=", library.f != nullptr) + number("serial=", library.serial) +
+        number("f=", library.f != nullptr) + number("serial=", library.is_serial) +
         (library.uses.empty() ? "" : "uses=" + library.uses + " ") + "name=" + library.name + "\n";
 }
 
@@ -258,17 +258,17 @@ void serve_plugin(const char* path) {
     ::madvise(memory, PluginRows::bytes, MADV_DONTFORK);
 #endif
     ::close(3);
-    const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    ::dup2(nothing, 0);
+    const int null_input = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    ::dup2(null_input, 0);
     ::dup2(2, 1);
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     reset_signals();
     start_watching(pipes.in);
     const Library& library = load(pipes, path);
     try {
-        Columns with;
-        for (PluginRequest request{}; pipes.read(&request, sizeof request) && with.read(pipes, request);)
-            answer(pipes, library, request, with, memory);
+        Columns columns;
+        for (PluginRequest request{}; pipes.read(&request, sizeof request) && columns.read(pipes, request);)
+            answer(pipes, library, request, columns, memory);
     } catch (const Fault& fault) {
         const PluginAnswer head{0, static_cast<std::uint32_t>(fault.text.size())};
         pipes.write(&head, sizeof head);

@@ -32,10 +32,10 @@ inline constexpr std::uint32_t plugin_rows = 65536;
 /// The rows of a request and its answer in shared memory, one array after another.
 struct PluginRows {
     static constexpr std::size_t bytes = plugin_rows * sizeof(double) * (8 + 3 + 1);
-    double *given, *wi,
+    double *input, *wi,
         *values;  // `width` random numbers or a direction for each row; for a sample wi and pdf, otherwise a value
     PluginRows(void* memory, std::size_t rows, std::size_t width)
-        : given(static_cast<double*>(memory)), wi(given + rows * width), values(wi + 3 * rows) {}
+        : input(static_cast<double*>(memory)), wi(input + rows * width), values(wi + 3 * rows) {}
 };
 
 /// argv[0] of a host process: a program that contains this code, executed under this name with the plugin's file as

@@ -33,12 +33,12 @@ bool cuts_cells(const DomainPart& part) {
 /// The share of a cell that is inside a disk or a triangle.
 double share_inside(const DomainPart& part, std::span<const double> low, std::span<const double> high) {
     constexpr int steps = 4096;  // an error below 1e-5 of the cell, from the vertical tangent of the disk
-    const bool disk = part.kind == DomainPart::Kind::disk;
-    const double from = std::max(low[0], disk ? -1.0 : 0.0), to = std::min(high[0], 1.0);
+    const bool is_disk = part.kind == DomainPart::Kind::disk;
+    const double from = std::max(low[0], is_disk ? -1.0 : 0.0), to = std::min(high[0], 1.0);
     double sum = 0;
     for (int i = 0; i < steps && to > from; ++i) {
         const double x = from + (to - from) * (i + 0.5) / steps;
-        const double top = disk ? std::sqrt(1 - x * x) : 1 - x, bottom = disk ? -top : 0;
+        const double top = is_disk ? std::sqrt(1 - x * x) : 1 - x, bottom = is_disk ? -top : 0;
         sum += std::max(0.0, std::min(top, high[1]) - std::max(bottom, low[1]));
     }
     return std::max(0.0, to - from) * sum / steps / ((high[0] - low[0]) * (high[1] - low[1]));
@@ -49,9 +49,9 @@ std::vector<GridAxis> axes_of(const Domain& domain) {
     std::vector<GridAxis> out;
     std::size_t coordinate = 1, directions = 0;
     for (const DomainPart& part : domain.parts()) {
-        const bool sphere = part.kind == DomainPart::Kind::sphere;
+        const bool is_sphere = part.kind == DomainPart::Kind::sphere;
         if (is_direction(part)) {
-            for (GridAxis& axis : direction_axes(sphere, ++directions > 1 ? std::to_string(directions) : ""))
+            for (GridAxis& axis : direction_axes(is_sphere, ++directions > 1 ? std::to_string(directions) : ""))
                 out.push_back(std::move(axis));
         } else
             for (std::size_t k = 0; k < part.coordinates(); ++k) {
@@ -63,7 +63,7 @@ std::vector<GridAxis> axes_of(const Domain& domain) {
                 }
                 if (part.kind == DomainPart::Kind::set) {
                     axis.to = part.count - 1.0;
-                    axis.integral = true;
+                    axis.is_integral = true;
                 }
                 out.push_back(std::move(axis));
             }
@@ -80,7 +80,7 @@ public:
         read_table(table);
         take_draws(samples, draws);
         correct_boundary();
-        cells_ = agrees_as_cells();
+        has_cells_ = agrees_as_cells();
     }
     std::string name() const override { return name_; }
     Traits traits() const override {
@@ -96,14 +96,16 @@ public:
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             double factor = 0;
             const GridPoint x = grid_point(pairs[i].wi, factor);
-            out[i] = !(factor > 0) || !grid_.contains(x) ? 0 : factor * (cells_ ? grid_.of_cell(x) : grid_.between(x));
+            out[i] = !(factor > 0) || !grid_.contains(x)
+                ? 0
+                : factor * (has_cells_ ? grid_.cell_value(x) : grid_.value_between(x));
         }
     }
     double tabulation_error(Vec3d w) const override {
         double factor = 0;
         const GridPoint x = grid_point(w, factor);
         if (!(factor > 0) || !grid_.contains(x)) return 0;
-        return factor * (cells_ ? grid_.error_of_cell(x) : grid_.error_between(x));
+        return factor * (has_cells_ ? grid_.error_of_cell(x) : grid_.error_between(x));
     }
     std::string place(std::size_t row) const override { return place_of_row(name_, lines_, row); }
 
@@ -111,7 +113,7 @@ private:
     std::string name_;
     std::shared_ptr<DomainChart> chart_;
     int numbers_ = 0;  // random numbers of a row
-    bool has_drawn_f_ = false, cells_ = true;
+    bool has_drawn_f_ = false, has_cells_ = true;
     std::vector<unsigned> lines_;
     std::vector<double> points_, densities_;  // of the draws, by row
     DensityGrid grid_;
@@ -238,13 +240,13 @@ private:
                 const auto column = static_cast<std::size_t>(t.column(columns[k]));
                 const bool is_axis = k < axes.size();
                 double x = t.at(r, column);
-                if (is_axis && axes[k].periodic && x < 0) x += axes[k].to;
+                if (is_axis && axes[k].is_periodic && x < 0) x += axes[k].to;
                 const double slack = is_axis && std::isfinite(axes[k].to - axes[k].from) ? edge_slack * axes[k].to : 0;
                 if (is_axis && !(std::isfinite(x) && x >= axes[k].from - slack && x <= axes[k].to + slack))
                     in.add(t.line(r), static_cast<unsigned>(column) + 1,
                         fmt::format("{} is {:g}; expected a number from {:g} to {:g}", columns[k], x, axes[k].from,
                             axes[k].to));
-                if (is_axis && axes[k].integral && x != std::floor(x))
+                if (is_axis && axes[k].is_integral && x != std::floor(x))
                     in.add(t.line(r), static_cast<unsigned>(column) + 1,
                         fmt::format("{} is {:g}; expected an integer, an entry of the set", columns[k], x));
                 if (!is_axis && !std::isfinite(x) && !is_beyond(std::span(rows).last(axes.size()))) {
@@ -288,23 +290,23 @@ private:
     void correct_boundary() {
         if (std::ranges::none_of(domain().parts(), cuts_cells)) return;
         constexpr double least_share = 0.01;  // below, the share itself has an error of 0.1 %
-        std::vector<double> as_written(grid_.size()), as_averages(grid_.size()), shares(grid_.size());
+        std::vector<double> written_values(grid_.size()), average_values(grid_.size()), shares(grid_.size());
         for (std::size_t i = 0; i < grid_.size(); ++i) {
             const GridCell cell = grid_.cell(i);
             shares[i] = share_inside_cell(cell);
-            const bool unknown = cell.value == 0 && is_beyond(cell.entry);
-            as_written[i] = unknown ? std::nan("") : cell.value;
-            as_averages[i] = shares[i] > least_share ? cell.value / shares[i] : std::nan("");
+            const bool is_unknown = cell.value == 0 && is_beyond(cell.entry);
+            written_values[i] = is_unknown ? std::nan("") : cell.value;
+            average_values[i] = shares[i] > least_share ? cell.value / shares[i] : std::nan("");
         }
-        double error_as_written = 0, error_as_averages = 0;
+        double written_error = 0, average_error = 0;
         for (std::size_t r = 0; r < densities_.size(); ++r) {
             if (!(densities_[r] > 0) || !domain().fault(point_of_row(r)).empty()) continue;
             const std::size_t i = grid_.cell_index(grid_point(point_of_row(r)));
-            if (!(shares[i] < 1 - 1e-4) || std::isnan(as_written[i])) continue;
-            error_as_written += std::fabs(as_written[i] - densities_[r]);
-            error_as_averages += std::fabs(as_averages[i] - densities_[r]);
+            if (!(shares[i] < 1 - 1e-4) || std::isnan(written_values[i])) continue;
+            written_error += std::fabs(written_values[i] - densities_[r]);
+            average_error += std::fabs(average_values[i] - densities_[r]);
         }
-        grid_.replace(error_as_averages < error_as_written ? as_averages : as_written);
+        grid_.replace(average_error < written_error ? average_values : written_values);
     }
 
     /// Values of a line have any size.
@@ -327,7 +329,7 @@ private:
         CellAgreement out;
         for (std::size_t r = 0; r < densities_.size(); ++r)
             if (densities_[r] > 0 && domain().fault(point_of_row(r)).empty())
-                out.add(grid_.of_cell(grid_point(point_of_row(r))), densities_[r]);
+                out.add(grid_.cell_value(grid_point(point_of_row(r))), densities_[r]);
         return out.holds();
     }
 };

@@ -211,18 +211,18 @@ TEST(DensityGrid, IsConstantInCellsOrLinearBetweenPoints) {
     const DensityGrid grid({{.name = "x1"}, {.name = "x2"}},
         std::vector<double>{0.25, 0.5, 1, 0.75, 0.5, 3});  // two cells along x1, one along x2
     const auto at = [](double x) { return std::array{x, 0.9}; };
-    EXPECT_EQ(grid.of_cell(at(0.4)), 1);
-    EXPECT_EQ(grid.of_cell(at(0.6)), 3);
-    EXPECT_DOUBLE_EQ(grid.between(at(0.5)), 2);
-    EXPECT_DOUBLE_EQ(grid.between(at(0)), 0);
+    EXPECT_EQ(grid.cell_value(at(0.4)), 1);
+    EXPECT_EQ(grid.cell_value(at(0.6)), 3);
+    EXPECT_DOUBLE_EQ(grid.value_between(at(0.5)), 2);
+    EXPECT_DOUBLE_EQ(grid.value_between(at(0)), 0);
     EXPECT_FALSE(grid.contains(at(1.1)));
     EXPECT_THROW(DensityGrid({{.name = "x1"}}, std::vector<double>{0, 1, 0, 1}), std::invalid_argument);
 }
 
 TEST(DensityGrid, PeriodicAxisHasNoEnds) {
-    const DensityGrid grid({{.name = "phi", .to = 4, .periodic = true}}, std::vector<double>{1, 5, 3, 1});
-    EXPECT_DOUBLE_EQ(grid.between(std::array{0.0}), 3);
-    EXPECT_DOUBLE_EQ(grid.between(std::array{4.0}), 3);
+    const DensityGrid grid({{.name = "phi", .to = 4, .is_periodic = true}}, std::vector<double>{1, 5, 3, 1});
+    EXPECT_DOUBLE_EQ(grid.value_between(std::array{0.0}), 3);
+    EXPECT_DOUBLE_EQ(grid.value_between(std::array{4.0}), 3);
     EXPECT_DOUBLE_EQ(grid.error_between(std::array{1.0}), 4);
 }
 

@@ -50,9 +50,9 @@ private:
         Vec3d wo{};
         double q = 0;
         for (std::size_t i = 0; i < pairs.size(); ++i) {
-            const Vec3d given = pairs[i].wo;
-            if (i == 0 || given.x != wo.x || given.y != wo.y || given.z != wo.z) {
-                wo = given;
+            const Vec3d direction = pairs[i].wo;
+            if (i == 0 || direction.x != wo.x || direction.y != wo.y || direction.z != wo.z) {
+                wo = direction;
                 q = scale_at(wo);
             }
             const double target = traits_.density(pairs[i].wi, out[i]);

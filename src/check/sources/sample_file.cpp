@@ -57,13 +57,13 @@ NumberTable read_csv(FileDiagnostics& in, std::istream& file) {
             cells_of(text, [&](std::string_view cell, unsigned) { t.columns.emplace_back(cell); });
             continue;
         }
-        const std::size_t before = t.values.size();
+        const std::size_t old_size = t.values.size();
         cells_of(
             text, [&](std::string_view cell, unsigned column) { t.values.push_back(number(in, cell, line, column)); });
-        const std::size_t got = t.values.size() - before;
-        if (got != t.columns.size()) {
-            in.add(line, 1, fmt::format("expected {} values, as the header has, not {}", t.columns.size(), got));
-            t.values.resize(before);
+        const std::size_t count = t.values.size() - old_size;
+        if (count != t.columns.size()) {
+            in.add(line, 1, fmt::format("expected {} values, as the header has, not {}", t.columns.size(), count));
+            t.values.resize(old_size);
         } else {
             t.lines.push_back(line);
         }
@@ -94,10 +94,10 @@ void name_columns(FileDiagnostics& in, const NumberTable& t, const std::vector<s
 }
 
 NumberTable read_npy(FileDiagnostics& in, std::istream& file, const std::vector<std::vector<std::string>>& layouts) {
-    std::string first(longest_npy_header, '\0');
-    file.read(first.data(), static_cast<std::streamsize>(first.size()));
-    first.resize(static_cast<std::size_t>(file.gcount()));
-    const NpyHeader h = read_npy_header(in.path, first);
+    std::string header_text(longest_npy_header, '\0');
+    file.read(header_text.data(), static_cast<std::streamsize>(header_text.size()));
+    header_text.resize(static_cast<std::size_t>(file.gcount()));
+    const NpyHeader h = read_npy_header(in.path, header_text);
     const auto reject = [&](const std::string& message) {
         in.add(0, 0, message);
         in.throw_if_any();
@@ -130,8 +130,8 @@ NumberTable read_npy(FileDiagnostics& in, std::istream& file, const std::vector<
 }  // namespace
 
 int NumberTable::column(std::string_view name) const {
-    const auto found = std::find(columns.begin(), columns.end(), name);
-    return found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
+    const auto match = std::find(columns.begin(), columns.end(), name);
+    return match == columns.end() ? -1 : static_cast<int>(match - columns.begin());
 }
 
 NumberTable read_table_file(FileDiagnostics& in, const std::vector<std::vector<std::string>>& layouts) {
@@ -176,7 +176,7 @@ DensityGrid grid_of(FileDiagnostics& in, std::vector<GridAxis> axes, std::span<c
         return {std::move(axes), rows};
     } catch (const std::invalid_argument& e) {
         in.add(0, 0, e.what());
-        throw InputError(in.all);
+        throw InputError(in.diagnostics);
     }
 }
 
@@ -186,8 +186,8 @@ void check_coverage(FileDiagnostics& in, const NumberTable& table, std::span<con
     for (std::size_t a = 0; a < axes.size(); ++a) {
         const GridAxis& axis = axes[a];
         const std::span<const double> x = grid.entries(a);
-        if (axis.integral || x.size() < 2) continue;  // one entry: p does not depend on this coordinate
-        const auto line = [&](double value) {         // of the first row of that entry
+        if (axis.is_integral || x.size() < 2) continue;  // one entry: p does not depend on this coordinate
+        const auto line = [&](double value) {            // of the first row of that entry
             for (std::size_t r = 0; r < table.rows(); ++r)
                 if (std::fabs(rows[r * (axes.size() + 1) + a] - value) <= 1e-6 * axis.scale) return table.line(r);
             return 0U;
@@ -198,7 +198,7 @@ void check_coverage(FileDiagnostics& in, const NumberTable& table, std::span<con
                             "[{3:.6g}, {4:.6g}]: p {5} is not known. Where nothing is drawn, write entries of 0",
                     axis.name, x.front(), x.back(), axis.from, axis.to, end));
         };
-        if (axis.periodic) {
+        if (axis.is_periodic) {
             double step = 0;
             for (std::size_t i = 1; i < x.size(); ++i) step = std::max(step, x[i] - x[i - 1]);
             if (x.front() + (axis.to - axis.from) - x.back() > 2 * step * slack)
@@ -213,9 +213,10 @@ void check_coverage(FileDiagnostics& in, const NumberTable& table, std::span<con
     in.throw_if_any();
 }
 
-std::array<GridAxis, 2> direction_axes(bool sphere, const std::string& number) {
-    return {{{.name = "cos_theta" + number, .from = sphere ? -1.0 : 0.0, .poles = {sphere, true}, .fewest = 2},
-        {.name = "phi" + number, .to = 2 * pi, .periodic = true, .fewest = 2}}};
+std::array<GridAxis, 2> direction_axes(bool is_sphere, const std::string& number) {
+    return {
+        {{.name = "cos_theta" + number, .from = is_sphere ? -1.0 : 0.0, .poles = {is_sphere, true}, .fewest_values = 2},
+            {.name = "phi" + number, .to = 2 * pi, .is_periodic = true, .fewest_values = 2}}};
 }
 
 std::string place_of_row(const std::string& name, std::span<const unsigned> lines, std::size_t row) {
@@ -227,23 +228,23 @@ std::string place_of_row(const std::string& name, std::span<const unsigned> line
 
 namespace {
 
-double turned(double phi) { return phi < 0 ? phi + 2 * pi : phi; }
-double turned(Vec3d w) { return turned(math::atan2(w.y, w.x)); }
+double azimuth_of(double phi) { return phi < 0 ? phi + 2 * pi : phi; }
+double azimuth_of(Vec3d w) { return azimuth_of(math::atan2(w.y, w.x)); }
 
 }  // namespace
 
 SampleFile::SampleFile(const std::string& samples, const std::string& table) : name_(printable(samples)) {
     read_samples(samples);
     read_table(table);
-    cells_ = agrees_as_cells();
+    has_cells_ = agrees_as_cells();
 }
 
 void SampleFile::read_samples(const std::string& path) {
     FileDiagnostics in{path, {}};
-    const std::vector<std::string> without = {"u1", "u2", "wix", "wiy", "wiz", "pdf"};
-    std::vector<std::string> with = without;
-    with.emplace_back("f");
-    const NumberTable t = read_draws(in, {without, with});
+    const std::vector<std::string> columns = {"u1", "u2", "wix", "wiy", "wiz", "pdf"};
+    std::vector<std::string> f_columns = columns;
+    f_columns.emplace_back("f");
+    const NumberTable t = read_draws(in, {columns, f_columns});
     has_drawn_f_ = t.column("f") >= 0;
     lines_ = t.lines;
     for (std::size_t r = 0; r < t.rows(); ++r) {
@@ -259,22 +260,23 @@ void SampleFile::read_samples(const std::string& path) {
 void SampleFile::read_table(const std::string& path) {
     FileDiagnostics in{path, {}};
     const NumberTable t = read_table_file(in, {{"cos_theta", "phi", "pdf"}, {"wix", "wiy", "wiz", "pdf"}});
-    const bool polar = t.column("cos_theta") >= 0;
+    const bool is_polar = t.column("cos_theta") >= 0;
     std::vector<double> rows;
     double lowest = 1;
     for (std::size_t r = 0; r < t.rows(); ++r) {
         const auto value_of = [&](const char* name) { return t.value(r, name); };
-        const double cos = polar ? value_of("cos_theta") : value_of("wiz"), p = value_of("pdf");
-        const double phi = polar ? turned(value_of("phi")) : turned(Vec3d{value_of("wix"), value_of("wiy"), 0});
+        const double cos = is_polar ? value_of("cos_theta") : value_of("wiz"), p = value_of("pdf");
+        const double phi =
+            is_polar ? azimuth_of(value_of("phi")) : azimuth_of(Vec3d{value_of("wix"), value_of("wiy"), 0});
         rows.insert(rows.end(), {cos, phi, p});
         lowest = std::min(lowest, cos);
         if (!(std::fabs(cos) <= 1 + 1e-6) || !(phi >= 0 && phi <= 2 * pi + 1e-6) || !std::isfinite(p))
             in.add(t.line(r), 1, "no direction of the sphere with a finite pdf");
     }
     in.throw_if_any();
-    const bool sphere = lowest < -1e-6;
-    floor_ = sphere ? -1 : 0;
-    const std::array<GridAxis, 2> axes = direction_axes(sphere);
+    const bool is_sphere = lowest < -1e-6;
+    floor_ = is_sphere ? -1 : 0;
+    const std::array<GridAxis, 2> axes = direction_axes(is_sphere);
     grid_ = grid_of(in, {axes.begin(), axes.end()}, rows);
     check_coverage(in, t, axes, grid_, rows);
 }
@@ -282,23 +284,25 @@ void SampleFile::read_table(const std::string& path) {
 bool SampleFile::agrees_as_cells() const {
     CellAgreement out;
     for (const Draw& d : draws_)
-        if (d.pdf > 0) out.add(of_cell(d.wi), d.pdf);
+        if (d.pdf > 0) out.add(cell_value(d.wi), d.pdf);
     return out.holds();
 }
 
-double SampleFile::of_cell(Vec3d w) const { return w.z < floor_ ? 0 : grid_.of_cell(std::array{w.z, turned(w)}); }
+double SampleFile::cell_value(Vec3d w) const {
+    return w.z < floor_ ? 0 : grid_.cell_value(std::array{w.z, azimuth_of(w)});
+}
 
 void SampleFile::pdf(int, std::span<const Pair> pairs, std::span<double> out) const {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const Vec3d w = pairs[i].wi;
-        const std::array<double, 2> place = {w.z, turned(w)};
-        out[i] = w.z < floor_ ? 0 : cells_ ? grid_.of_cell(place) : grid_.between(place);
+        const std::array<double, 2> place = {w.z, azimuth_of(w)};
+        out[i] = w.z < floor_ ? 0 : has_cells_ ? grid_.cell_value(place) : grid_.value_between(place);
     }
 }
 
 double SampleFile::tabulation_error(Vec3d w) const {
-    const std::array<double, 2> place = {w.z, turned(w)};
-    return cells_ || w.z < floor_ ? 0 : grid_.error_between(place);
+    const std::array<double, 2> place = {w.z, azimuth_of(w)};
+    return has_cells_ || w.z < floor_ ? 0 : grid_.error_between(place);
 }
 
 std::string SampleFile::place(std::size_t row) const { return place_of_row(name_, lines_, row); }

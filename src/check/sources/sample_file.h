@@ -19,15 +19,15 @@ namespace crescent {
 /// Collects the mistakes of one file; throws InputError at the tenth, or in throw_if_any().
 struct FileDiagnostics {
     std::string path;
-    std::vector<Diagnostic> all;
+    std::vector<Diagnostic> diagnostics;
     /// Throws InputError with all mistakes at the tenth.
     void add(unsigned line, unsigned column, const std::string& message) {
-        all.push_back({{path, line, column}, message});
-        if (all.size() >= 10) throw InputError(all);
+        diagnostics.push_back({{path, line, column}, message});
+        if (diagnostics.size() >= 10) throw InputError(diagnostics);
     }
     /// Throws InputError with all mistakes, if there are any.
     void throw_if_any() const {
-        if (!all.empty()) throw InputError(all);
+        if (!diagnostics.empty()) throw InputError(diagnostics);
     }
 };
 
@@ -63,20 +63,20 @@ DensityGrid grid_of(FileDiagnostics& in, std::vector<GridAxis> axes, std::span<c
 void check_coverage(FileDiagnostics& in, const NumberTable& table, std::span<const GridAxis> axes,
     const DensityGrid& grid, std::span<const double> rows);
 /// cos theta and phi of directions; number: appended to the names.
-std::array<GridAxis, 2> direction_axes(bool sphere, const std::string& number = "");
+std::array<GridAxis, 2> direction_axes(bool is_sphere, const std::string& number = "");
 /// "samples.csv:17", or "samples.npy, row 16" without lines.
 std::string place_of_row(const std::string& name, std::span<const unsigned> lines, std::size_t row);
 
 /// A table is read as cells if nine of ten draws have exactly the value of their cell.
 struct CellAgreement {
-    std::size_t drawn = 0, alike = 0;
+    std::size_t draw_count = 0, agreement_count = 0;
     /// A draw with pdf p > 0 in a cell with this value.
-    void add(double of_cell, double p) {
-        ++drawn;
-        alike += std::fabs(of_cell - p) <= 1e-4 * p;
+    void add(double cell_value, double p) {
+        ++draw_count;
+        agreement_count += std::fabs(cell_value - p) <= 1e-4 * p;
     }
     /// Whether the table is read as cells.
-    bool holds() const { return 10 * alike >= 9 * drawn; }
+    bool holds() const { return 10 * agreement_count >= 9 * draw_count; }
 };
 
 // ---- Samples of a user's sampler, from a file, at one w_o: CSV with a header line, or NPY (a plain float array,
@@ -100,14 +100,14 @@ public:
 
 private:
     std::string name_;
-    bool has_drawn_f_ = false, cells_ = true;
+    bool has_drawn_f_ = false, has_cells_ = true;
     std::vector<unsigned> lines_;
     DensityGrid grid_;   // of cos theta and phi
     double floor_ = -1;  // the least cos theta; p is 0 below
     void read_samples(const std::string& path);
     void read_table(const std::string& path);
     bool agrees_as_cells() const;
-    double of_cell(Vec3d w) const;
+    double cell_value(Vec3d w) const;
 };
 
 }  // namespace crescent

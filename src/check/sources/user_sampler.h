@@ -105,9 +105,9 @@ template <class C> consteval int size_of() {
         if constexpr (is_built_from<B, 9>()) return -1;
         else {
             return []<int... n>(std::integer_sequence<int, n...>) {
-                int most = -1;
-                ((is_built_from<B, n + 2>() ? most = n + 2 : 0), ...);
-                return most;
+                int largest = -1;
+                ((is_built_from<B, n + 2>() ? largest = n + 2 : 0), ...);
+                return largest;
             }(std::make_integer_sequence<int, 7>{});
         }
     } else return -1;
@@ -274,18 +274,18 @@ struct Share {
 };
 template <class S> consteval auto shares() {
     using T = SampleParameters<S>;
-    constexpr std::size_t reads = input_count<T>(), from = without_wo<S>() ? 0 : 1;
-    std::array<Share, reads + 1> out{};
+    constexpr std::size_t inputs = input_count<T>(), from = without_wo<S>() ? 0 : 1;
+    std::array<Share, inputs + 1> out{};
     int next = 0;
     [&]<std::size_t... i>(std::index_sequence<i...>) { ((out[i].count = numbers_in<S, At<T, i>>()), ...); }(
-        std::make_index_sequence<reads>{});
+        std::make_index_sequence<inputs>{});
     for (int pass = 0; pass < 2; ++pass)  // those with two or more members first
-        for (std::size_t i = from; i < reads; ++i) {
+        for (std::size_t i = from; i < inputs; ++i) {
             if ((out[i].count > 1) != (pass == 0)) continue;
             out[i].first = next;
             next += out[i].count;
         }
-    out[reads].count = next;
+    out[inputs].count = next;
     return out;
 }
 template <class S> consteval int numbers() { return shares<S>()[input_count<SampleParameters<S>>()].count; }
@@ -311,9 +311,9 @@ template <class S, class C, std::size_t i> Filled<C> filled(Vec3d wo, const Prim
 template <class D> Draw described(const D& d) {
     Draw out{direction(d.wi), 1};
     if constexpr (requires { d.pdf; }) out.pdf = number_of(d.pdf);
-    const auto set_weight = [&](Vec3d w, bool coloured) {
+    const auto set_weight = [&](Vec3d w, bool is_coloured) {
         out.weights = w;
-        out.weight = coloured ? luminance(w) : w.x;
+        out.weight = is_coloured ? luminance(w) : w.x;
     };
     if constexpr (requires { d.weight; }) set_weight(colour(d.weight), Coloured<Bare<decltype(d.weight)>>);
     else if constexpr (requires { colour(d.f); }) {
@@ -354,21 +354,22 @@ concept HasWeight = requires(const D d) { d.weight; } || requires(const D d) { d
 template <class S, class... C>
 Draw written(S& s, Vec3d wo, const PrimarySample& u, std::type_identity<std::tuple<C...>>) {
     using T = std::tuple<C...>;
-    constexpr std::size_t reads = input_count<T>();
+    constexpr std::size_t inputs = input_count<T>();
     std::tuple<Value<C>...> store{};
     bool is_drawn = true;
     [&]<std::size_t... i, std::size_t... k>(std::index_sequence<i...>, std::index_sequence<k...>) {
-        const auto given = std::make_tuple(filled<S, At<T, i>, i>(wo, u)...);
+        const auto arguments = std::make_tuple(filled<S, At<T, i>, i>(wo, u)...);
         const auto call = [&] {
-            return s.sample(std::get<i>(given).get()..., pass_output<At<T, reads + k>>(std::get<reads + k>(store))...);
+            return s.sample(
+                std::get<i>(arguments).get()..., pass_output<At<T, inputs + k>>(std::get<inputs + k>(store))...);
         };
         if constexpr (std::convertible_to<typename OfSample<S>::Result, bool>) is_drawn = static_cast<bool>(call());
         else call();
-    }(std::make_index_sequence<reads>{}, std::make_index_sequence<output_count<T>()>{});
+    }(std::make_index_sequence<inputs>{}, std::make_index_sequence<output_count<T>()>{});
     if (!is_drawn) return {{0, 0, 1}, 0};
-    Draw out{direction(std::get<reads>(store)), number_of(std::get<reads + 1>(store))};
+    Draw out{direction(std::get<inputs>(store)), number_of(std::get<inputs + 1>(store))};
     if constexpr (output_count<T>() > 2) {
-        const auto& weight = std::get<reads + 2>(store);
+        const auto& weight = std::get<inputs + 2>(store);
         out.weights = colour(weight);
         out.weight = Coloured<Bare<decltype(weight)>> ? luminance(out.weights) : out.weights.x;
     }

@@ -14,15 +14,15 @@ namespace crescent::check {
 // together, for many small faults. The variance is predicted from the claimed density, so that draws in a half that
 // must be empty are fully significant.
 
-NodeSums& operator+=(NodeSums& to, const NodeSums& o) {
-    to.drawn += o.drawn;
-    to.claimed += o.claimed;
-    to.second += o.second;
-    to.solid_angle += o.solid_angle;
-    to.variance += o.variance;
-    to.doubt += o.doubt;
-    to.known_to += o.known_to;
-    to.largest = std::max(to.largest, o.largest);
+NodeSums& operator+=(NodeSums& to, const NodeSums& other) {
+    to.draw_mean += other.draw_mean;
+    to.claim += other.claim;
+    to.second += other.second;
+    to.solid_angle += other.solid_angle;
+    to.variance += other.variance;
+    to.doubt += other.doubt;
+    to.uncertainty += other.uncertainty;
+    to.largest = std::max(to.largest, other.largest);
     return to;
 }
 
@@ -35,14 +35,14 @@ std::vector<NodeSums> node_sums(const Evidence& e) {
         if (nodes[i].child < 0) {
             const auto l = static_cast<std::size_t>(nodes[i].leaf);
             const LeafIntegral& c = e.integrals.leaves[l];
-            s = {.drawn = o.leaves[l] / o.independent,
-                .claimed = c.bridge.value,
+            s = {.draw_mean = o.leaves[l] / o.independent,
+                .claim = c.bridge.value,
                 .second = c.second,
                 .solid_angle = c.solid_angle,
                 .variance = c.bridge.variance,
                 .doubt = c.bridge.doubt,
                 .largest = std::max(e.plan.largest_h() / o.independent, c.per_point * e.plan.tree.leaves()[l].q),
-                .known_to = known_to(e, l)};
+                .uncertainty = uncertainty_of(e, l)};
             continue;
         }
         for (int half : {0, 1}) s += out[static_cast<std::size_t>(nodes[i].child + half)];
@@ -51,36 +51,37 @@ std::vector<NodeSums> node_sums(const Evidence& e) {
 }
 
 double floor_of_cut(const TreeNode& x, double share) {
-    const double less = std::min(share, 1 - share), step = x.step;
-    const double moved = step / x.rect.width(x.along_phi) + less * step / (x.rect.width(!x.along_phi) + 1e-300);
-    return detection_floor * less + moved;
+    const double smaller_share = std::min(share, 1 - share), step = x.step;
+    const double moved_share =
+        step / x.rect.width(x.along_phi) + smaller_share * step / (x.rect.width(!x.along_phi) + 1e-300);
+    return detection_floor * smaller_share + moved_share;
 }
 
 NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::size_t node) {
     const TreeNode& x = e.plan.tree.nodes()[node];
     const NodeSums &a = sums[static_cast<std::size_t>(x.child)], &b = sums[static_cast<std::size_t>(x.child) + 1];
-    const double share = a.claimed / (a.claimed + b.claimed);
+    const double share = a.claim / (a.claim + b.claim);
     return split_between(a, b, e.observations.independent, floor_of_cut(x, share), e.pooled_draws());
 }
 
 NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double floor, double pooled) {
-    NodeSums both = a;
-    both += b;
+    NodeSums sum = a;
+    sum += b;
     NodeSplit out;
-    const double r = out.share = a.claimed / both.claimed, less = std::min(r, 1 - r);
-    out.difference = a.drawn - r * both.drawn;
+    const double r = out.share = a.claim / sum.claim, smaller_share = std::min(r, 1 - r);
+    out.difference = a.draw_mean - r * sum.draw_mean;
     // Given the draws of two samplers in the whole and in the part, those of one have a hypergeometric distribution. It
     // is that of a sum of independent indicators (Vatutin and Mikhailov 1982), so that Bennett's inequality holds.
-    out.visible = 1 - both.drawn * n / (both.claimed * pooled);
-    out.floor = out.visible * both.drawn * (floor + ((1 - r) * a.known_to + r * b.known_to) / both.claimed);
-    const double c2 = both.claimed * both.claimed, to_variance = both.drawn * both.drawn / (c2 * c2);
-    out.claim_variance = to_variance * (b.claimed * b.claimed * a.variance + a.claimed * a.claimed * b.variance);
+    out.visible = 1 - sum.draw_mean * n / (sum.claim * pooled);
+    out.floor = out.visible * sum.draw_mean * (floor + ((1 - r) * a.uncertainty + r * b.uncertainty) / sum.claim);
+    const double c2 = sum.claim * sum.claim, to_variance = sum.draw_mean * sum.draw_mean / (c2 * c2);
+    out.claim_variance = to_variance * (b.claim * b.claim * a.variance + a.claim * a.claim * b.variance);
     const auto fourth = [](double v) { return v * v * v * v; };
-    out.doubt = to_variance * to_variance * (fourth(b.claimed) * a.doubt + fourth(a.claimed) * b.doubt);
-    out.variance = out.visible * both.drawn / both.claimed * ((1 - r) * (1 - r) * a.second + r * r * b.second) / n +
+    out.doubt = to_variance * to_variance * (fourth(b.claim) * a.doubt + fourth(a.claim) * b.doubt);
+    out.variance = out.visible * sum.draw_mean / sum.claim * ((1 - r) * (1 - r) * a.second + r * r * b.second) / n +
         out.claim_variance;
-    out.one_draw = both.second / both.claimed;
-    out.smaller_half = less * n * c2 / (both.second + 1e-300);
+    out.one_draw = sum.second / sum.claim;
+    out.smaller_half = smaller_share * n * c2 / (sum.second + 1e-300);
     return out;
 }
 
@@ -108,10 +109,11 @@ public:
     /// What the first half of a node has beyond its share.
     ReplicateMean<Replicates> at(std::size_t node, const NodeSplit& s) const {
         const TreeNode& x = tree_.nodes()[node];
-        const Replicates &whole = sets_[static_cast<std::size_t>(x.row)],
-                         &half = sets_[static_cast<std::size_t>(tree_.nodes()[static_cast<std::size_t>(x.child)].row)];
+        const Replicates &node_sets = sets_[static_cast<std::size_t>(x.row)],
+                         &half_sets =
+                             sets_[static_cast<std::size_t>(tree_.nodes()[static_cast<std::size_t>(x.child)].row)];
         Replicates y;
-        for (std::size_t k = 0; k < y.size(); ++k) y[k] = (half[k] - s.share * whole[k]) * draw_;
+        for (std::size_t k = 0; k < y.size(); ++k) y[k] = (half_sets[k] - s.share * node_sets[k]) * draw_;
         return {y, s.one_draw * draw_};
     }
 
@@ -132,33 +134,32 @@ std::vector<SplitSets> split_sets(const Evidence& e) {
     return out;
 }
 
-/// drawn: the sum over the node, as in `test_nodes`.
-Answer answer_of_sets(std::span<const SplitSets> sets, std::size_t node, const NodeSplit& s, double drawn) {
-    Estimate claimed{.value = 0, .variance = s.claim_variance, .doubt = s.doubt};
-    const auto doubt_of = [](double variance) { return 2 * variance * variance / (replicate_sets - 1); };
+/// draw_mean: the sum over the node, as in `test_nodes`.
+Answer answer_of_sets(std::span<const SplitSets> sets, std::size_t node, const NodeSplit& s, double draw_mean) {
+    Estimate claim{.value = 0, .variance = s.claim_variance, .doubt = s.doubt};
     for (const SplitSets& second : sets.subspan(1)) {
         const ReplicateMean mean = second.at(node, s);
-        claimed.add({mean.mean, mean.variance, doubt_of(mean.variance)});
+        claim.add({mean.mean, mean.variance, mean.doubt});
     }
     const ReplicateMean mean = sets[0].at(node, s);
-    const double v = mean.variance + claimed.variance;
+    const double v = mean.variance + claim.variance;
     // Replicates are compared with replicates, so that the whole difference between two samplers is visible.
     Answer a{.family = Family::node_sets,
         .member = static_cast<int>(node),
-        .difference = mean.mean - claimed.value,
+        .difference = mean.mean - claim.value,
         .sd = std::sqrt(v),
         .floor = s.floor / s.visible,
         .p = 1,
-        .expected = s.share * drawn,
-        .claimed = claimed.variance / (v + 1e-300)};
-    a.p = student_p_of(std::fabs(a.difference) - a.floor, v, freedom(v, claimed.doubt + doubt_of(mean.variance)));
+        .expected = s.share * draw_mean,
+        .claim_share = claim.variance / (v + 1e-300)};
+    a.p = student_p_of(std::fabs(a.difference) - a.floor, v, freedom(v, claim.doubt + mean.doubt));
     return a;
 }
 
 /// The least number of draws of a part: expected, drawn, and of a second sampler.
-double least_draws(const Evidence& e, double drawn, double claimed) {
-    const double n = e.observations.independent, least = std::min(drawn, claimed) * n;
-    return e.second ? std::min(least, claimed * e.pooled_draws() - drawn * n) : least;
+double least_draws(const Evidence& e, double draw_mean, double claim) {
+    const double n = e.observations.independent, fewest = std::min(draw_mean, claim) * n;
+    return e.second ? std::min(fewest, claim * e.pooled_draws() - draw_mean * n) : fewest;
 }
 
 }  // namespace
@@ -170,7 +171,7 @@ void test_nodes(const Evidence& e, const Visit& visit) {
     const std::vector<SplitSets> sets = split_sets(e);
     std::vector<double> chi(static_cast<std::size_t>(e.plan.tree.depth()) + 1), degrees(chi.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (nodes[i].child < 0 || least_draws(e, sums[i].drawn, sums[i].claimed) < e.least) continue;
+        if (nodes[i].child < 0 || least_draws(e, sums[i].draw_mean, sums[i].claim) < e.fewest_draws) continue;
         const NodeSplit s = split_of(e, sums, i);
         const double z2 =
             bennett_z2(std::fabs(s.difference) - s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt));
@@ -180,16 +181,16 @@ void test_nodes(const Evidence& e, const Visit& visit) {
             .sd = std::sqrt(s.variance),
             .floor = s.floor,
             .p = bennett_p(z2),
-            .expected = s.share * sums[i].drawn,
-            .claimed = s.claim_variance / (s.variance + 1e-300)});
-        if (s.smaller_half < e.least) continue;
+            .expected = s.share * sums[i].draw_mean,
+            .claim_share = s.claim_variance / (s.variance + 1e-300)});
+        if (s.smaller_half < e.fewest_draws) continue;
         const auto depth = static_cast<std::size_t>(nodes[i].depth);
         chi[depth] += std::min(z2, 1e6);
         ++degrees[depth];
         // The mean of a replicate must be nearly normal: with fewer draws the tail of Student's t is wrong by orders of
         // magnitude.
-        if (!sets.empty() && nodes[i].depth < replicated_depth && s.smaller_half / replicate_sets >= e.least)
-            visit(answer_of_sets(sets, i, s, sums[i].drawn));
+        if (!sets.empty() && nodes[i].depth < replicated_depth && s.smaller_half / replicate_sets >= e.fewest_draws)
+            visit(answer_of_sets(sets, i, s, sums[i].draw_mean));
     }
     for (std::size_t d = 0; d < chi.size(); ++d)
         if (degrees[d] > 0)
@@ -209,7 +210,7 @@ namespace {
 /// Sums of a band, and the share of the draws that rounding may move across its edges.
 struct Band {
     NodeSums sums;
-    double moved = 0;
+    double moved_share = 0;
 };
 
 /// Adds the uncertainty of the leaves that overlap a band: their points may miss as much in the band as in the whole
@@ -223,17 +224,18 @@ void add_leaves(const Evidence& e, ByBand<Band>& to) {
         const LeafIntegral& leaf = e.integrals.leaves[l];
         for (std::size_t axis = 0; axis < chart_axes; ++axis) {
             const bool along_phi = axis == 1;
-            const double per = bands / axis_length[axis];
-            const double from = (along_phi ? r.phi0 : r.t0) * per, past = (along_phi ? r.phi1 : r.t1) * per;
-            const double moved = std::min(node.step / (r.width(along_phi) + 1e-300), 1.0);
-            for (double k = std::floor(from); k < past; ++k) {
+            const double bands_per_unit = bands / axis_length[axis];
+            const double from = (along_phi ? r.phi0 : r.t0) * bands_per_unit,
+                         last = (along_phi ? r.phi1 : r.t1) * bands_per_unit;
+            const double moved_share = std::min(node.step / (r.width(along_phi) + 1e-300), 1.0);
+            for (double k = std::floor(from); k < last; ++k) {
                 Band& band = to[axis * bands + static_cast<std::size_t>(k)];
                 band.sums.variance += leaf.bridge.variance;
                 band.sums.doubt += leaf.bridge.doubt;
-                band.sums.known_to += known_to(e, l);
+                band.sums.uncertainty += uncertainty_of(e, l);
                 band.sums.largest = std::max({band.sums.largest, e.plan.largest_h() / e.observations.independent,
                     leaf.per_point * tree.leaves()[l].q});
-                if (from <= k || past >= k + 1) band.moved += moved * leaf.bridge.value / total;
+                if (from <= k || last >= k + 1) band.moved_share += moved_share * leaf.bridge.value / total;
             }
         }
     }
@@ -242,13 +244,13 @@ void add_leaves(const Evidence& e, ByBand<Band>& to) {
 ByBand<Band> bands_of(const Evidence& e) {
     ByBand<Band> out;
     for (std::size_t i = 0; i < out.size(); ++i) {
-        const Estimate& claimed = e.integrals.bridge_by_band[i];
+        const Estimate& claim = e.integrals.bridge_by_band[i];
         NodeSums& s = out[i].sums;
-        s.drawn = e.observations.bands[i] / e.observations.independent;
-        s.claimed = claimed.value;
+        s.draw_mean = e.observations.bands[i] / e.observations.independent;
+        s.claim = claim.value;
         s.second = e.integrals.second_by_band[i];
-        s.variance = claimed.variance;
-        s.doubt = claimed.doubt;
+        s.variance = claim.variance;
+        s.doubt = claim.doubt;
     }
     add_leaves(e, out);
     return out;
@@ -262,18 +264,18 @@ void test_bands(const Evidence& e, const Visit& visit) {
     for (std::size_t axis = 0; axis < chart_axes; ++axis)
         for (std::size_t width = 1; width < bands; width *= 2)
             for (std::size_t first = 0; first < bands; first += width) {
-                Band inside, outside;
+                Band band, remainder;
                 for (std::size_t k = 0; k < bands; ++k) {
-                    Band& to = k >= first && k < first + width ? inside : outside;
+                    Band& to = k >= first && k < first + width ? band : remainder;
                     const Band& from = finest[axis * bands + k];
                     to.sums += from.sums;
-                    to.moved += from.moved;
+                    to.moved_share += from.moved_share;
                 }
-                const NodeSums &a = inside.sums, &b = outside.sums;
-                if (least_draws(e, a.drawn + b.drawn, a.claimed + b.claimed) < e.least) continue;
-                const double share = a.claimed / (a.claimed + b.claimed);
+                const NodeSums &a = band.sums, &b = remainder.sums;
+                if (least_draws(e, a.draw_mean + b.draw_mean, a.claim + b.claim) < e.fewest_draws) continue;
+                const double share = a.claim / (a.claim + b.claim);
                 const NodeSplit s = split_between(a, b, e.observations.independent,
-                    detection_floor * std::min(share, 1 - share) + inside.moved, e.pooled_draws());
+                    detection_floor * std::min(share, 1 - share) + band.moved_share, e.pooled_draws());
                 const double z2 = bennett_z2(std::fabs(s.difference) - s.floor, s.variance,
                     std::max(a.largest, b.largest), freedom(s.variance, s.doubt));
                 visit({.family = Family::band,
@@ -282,8 +284,8 @@ void test_bands(const Evidence& e, const Visit& visit) {
                     .sd = std::sqrt(s.variance),
                     .floor = s.floor,
                     .p = bennett_p(z2),
-                    .expected = s.share * (a.drawn + b.drawn),
-                    .claimed = s.claim_variance / (s.variance + 1e-300)});
+                    .expected = s.share * (a.draw_mean + b.draw_mean),
+                    .claim_share = s.claim_variance / (s.variance + 1e-300)});
             }
 }
 

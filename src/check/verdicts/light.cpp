@@ -22,22 +22,22 @@ Estimate mean_of(const Sums& s, double n) {
 void test_mean(const Evidence& e, int channel, const Visit& visit) {
     const auto c = static_cast<std::size_t>(channel);
     const Observations& o = e.observations;
-    const Estimate drawn = mean_of(o.mean[c], o.weighted_draws), &expected = e.integrals.light.mean[c];
-    const double v = drawn.variance + expected.variance, floor = detection_floor * expected.value;
+    const Estimate mean = mean_of(o.mean[c], o.weighted_draws), &expected = e.integrals.light.mean[c];
+    const double v = mean.variance + expected.variance, floor = detection_floor * expected.value;
     Answer a{.family = Family::mean,
         .member = channel,
-        .difference = drawn.value - expected.value,
+        .difference = mean.value - expected.value,
         .sd = std::sqrt(v),
         .floor = floor,
         .p = 1,
         .expected = expected.value,
-        .claimed = expected.variance / (v + 1e-300)};
-    const bool bridged = is_bridged(e.source);
-    const double largest = bridged ? e.plan.usual[c] : 0;  // upper bound of a bridged weight
-    if (bridged && !(largest > 0)) return;
-    a.p = bridged ? bennett_p(bennett_z2(
-                        std::fabs(a.difference) - floor, v, largest / o.weighted_draws, freedom(v, expected.doubt)))
-                  : 2 * normal_p_of(std::fabs(a.difference) - floor, v);
+        .claim_share = expected.variance / (v + 1e-300)};
+    const bool has_bridge = is_bridged(e.source);
+    const double largest = has_bridge ? e.plan.mean_weight[c] : 0;  // upper bound of a bridged weight
+    if (has_bridge && !(largest > 0)) return;
+    a.p = has_bridge ? bennett_p(bennett_z2(
+                           std::fabs(a.difference) - floor, v, largest / o.weighted_draws, freedom(v, expected.doubt)))
+                     : 2 * normal_p_of(std::fabs(a.difference) - floor, v);
     visit(a);
 }
 
@@ -47,21 +47,21 @@ void test_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
     const std::vector<TreeNode>& nodes = e.plan.tree.nodes();
     const auto c = static_cast<std::size_t>(channel);
     const double n = e.observations.weighted_draws;
-    std::vector<WeightSums> drawn(nodes.size());
+    std::vector<WeightSums> weights(nodes.size());
     std::vector<Estimate> expected(nodes.size());
     for (std::size_t i = nodes.size(); i-- > 0;) {
         if (nodes[i].child < 0) {
             const auto l = static_cast<std::size_t>(nodes[i].leaf);
-            drawn[i] = e.observations.weight_leaves[l][c];
+            weights[i] = e.observations.weight_leaves[l][c];
             expected[i] = e.integrals.light.leaves[l][c];
             continue;
         }
         for (int half : {0, 1}) {
             const auto k = static_cast<std::size_t>(nodes[i].child + half);
-            drawn[i].add(drawn[k]);
+            weights[i].add(weights[k]);
             expected[i].add(expected[k]);
         }
-        const WeightSums& w = drawn[i];
+        const WeightSums& w = weights[i];
         if (i == 0 || nodes[i].depth > mean_depth || w.count < mean_draws || w.largest * w.largest * 20 > w.square)
             continue;
         const double mean = w.sum / n, v = std::max(w.square / n - mean * mean, 0.0) / n + expected[i].variance;
@@ -81,8 +81,8 @@ void test_mean_by_nodes(const Evidence& e, int channel, const Visit& visit) {
 void test_albedo(const Evidence& e, int channel, const Visit& visit) {
     const auto c = static_cast<std::size_t>(channel);
     const Observations& o = e.observations;
-    const Estimate& of_density = e.integrals.light.albedo[c];
-    const double total = o.delta_power[c] + of_density.value, v = of_density.variance;
+    const Estimate& integral = e.integrals.light.albedo[c];
+    const double total = o.delta_power[c] + integral.value, v = integral.variance;
     Answer a{.family = Family::albedo,
         .member = channel,
         .difference = total - 1,
@@ -90,8 +90,8 @@ void test_albedo(const Evidence& e, int channel, const Visit& visit) {
         .floor = albedo_excess,
         .p = 1,
         .expected = 1,
-        .claimed = 1};
-    a.p = student_p_of(total - 1 - albedo_excess, v, freedom(v, of_density.doubt));
+        .claim_share = 1};
+    a.p = student_p_of(total - 1 - albedo_excess, v, freedom(v, integral.doubt));
     visit(a);
 }
 
@@ -116,27 +116,27 @@ bool mean_can_be_tested(const Evidence& e) {
 
 void test_light(const Evidence& e, const Visit& visit) {
     if (!e.source.has_f() || !(e.integrals.light.points > 0)) return;
-    const bool of_mean = mean_can_be_tested(e);
+    const bool has_testable_mean = mean_can_be_tested(e);
     for (int c = 0; c < e.source.channels(); ++c) {
-        if (of_mean) test_mean(e, c, visit);
-        if (of_mean && !e.source.has_density()) test_mean_by_nodes(e, c, visit);
+        if (has_testable_mean) test_mean(e, c, visit);
+        if (has_testable_mean && !e.source.has_density()) test_mean_by_nodes(e, c, visit);
         if (e.source.traits.has_surface()) test_albedo(e, c, visit);
     }
     if (!e.source.has_density() || e.plan.estimates) return;
     const LightIntegrals& l = e.integrals.light;
-    const double least = lost_light * l.lit.value;
+    const double threshold = lost_light * l.lit.value;
     Answer a{.family = Family::support,
         .member = 0,
         .difference = l.lost.value,
         .sd = std::sqrt(l.lost.variance),
-        .floor = least,
+        .floor = threshold,
         .p = 1,
         .expected = l.lit.value,
-        .claimed = 1};
-    // If at most `least` were lost, the sum over points with contributions of at most b would have a variance of at
-    // most b times `least`.
-    a.p = l.lost_again.value > least
-        ? bennett_p(bennett_z2(l.lost_again.value - least, l.largest_lost * least, l.largest_lost, 1e12))
+        .claim_share = 1};
+    // If at most `threshold` were lost, the sum over points with contributions of at most b would have a variance of at
+    // most b times `threshold`.
+    a.p = l.separate_lost.value > threshold
+        ? bennett_p(bennett_z2(l.separate_lost.value - threshold, l.largest_lost * threshold, l.largest_lost, 1e12))
         : 1;
     visit(a);
 }

@@ -62,9 +62,9 @@ struct Answer {
     int member = 0;         // channel, axis, node, band or depth
     double difference = 0;  // left side less right side
     double sd = 0, floor = 0;
-    double p = 1;         // two-sided
-    double expected = 0;  // right side
-    double claimed = 0;   // share of the variance that is due to the integrals
+    double p = 1;            // two-sided
+    double expected = 0;     // right side
+    double claim_share = 0;  // share of the variance that is due to the integrals
 };
 
 using Visit = std::function<void(const Answer&)>;
@@ -79,7 +79,7 @@ struct Evidence {
     /// one distribution.
     const Observations* second = nullptr;
     /// Nodes with fewer expected draws are not tested.
-    double least = least_count;
+    double fewest_draws = least_count;
 
     /// Whether there is a right side: a density, or draws of a second sampler.
     bool has_density() const { return second || source.has_density(); }
@@ -123,14 +123,15 @@ std::array<WholeSum, integrands> compare_sums(const Evidence& e);
 
 /// How well h p of a leaf is known: as well as a tabulated p, and as the arithmetic of the sampler allows. Where
 /// rounding makes p 0 or too small, the draws show how much it may be.
-inline double known_to(const Evidence& e, std::size_t leaf) {
+inline double uncertainty_of(const Evidence& e, std::size_t leaf) {
     const LeafIntegral& x = e.integrals.leaves[leaf];
-    return x.known_to + x.rounding * std::max(x.bridge.value, e.observations.leaves[leaf] / e.observations.independent);
+    return x.tabulation_error +
+        x.rounding * std::max(x.bridge.value, e.observations.leaves[leaf] / e.observations.independent);
 }
 
 /// O and C of every node, from its leaves, and the division of its h between its halves.
 struct NodeSums {
-    double drawn = 0, claimed = 0, second = 0, solid_angle = 0, variance = 0, doubt = 0, largest = 0, known_to = 0;
+    double draw_mean = 0, claim = 0, second = 0, solid_angle = 0, variance = 0, doubt = 0, largest = 0, uncertainty = 0;
 };
 std::vector<NodeSums> node_sums(const Evidence& e);
 NodeSums& operator+=(NodeSums& to, const NodeSums& other);

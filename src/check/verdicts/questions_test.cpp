@@ -83,9 +83,9 @@ TEST(TestsOfDensity, WithoutAPdfThereAreNone) {
 // 60 of 100 draws in a half that p gives 1/2: the difference 0.1, the variance 1/4 / 100 and that of the integrals.
 TEST(SplitsOfNodes, CompareShares) {
     NodeSums a, b;
-    a.drawn = 0.6;
-    b.drawn = 0.4;
-    a.claimed = b.claimed = a.second = b.second = 0.5;
+    a.draw_mean = 0.6;
+    b.draw_mean = 0.4;
+    a.claim = b.claim = a.second = b.second = 0.5;
     a.variance = b.variance = 1e-4;
     const NodeSplit s = split_between(a, b, 100, 0.01);
     EXPECT_DOUBLE_EQ(s.share, 0.5);
@@ -94,7 +94,7 @@ TEST(SplitsOfNodes, CompareShares) {
     EXPECT_DOUBLE_EQ(s.claim_variance, 0.25 * 2e-4);
     EXPECT_DOUBLE_EQ(s.variance, 0.25 / 100 + s.claim_variance);
     EXPECT_DOUBLE_EQ(s.smaller_half, 50);
-    a.known_to = 0.02;  // p of this half may be off by 4 %
+    a.uncertainty = 0.02;  // p of this half may be off by 4 %
     EXPECT_DOUBLE_EQ(split_between(a, b, 100, 0.01).floor, 0.01 + 0.5 * 0.02);
 }
 

@@ -34,14 +34,15 @@ inline double bennett_p(double z2) { return std::min(1.0, 2 * math::exp(-z2 / 2)
 
 /// Mean and variance of the mean of replicates, where one draw changes a replicate by `jump`. The variance is at least
 /// `least_jumps`^2 of a jump: a count that is n in most replicates and n + 1 in a few sometimes shows no spread, and
-/// Student's t would then be infinite.
+/// Student's t would then be infinite. doubt: variance of that variance, for normal replicates.
 template <class Values> struct ReplicateMean {
-    double mean = 0, variance = 0;
+    double mean = 0, variance = 0, doubt = 0;
     ReplicateMean(const Values& y, double jump) {
         const double n = static_cast<double>(y.size());
         for (double v : y) mean += v / n;
         for (double v : y) variance += (v - mean) * (v - mean) / (n * (n - 1));
         variance += least_jumps * least_jumps * jump * jump / n;
+        doubt = 2 * variance * variance / (n - 1);
     }
 };
 
@@ -65,8 +66,8 @@ template <class Answer> struct LeastOf {
 template <class Answer, class VisitAll> auto least_by_family(const VisitAll& visit_all) {
     std::map<decltype(Answer::family), LeastOf<Answer>> out;
     visit_all([&](const Answer& a) {
-        LeastOf<Answer>& least = out[a.family];
-        if (least.members++ == 0 || a.p < least.answer.p) least.answer = a;
+        LeastOf<Answer>& entry = out[a.family];
+        if (entry.members++ == 0 || a.p < entry.answer.p) entry.answer = a;
     });
     return out;
 }
@@ -81,9 +82,9 @@ template <class Answer, class VisitAll> Answer same_member(const VisitAll& visit
     return out;
 }
 
-/// The one-sided p of `again` for a difference with the sign of the first one.
-template <class Answer> double one_sided(const Answer& first, const Answer& again) {
-    return (again.difference > 0) == (first.difference > 0) ? again.p / 2 : 1;
+/// The one-sided p of `second` for a difference with the sign of the first one.
+template <class Answer> double one_sided(const Answer& first, const Answer& second) {
+    return (second.difference > 0) == (first.difference > 0) ? second.p / 2 : 1;
 }
 
 }  // namespace crescent::check

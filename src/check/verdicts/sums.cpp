@@ -31,13 +31,13 @@ double rounding_of_sum(const Evidence& e, std::size_t q) {
         const LeafIntegral& leaf = e.integrals.leaves[l];
         if (!(leaf.rounding > 0)) continue;
         const double h = leaf.second > 0 ? leaf.second / leaf.bridge.value : 0.5;
-        out += known_to(e, l) / h * std::fabs(values_in(e, l, h)[q]);
+        out += uncertainty_of(e, l) / h * std::fabs(values_in(e, l, h)[q]);
     }
     return out;
 }
 
 /// The variance of one draw due to leaves without draws: replicates that all miss them do not show it.
-Values unmet_variance(const Evidence& e) {
+Values missing_variance_of(const Evidence& e) {
     Values out{};
     for (std::size_t l = 0; l < e.integrals.leaves.size(); ++l) {
         const LeafIntegral& leaf = e.integrals.leaves[l];
@@ -63,11 +63,11 @@ double floor_of_sum(const Evidence& e, std::size_t q) {
     const Sums& s = e.observations.sums[q];
     const double n = e.observations.independent;
     // Rounding always to one side changes h by half a step on average.
-    const double known_to = e.integrals.known_to[q] + rounding_of_sum(e, q) + e.plan.per_step[q] / 2;
+    const double uncertainty = e.integrals.tabulation_error[q] + rounding_of_sum(e, q) + e.plan.per_step[q] / 2;
     // The integral of p lacks what its points do not resolve, where this share of the draws is.
     const double unresolved = q == mass ? e.observations.share_unresolved() : 0;
-    if (q < slope) return detection_floor * std::max(s.sum / n, e.integrals.sums[q].value) + known_to + unresolved;
-    return detection_floor * std::sqrt(s.square / n) + (q == slope ? ulp : 0) + known_to;
+    if (q < slope) return detection_floor * std::max(s.sum / n, e.integrals.sums[q].value) + uncertainty + unresolved;
+    return detection_floor * std::sqrt(s.square / n) + (q == slope ? ulp : 0) + uncertainty;
 }
 
 /// Mean and mean square of the values of a sum, over all draws that have one distribution.
@@ -98,57 +98,57 @@ double largest_value(const Evidence& e, std::size_t q) {
 
 SumComparison compare_draws(const Evidence& e, std::size_t q) {
     const double n = e.observations.independent;
-    const Estimate& claimed = e.integrals.sums[q];
+    const Estimate& claim = e.integrals.sums[q];
     const Moments moments = moments_of(e, q);
-    const bool vary = draws_vary(e, q);
-    SumComparison out{.difference = e.observations.sums[q].sum / n - claimed.value,
+    const bool has_variance = draws_vary(e, q);
+    SumComparison out{.difference = e.observations.sums[q].sum / n - claim.value,
         .floor = floor_of_sum(e, q),
-        .drawn_variance =
-            vary ? std::max(moments.square - moments.mean * moments.mean, 0.0) / n : least_spread * least_spread,
-        .claim_variance = claimed.variance,
+        .drawn_variance = has_variance ? std::max(moments.square - moments.mean * moments.mean, 0.0) / n
+                                       : least_spread * least_spread,
+        .claim_variance = claim.variance,
         .freedom = 0,
-        .largest = vary ? largest_value(e, q) / n : 0,
+        .largest = has_variance ? largest_value(e, q) / n : 0,
         .visible = 1 - n / e.pooled_draws()};
     out.floor *= out.visible;
     out.drawn_variance *= out.visible;
-    out.freedom = freedom(out.variance(), claimed.doubt);
+    out.freedom = freedom(out.variance(), claim.doubt);
     return out;
 }
 
 /// Draws of a second sampler are compared by its own replicates, so that the whole difference is visible.
-std::optional<SumComparison> compare_sets(const Evidence& e, std::size_t q, double unmet) {
+std::optional<SumComparison> compare_sets(const Evidence& e, std::size_t q, double missing_variance) {
     const Observations& o = e.observations;
     if (o.scrambled == 0 || (e.second && e.second->scrambled == 0) || !draws_vary(e, q)) return {};
-    const auto doubt_of = [](double variance) { return 2 * variance * variance / (replicate_sets - 1); };
-    Estimate claimed = e.integrals.sums[q];
+    Estimate claim = e.integrals.sums[q];
     if (e.second) {
         const ReplicateMean<Replicates> sets = replicate_mean(*e.second, q);
-        claimed = {sets.mean, sets.variance, doubt_of(sets.variance)};
+        claim = {sets.mean, sets.variance, sets.doubt};
     }
     const ReplicateMean<Replicates> sets = replicate_mean(o, q);
-    SumComparison out{.difference = sets.mean - claimed.value,
+    SumComparison out{.difference = sets.mean - claim.value,
         .floor = floor_of_sum(e, q),
-        .drawn_variance = sets.variance + unmet / o.scrambled,
-        .claim_variance = claimed.variance,
+        .drawn_variance = sets.variance + missing_variance / o.scrambled,
+        .claim_variance = claim.variance,
         .freedom = 0,
         .largest = 0,
         .visible = 1};
-    out.freedom = freedom(out.variance(), claimed.doubt + doubt_of(sets.variance));
+    out.freedom = freedom(out.variance(), claim.doubt + sets.doubt);
     return out;
 }
 
 }  // namespace
 
 double SumComparison::p() const {
-    const double beyond = std::fabs(difference) - floor;
-    return largest > 0 ? bennett_p(bennett_z2(beyond, variance(), largest, freedom))
-                       : student_p_of(beyond, variance(), freedom);
+    const double excess = std::fabs(difference) - floor;
+    return largest > 0 ? bennett_p(bennett_z2(excess, variance(), largest, freedom))
+                       : student_p_of(excess, variance(), freedom);
 }
 
 std::array<WholeSum, integrands> compare_sums(const Evidence& e) {
-    const Values unmet = unmet_variance(e);
+    const Values missing_variances = missing_variance_of(e);
     std::array<WholeSum, integrands> out;
-    for (std::size_t q = 0; q < integrands; ++q) out[q] = {compare_draws(e, q), compare_sets(e, q, unmet[q])};
+    for (std::size_t q = 0; q < integrands; ++q)
+        out[q] = {compare_draws(e, q), compare_sets(e, q, missing_variances[q])};
     return out;
 }
 
@@ -164,7 +164,7 @@ void test_sums(const Evidence& e, const Visit& visit) {
                 .floor = s.floor,
                 .p = s.p(),
                 .expected = e.integrals.sums[static_cast<std::size_t>(q)].value,
-                .claimed = s.claim_variance / (s.variance() + 1e-300)});
+                .claim_share = s.claim_variance / (s.variance() + 1e-300)});
         };
         const WholeSum& s = sums[static_cast<std::size_t>(q)];
         visit_sum(sum_kinds[q].family, s.by_draws);

@@ -35,12 +35,12 @@ std::string path_in_baseline(
     auto path = target.path(file.view, file.wildcards);
     if (!path) path = target.path(file.view, {fmt::format("{:03}", number)});
     if (!path)
-        throw InputError(target.at(),
+        throw InputError(target.location(),
             fmt::format("no name for {} follows from the pattern '{}': expected as many wildcards as in '{}'",
                 file.path, target.text(), candidate.text()));
-    const auto found = target.match(*path);
-    if (!found || found->view != file.view)
-        throw InputError(target.at(),
+    const auto match = target.match(*path);
+    if (!match || match->view != file.view)
+        throw InputError(target.location(),
             fmt::format("{} would be stored as {}, which the pattern '{}' does not match: expected a pattern that does",
                 file.path, *path, target.text()));
     return *path;
@@ -48,10 +48,10 @@ std::string path_in_baseline(
 
 std::vector<Accepted> files_to_accept(const Suite& suite, const SuiteView& view, const std::string& folder) {
     std::vector<Accepted> out;
-    const std::vector<std::vector<MatchedFile>> found = files_of_patterns(suite.candidate);
+    const std::vector<std::vector<MatchedFile>> files = files_of_patterns(suite.candidate);
     for (std::size_t p = 0; p < suite.candidate.size(); ++p) {
         const FilePattern& target = suite.baseline[suite.baseline.size() == suite.candidate.size() ? p : 0];
-        for (const MatchedFile& file : found[p]) {
+        for (const MatchedFile& file : files[p]) {
             if (file.view != view.name) continue;
             const std::string path = path_in_baseline(target, suite.candidate[p], file, out.size() + 1);
             out.push_back({file.path, name_in(folder, path), {}});
@@ -59,11 +59,11 @@ std::vector<Accepted> files_to_accept(const Suite& suite, const SuiteView& view,
     }
     std::map<std::string, std::string> names;
     for (const Accepted& file : out) {
-        const auto [before, fresh] = names.emplace(file.name, file.from);
-        if (!fresh)
+        const auto [entry, is_new] = names.emplace(file.name, file.from);
+        if (!is_new)
             throw InputError({file.from, 0, 0},
                 fmt::format(
-                    "expected a name of its own in the baseline, found that of {}: {}", before->second, file.name));
+                    "expected a name of its own in the baseline, found that of {}: {}", entry->second, file.name));
     }
     return out;
 }
@@ -72,10 +72,10 @@ std::vector<Accepted> files_to_accept(const Suite& suite, const SuiteView& view,
 std::string moments_name(const Suite& suite, const SuiteView& view, const std::string& folder) {
     for (const FilePattern& pattern : suite.baseline) {
         const auto path = pattern.path(view.name, {"moments"});
-        const auto found = path ? pattern.match(*path) : std::nullopt;
-        if (found && found->view == view.name && path->ends_with(".exr")) return name_in(folder, *path);
+        const auto match = path ? pattern.match(*path) : std::nullopt;
+        if (match && match->view == view.name && path->ends_with(".exr")) return name_in(folder, *path);
     }
-    throw InputError(suite.baseline.front().at(),
+    throw InputError(suite.baseline.front().location(),
         fmt::format(
             "store = \"moments\": expected a pattern of the baseline that ends with .exr and matches 'moments' in "
             "the place of one *, found '{}'",
@@ -88,7 +88,7 @@ ComparePlan plan_of_candidate(const Suite& suite, const SuiteView& view, const s
     plan.file = suite.file.empty() ? "crescent compare" : suite.file;
     RenderArm& arm = plan.arms.emplace_back();
     arm.name = "candidate";
-    arm.at = {plan.file, 0, 0};
+    arm.location = {plan.file, 0, 0};
     arm.files = files;
     arm.layer = suite.options.layer;
     plan.regions = view.regions;
@@ -133,7 +133,7 @@ RenderSource source_of(const std::vector<Accepted>& files, const ReadingOptions&
         } catch (const InputError& e) {
             std::vector<Diagnostic> mistakes = e.diagnostics();
             for (Diagnostic& mistake : mistakes)
-                if (mistake.at.file == copy) mistake.at.file = path;
+                if (mistake.location.file == copy) mistake.location.file = path;
             throw InputError(std::move(mistakes));
         }
     };
@@ -163,9 +163,9 @@ std::vector<const SuiteView*> wanted_views(const Suite& suite, const Acceptance&
     for (const SuiteView& view : suite.views) {
         available.push_back(view.name);
         const auto& names = acceptance.views;
-        const bool named = std::find(names.begin(), names.end(), view.name) != names.end();
-        if (named || (names.empty() && !view.candidate.empty())) out.push_back(&view);
-        if (named && view.candidate.empty() && acceptance.because.empty())
+        const bool is_named = std::find(names.begin(), names.end(), view.name) != names.end();
+        if (is_named || (names.empty() && !view.candidate.empty())) out.push_back(&view);
+        if (is_named && view.candidate.empty() && acceptance.because.empty())
             throw InputError({"--accept " + view.name, 0, 0},
                 "the candidate has no render of this view: expected --because TEXT with it, which removes the view "
                 "from the "
@@ -200,8 +200,8 @@ void copy(const std::string& from, const std::string& to) {
 /// The renders of the baseline of a view, as the manifest or its moments state it.
 std::size_t former_renders(const Suite& suite, const SuiteView& view) {
     if (suite.manifest)
-        if (const auto found = suite.manifest->views.find(view.name); found != suite.manifest->views.end())
-            return found->second.renders;
+        if (const auto entry = suite.manifest->views.find(view.name); entry != suite.manifest->views.end())
+            return entry->second.renders;
     return view.baseline.size();
 }
 
@@ -209,13 +209,13 @@ std::size_t former_renders(const Suite& suite, const SuiteView& view) {
 /// there is nothing. Throws InputError if no reason is given for it.
 std::string check_reason(
     const Suite& suite, const SuiteView& view, const RenderStats& stats, const Acceptance& acceptance) {
-    std::vector<std::string> found;
-    if (const std::size_t before = former_renders(suite, view); view.candidate.size() < before)
-        found.push_back(fmt::format("fewer renders than the {} of the former baseline", before));
+    std::vector<std::string> remarks;
+    if (const std::size_t former_count = former_renders(suite, view); view.candidate.size() < former_count)
+        remarks.push_back(fmt::format("fewer renders than the {} of the former baseline", former_count));
     if (stats.bad_pixels > 0)
-        found.push_back(fmt::format("{} not finite in some render{}", plural(stats.bad_pixels, "pixel"),
+        remarks.push_back(fmt::format("{} not finite in some render{}", plural(stats.bad_pixels, "pixel"),
             stats.bad_files.empty() ? "" : " (" + stats.bad_files + ")"));
-    const std::string text = fmt::format("{}", fmt::join(found, "; "));
+    const std::string text = fmt::format("{}", fmt::join(remarks, "; "));
     if (!text.empty() && acceptance.because.empty())
         throw InputError({"--accept " + view.name, 0, 0}, text + ": expected --because TEXT with it");
     return text;
@@ -320,8 +320,8 @@ void check_others(const Suite& suite, const std::vector<const SuiteView*>& accep
     std::vector<Diagnostic> mistakes;
     for (const SuiteView& view : suite.views) {
         if (std::find(accepted.begin(), accepted.end(), &view) != accepted.end()) continue;
-        const std::vector<Diagnostic> found = manifest_differences(*suite.manifest, view.name, view.baseline);
-        mistakes.insert(mistakes.end(), found.begin(), found.end());
+        const std::vector<Diagnostic> differences = manifest_differences(*suite.manifest, view.name, view.baseline);
+        mistakes.insert(mistakes.end(), differences.begin(), differences.end());
     }
     throw_if_any(std::move(mistakes));
 }
@@ -329,13 +329,13 @@ void check_others(const Suite& suite, const std::vector<const SuiteView*>& accep
 /// Waits for another call that accepts views of the same baseline.
 std::unique_ptr<Staging> stage_baseline(const std::string& folder, ProgressMonitor& monitor) {
     constexpr std::chrono::milliseconds step(50), longest = std::chrono::minutes(10);
-    for (std::chrono::milliseconds waited(0);; waited += step) {
+    for (std::chrono::milliseconds waiting_time(0);; waiting_time += step) {
         try {
             return std::make_unique<Staging>(folder, "baseline");
         } catch (const FolderInUse&) {
-            if (waited >= longest) throw;
+            if (waiting_time >= longest) throw;
         }
-        if (waited.count() == 0) monitor.log(folder + " is in use by another run: waiting for it");
+        if (waiting_time.count() == 0) monitor.log(folder + " is in use by another run: waiting for it");
         monitor.check();
         std::this_thread::sleep_for(step);
     }
@@ -345,9 +345,9 @@ std::unique_ptr<Staging> stage_baseline(const std::string& folder, ProgressMonit
 
 std::vector<std::string> accept_views(
     const std::function<Suite()>& read, const Acceptance& acceptance, ProgressMonitor& monitor) {
-    const Suite before = read();
-    const std::string folder = baseline_folder(before);
-    wanted_views(before, acceptance);
+    const Suite unlocked_suite = read();
+    const std::string folder = baseline_folder(unlocked_suite);
+    wanted_views(unlocked_suite, acceptance);
     const std::unique_ptr<Staging> staging = stage_baseline(folder, monitor);
     const Suite suite = read();  // another call may have accepted views before this one had the lock
     if (baseline_folder(suite) != folder)

@@ -285,7 +285,7 @@ TEST_F(Accepting, MomentsGiveTheNumbersOfTheirRenders) {
             EXPECT_NEAR(x.smallest, y.smallest, 1e-2 * x.smallest);
             EXPECT_NEAR(a.variances[r].welch.se, b.variances[r].welch.se, 1e-3 * a.variances[r].welch.se);
         }
-        EXPECT_EQ(a.means->tiles.tested, b.means->tiles.tested);
+        EXPECT_EQ(a.means->tiles.test_count, b.means->tiles.test_count);
         EXPECT_NEAR(static_cast<double>(a.means->tiles.different), static_cast<double>(b.means->tiles.different), 1);
         EXPECT_NEAR(std::log(a.mean_p), std::log(b.mean_p), 0.05 * std::fabs(std::log(a.mean_p)) + 0.05);
     }
@@ -335,8 +335,8 @@ TEST_F(Accepting, ThePlanStatesRendersThatAreEnough) {
     const std::vector<ViewPlan> plans = plan_renders(read_suite(path("s.toml"), flags), monitor);
     ASSERT_EQ(plans.size(), 1u);
     EXPECT_EQ(plans[0].renders, 12u);
-    ASSERT_TRUE(plans[0].needed[1] && plans[0].needed[2]);
-    EXPECT_GT(*plans[0].needed[1], *plans[0].needed[2]);  // fewer with four times the samples
+    ASSERT_TRUE(plans[0].render_counts[1] && plans[0].render_counts[2]);
+    EXPECT_GT(*plans[0].render_counts[1], *plans[0].render_counts[2]);  // fewer with four times the samples
     // A pixel has a standard deviation of 20 % in each channel: that of mean Y follows from the weights.
     const double sd = 0.2 / side * std::sqrt(0.2126 * 0.2126 + 0.7152 * 0.7152 + 0.0722 * 0.0722);
     EXPECT_NEAR(plans[0].deviation, sd, 0.6 * sd);  // of 12 renders: standard error 21 %

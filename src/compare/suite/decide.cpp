@@ -15,11 +15,11 @@ namespace {
 /// Divides the level of the suite between the numbers of outlier pixels and all else. Whether a number is tested
 /// depends on the sum over both sides alone, which says nothing about a difference.
 void share_level(std::vector<ViewResult>& views, double alpha) {
-    const auto tested =
+    const auto test_count =
         std::count_if(views.begin(), views.end(), [](const ViewResult& view) { return !std::isnan(view.outliers.p); });
     for (ViewResult& view : views) {
-        view.outlier_level = alpha * share_of_outliers / static_cast<double>(std::max<std::ptrdiff_t>(1, tested));
-        view.share_of_variances = 1 - share_of_means - (tested > 0 ? share_of_outliers : 0) -
+        view.outlier_level = alpha * share_of_outliers / static_cast<double>(std::max<std::ptrdiff_t>(1, test_count));
+        view.share_of_variances = 1 - share_of_means - (test_count > 0 ? share_of_outliers : 0) -
             (std::isnan(view.outlier_render.p) ? 0 : share_of_render);
     }
 }
@@ -80,15 +80,14 @@ int compare_variances(ViewResult& view) {
 }
 
 std::string variance_sentence(const ViewResult& view, int sign) {
-    const VarianceTest* shown = nullptr;
+    const VarianceTest* test = nullptr;
     for (const VarianceTest& t : view.variances)
-        if (t.different && (t.candidate > t.baseline) == (sign > 0) && (!shown || t.welch.p < shown->welch.p))
-            shown = &t;
+        if (t.different && (t.candidate > t.baseline) == (sign > 0) && (!test || t.welch.p < test->welch.p)) test = &t;
     std::string out = fmt::format("The variance of a pixel in {} is {} times that of the baseline (p = {:.2g}).",
-        shown->region, figures(shown->candidate / shown->baseline, 3), shown->welch.p);
+        test->region, figures(test->candidate / test->baseline, 3), test->welch.p);
     if (sign > 0 && !view.noisiest.empty()) out += fmt::format(" It grew the most in {}.", view.noisiest);
-    if (shown->smallest > 1 && std::isfinite(shown->smallest))
-        out += fmt::format(" {} times would be found with a probability of 90 %.", figures(shown->smallest, 3));
+    if (test->smallest > 1 && std::isfinite(test->smallest))
+        out += fmt::format(" {} times would be found with a probability of 90 %.", figures(test->smallest, 3));
     return out;
 }
 
@@ -139,7 +138,7 @@ std::string exact_sentence(const ViewResult& view) {
         figures(e.absolute, 3));
     if (e.one_sided > 0) out += fmt::format(" {}.", one_sided_text(e));
     if (view.tolerated) out += " That is within the tolerance.";
-    else if (e.beyond > 0) out += fmt::format(" Beyond the tolerance: {}.", plural(e.beyond, "pixel"));
+    else if (e.excess > 0) out += fmt::format(" Beyond the tolerance: {}.", plural(e.excess, "pixel"));
     return out;
 }
 
@@ -149,7 +148,7 @@ std::string exact_headline(const ViewResult& view) {
     std::string out = fmt::format("{}: {} of {} pixels differ, by at most {}, at ({}, {})",
         view.tolerated ? "Within the tolerance" : "Changed", e.different, e.pixels, steps_text(e), e.x, e.y);
     if (e.one_sided > 0) out += "; " + one_sided_text(e);
-    if (e.beyond > 0) out += fmt::format("; {} beyond the tolerance", e.beyond);
+    if (e.excess > 0) out += fmt::format("; {} beyond the tolerance", e.excess);
     return out + ".";
 }
 
@@ -197,12 +196,12 @@ std::string outliers_sentence(const ViewResult& view, bool differ) {
 
 /// Names the render that does not belong to the others.
 std::string outlier_render_sentence(const ViewOutlierRender& r, bool differs) {
-    const std::string how = r.pixels > 0
+    const std::string reason = r.pixels > 0
         ? fmt::format("it has {} outlier pixels, more than renders of equal noise have", r.pixels)
         : fmt::format("it deviates by {} of their standard deviations, and its mean Y is {} times theirs",
               figures(r.deviation, 2), figures(r.ratio, 3));
     return fmt::format("{} {} to the other renders of the {}: {} (p = {:.2g}).", r.file,
-        differs ? "does not belong" : "may not belong", r.candidate ? "candidate" : "baseline", how, r.p);
+        differs ? "does not belong" : "may not belong", r.candidate ? "candidate" : "baseline", reason, r.p);
 }
 
 void add_sentence(std::string& to, const std::string& sentence) {
@@ -212,18 +211,18 @@ void add_sentence(std::string& to, const std::string& sentence) {
 
 void decide_compared(ViewResult& view) {
     BiasResult& means = *view.means;
-    const bool changed = view.mean_p / share_of_means <= view.level;
-    const bool outliers = view.outliers.p <= view.outlier_level;
-    const bool render = view.outlier_render.p / share_of_render <= view.level;
-    constexpr double named = 0.01;  // a deviation this rare is named at any level: it widens the variance
-    const bool doubtful = !view.exact && (render || view.outlier_render.p <= named);
-    if (doubtful) view.renders_needed.reset();
-    const int variance = view.noise == NoiseDemand::ignore ? 0 : compare_variances(view);
-    if (!changed) forget_places(view);
-    if (variance == 0) view.pictures.noise.clear();
+    const bool means_differ = view.mean_p / share_of_means <= view.level;
+    const bool outliers_differ = view.outliers.p <= view.outlier_level;
+    const bool render_deviates = view.outlier_render.p / share_of_render <= view.level;
+    constexpr double rare_p = 0.01;  // a deviation this rare is named at any level: it widens the variance
+    const bool is_doubtful = !view.exact && (render_deviates || view.outlier_render.p <= rare_p);
+    if (is_doubtful) view.renders_needed.reset();
+    const int sign = view.noise == NoiseDemand::ignore ? 0 : compare_variances(view);
+    if (!means_differ) forget_places(view);
+    if (sign == 0) view.pictures.noise.clear();
     if (!view.non_finite.empty()) {
         view.state = ViewState::changed;
-        view.sentence = view.non_finite + (changed && !view.exact ? " " + means.sentence : "");
+        view.sentence = view.non_finite + (means_differ && !view.exact ? " " + means.sentence : "");
     } else if (!view.untestable.empty()) {
         forget_places(view);
         view.renders_needed.reset();
@@ -231,23 +230,23 @@ void decide_compared(ViewResult& view) {
         view.sentence = too_few_sentence(view);
         return;
     } else if (view.exact) {
-        view.state = changed ? ViewState::changed : ViewState::same;
+        view.state = means_differ ? ViewState::changed : ViewState::same;
         view.sentence = exact_sentence(view);
-    } else if (changed || outliers || render) {
+    } else if (means_differ || outliers_differ || render_deviates) {
         view.state = ViewState::changed;
-        view.sentence = changed ? means.sentence : "";
-    } else if (variance > 0) {
+        view.sentence = means_differ ? means.sentence : "";
+    } else if (sign > 0) {
         view.state = ViewState::noisier;
         view.sentence = variance_sentence(view, 1) + " The mean held.";
         add_sentence(view.sentence, power_sentence(means));
-    } else if (variance < 0 && view.noise == NoiseDemand::same) {
+    } else if (sign < 0 && view.noise == NoiseDemand::same) {
         view.state = ViewState::changed;
         view.sentence = variance_sentence(view, -1) + " The same noise is asked (noise = \"same\").";
         add_sentence(view.sentence, power_sentence(means));
     } else if (!view.too_few.empty()) {
         view.state = ViewState::too_few;
         view.sentence = too_few_sentence(view);
-    } else if (variance < 0) {
+    } else if (sign < 0) {
         view.state = ViewState::improved;
         view.sentence = "Same mean. " + variance_sentence(view, -1) + " " + power_sentence(means);
     } else if (means.identical) {
@@ -257,8 +256,8 @@ void decide_compared(ViewResult& view) {
         view.state = ViewState::same;
         view.sentence = power_sentence(means);
     }
-    if (doubtful) add_sentence(view.sentence, outlier_render_sentence(view.outlier_render, render));
-    if (!view.exact) add_sentence(view.sentence, outliers_sentence(view, outliers));
+    if (is_doubtful) add_sentence(view.sentence, outlier_render_sentence(view.outlier_render, render_deviates));
+    if (!view.exact) add_sentence(view.sentence, outliers_sentence(view, outliers_differ));
     add_sentence(view.sentence, other_channels_sentence(view));
     if (const std::string samples = samples_sentence(view); !samples.empty())
         view.sentence = samples + (view.sentence.empty() ? "" : " " + view.sentence);
@@ -279,19 +278,19 @@ std::string relative_change(double candidate, double baseline) {
 /// What changed in the means, in the shortest form: the region with the smallest p, of Y if Y differs there, else the
 /// first place.
 std::string changed_means(const ViewResult& view) {
-    const MeanTest *shown = nullptr, *region = nullptr;
+    const MeanTest *test = nullptr, *region = nullptr;
     for (const MeanTest& t : view.means->regions)
-        if (t.differs && (!shown || t.welch.p < shown->welch.p)) shown = region = &t;
+        if (t.differs && (!test || t.welch.p < test->welch.p)) test = region = &t;
     for (const MeanTest& t : view.means->regions)
         for (const MeanTest& c : t.channels)
-            if (!shown && c.differs) {
-                shown = &c;
+            if (!test && c.differs) {
+                test = &c;
                 region = &t;
             }
     constexpr std::size_t longest_name = 30;
-    if (shown)
-        return fmt::format("mean {} in {} {} (p = {:.1g})", region == shown ? "Y" : shown->region,
-            printable(region->region, longest_name), relative_change(shown->a, shown->b), shown->welch.p);
+    if (test)
+        return fmt::format("mean {} in {} {} (p = {:.1g})", region == test ? "Y" : test->region,
+            printable(region->region, longest_name), relative_change(test->a, test->b), test->welch.p);
     const Found* place = !view.means->tiles_found.empty() ? &view.means->tiles_found[0]
         : !view.means->pixels_found.empty()               ? &view.means->pixels_found[0]
                                                           : nullptr;
@@ -355,9 +354,9 @@ std::string suite_sentence(const Suite& suite, const SuiteResult& result) {
             counts.push_back(fmt::format("{} {}", n, view_state_names[k]));
     return fmt::format("{}: {}. A suite without any change reports one with a probability of at most {} ({}).",
         plural(result.views.size(), "view"), fmt::join(counts, ", "), percent(suite.options.alpha, 2),
-        result.tested ? fmt::format("alpha = {}, Holm's method over {}", compact(suite.options.alpha),
-                            plural(result.tested, "view"))
-                      : "no view was tested");
+        result.tested_views ? fmt::format("alpha = {}, Holm's method over {}", compact(suite.options.alpha),
+                                  plural(result.tested_views, "view"))
+                            : "no view was tested");
 }
 
 }  // namespace
@@ -368,20 +367,20 @@ std::size_t SuiteResult::count(ViewState state) const {
 }
 
 int exit_code(const SuiteResult& result, bool new_baseline) {
-    const auto any = [&](ViewState state) { return result.count(state) > 0; };
-    if (any(ViewState::unreadable)) return 2;
-    if (any(ViewState::changed) || any(ViewState::noisier) || any(ViewState::missing)) return 1;
-    if (!new_baseline && any(ViewState::added)) return 1;
-    return any(ViewState::too_few) ? 4 : 0;
+    const auto occurs = [&](ViewState state) { return result.count(state) > 0; };
+    if (occurs(ViewState::unreadable)) return 2;
+    if (occurs(ViewState::changed) || occurs(ViewState::noisier) || occurs(ViewState::missing)) return 1;
+    if (!new_baseline && occurs(ViewState::added)) return 1;
+    return occurs(ViewState::too_few) ? 4 : 0;
 }
 
 void decide(const Suite& suite, SuiteResult& result) {
-    std::vector<ViewResult*> tested;
+    std::vector<ViewResult*> views;
     for (ViewResult& view : result.views)
-        if (view.means && !view.exact && view.untestable.empty() && !std::isnan(view_p(view))) tested.push_back(&view);
-    result.tested = tested.size();
+        if (view.means && !view.exact && view.untestable.empty() && !std::isnan(view_p(view))) views.push_back(&view);
+    result.tested_views = views.size();
     share_level(result.views, suite.options.alpha);
-    set_levels(tested, suite.options.alpha);
+    set_levels(views, suite.options.alpha);
     for (ViewResult& view : result.views) {
         if (view.state == ViewState::unreadable) continue;
         if (view.state == ViewState::added)

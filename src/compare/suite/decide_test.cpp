@@ -44,7 +44,7 @@ TEST(SuiteDecisions, ShareOneLevelByHolmsMethod) {
     SuiteResult found;
     EXPECT_THAT(states_of({view("a", 0.0149), view("b", 0.0299), view("c", 0.0099)}, &found),
         ElementsAre(ViewState::changed, ViewState::changed, ViewState::changed));
-    EXPECT_EQ(found.tested, 3u);
+    EXPECT_EQ(found.tested_views, 3u);
     EXPECT_THAT(states_of({view("a", 0.0149), view("b", 0.5), view("c", 0.0101)}, &found),
         ElementsAre(ViewState::same, ViewState::same, ViewState::same));
     EXPECT_DOUBLE_EQ(found.views[1].level, 0.04 / 3);
@@ -108,7 +108,7 @@ TEST(SuiteDecisions, DeterministicViewsNeedNoLevel) {
     SuiteResult found;
     EXPECT_THAT(states_of({equal, moved, missing, added}, &found),
         ElementsAre(ViewState::same, ViewState::changed, ViewState::missing, ViewState::added));
-    EXPECT_EQ(found.tested, 0u);
+    EXPECT_EQ(found.tested_views, 0u);
 }
 
 TEST(SuiteDecisions, TheFirstExitCodeThatAppliesIsTaken) {

@@ -31,16 +31,16 @@ std::optional<double> number_in(std::string_view text) {
 class Steps {
 public:
     Steps(const MeanFilm& a, const MeanFilm& b) : rounding_(std::max(a.rounding, b.rounding)) {
-        whole_ = a.steps.levels > 0 && a.steps == b.steps ? a.steps : Quantisation{};
+        quantisation_ = a.steps.levels > 0 && a.steps == b.steps ? a.steps : Quantisation{};
     }
     /// Whether both sides have the same whole numbers.
-    bool whole() const { return whole_.levels > 0; }
-    double levels() const { return whole_.levels; }
+    bool is_whole() const { return quantisation_.levels > 0; }
+    double levels() const { return quantisation_.levels; }
     double number_of(double value, bool is_alpha) const {
-        return is_alpha ? std::round(value * (whole_.levels - 1)) : whole_.number_of(value);
+        return is_alpha ? std::round(value * (quantisation_.levels - 1)) : quantisation_.number_of(value);
     }
     double between(double a, double b, bool is_alpha) const {
-        if (whole()) return std::fabs(number_of(a, is_alpha) - number_of(b, is_alpha));
+        if (is_whole()) return std::fabs(number_of(a, is_alpha) - number_of(b, is_alpha));
         const double larger = std::max(std::fabs(a), std::fabs(b));
         if (larger == 0) return 0;
         const int bits = -std::ilogb(rounding_);  // of the significand: rounding is half an ulp of 1
@@ -51,7 +51,7 @@ public:
 
 private:
     double rounding_;
-    Quantisation whole_;
+    Quantisation quantisation_;
 };
 
 /// Whether a pixel is not finite in some render of a side.
@@ -71,16 +71,16 @@ std::optional<Tolerance> parse_tolerance(std::string_view text) {
     }
     const std::size_t slash = text.find('/');
     if (slash == std::string_view::npos) return {};
-    const auto part = number_in(text.substr(0, slash)), whole = number_in(text.substr(slash + 1));
-    if (!part || !whole || *whole == 0) return {};
-    return Tolerance{Tolerance::Unit::share, *part / *whole};
+    const auto part = number_in(text.substr(0, slash)), total = number_in(text.substr(slash + 1));
+    if (!part || !total || *total == 0) return {};
+    return Tolerance{Tolerance::Unit::share, *part / *total};
 }
 
 ExactDifference exact_difference(const RenderStats& stats, const std::optional<Tolerance>& tolerance) {
     const MeanFilm &baseline = stats.arms[0].film, &candidate = stats.arms[1].film;
     const Steps steps(baseline, candidate);
     ExactDifference out;
-    if (steps.whole()) out.step_name = fmt::format("{:g}", steps.levels() - 1);
+    if (steps.is_whole()) out.step_name = fmt::format("{:g}", steps.levels() - 1);
     const std::size_t first = stats.quantities > 1 ? 1 : 0;  // Y follows from the channels
     constexpr double slack = 1 + 1e-9;                       // "2/255" of values that are themselves rounded
     for (std::size_t i = 0; i < stats.bad.size(); ++i) {
@@ -91,14 +91,14 @@ ExactDifference exact_difference(const RenderStats& stats, const std::optional<T
             out.different += one_sided;
             continue;
         }
-        bool differs = false, beyond = false;
+        bool differs = false, exceeds = false;
         for (std::size_t q = first; q < stats.quantities; ++q) {
             const double b = baseline.of(q).mean[i], c = candidate.of(q).mean[i], difference = std::fabs(c - b);
             if (difference == 0) continue;
             differs = true;
             const bool is_alpha = q == most_quantities - 1;
             const double count = steps.between(b, c, is_alpha), share = b == 0 ? HUGE_VAL : difference / std::fabs(b);
-            const double of_largest = steps.whole() ? count / (steps.levels() - 1) : difference;
+            const double share_of_largest = steps.is_whole() ? count / (steps.levels() - 1) : difference;
             out.share = std::max(out.share, share);
             out.absolute = std::max(out.absolute, difference);
             if (count > out.steps) {
@@ -109,11 +109,11 @@ ExactDifference exact_difference(const RenderStats& stats, const std::optional<T
             if (!tolerance) continue;
             const double size = tolerance->unit == Tolerance::Unit::ulp ? count
                 : tolerance->unit == Tolerance::Unit::percent           ? share
-                                                                        : of_largest;
-            beyond |= size > tolerance->size * slack;
+                                                                        : share_of_largest;
+            exceeds |= size > tolerance->size * slack;
         }
         out.different += differs;
-        out.beyond += beyond;
+        out.excess += exceeds;
     }
     return out;
 }

@@ -22,7 +22,7 @@ inline constexpr const char* tolerance_forms = "a tolerance such as \"1 ulp\", \
 /// The differences of two renders. A step is the distance of neighbouring values of the files: of whole numbers 1, else
 /// an ulp of the less precise side (float, half, RGBE).
 struct ExactDifference {
-    std::uint64_t pixels = 0, different = 0, beyond = 0;  // beyond: the tolerance
+    std::uint64_t pixels = 0, different = 0, excess = 0;  // excess: beyond the tolerance
     std::uint64_t one_sided = 0;                // of `different`: finite on one side only, which no tolerance allows
     double steps = 0, share = 0, absolute = 0;  // the largest of a channel; share: of the baseline's value
     int x = 0, y = 0;                           // where steps are most

@@ -32,9 +32,9 @@ public:
     Manifest read() {
         if (text_.starts_with(lfs_pointer)) fail("expected a manifest, found a pointer of Git LFS: run git lfs pull");
         for (const char* marker : {"<<<<<<<", "=======", ">>>>>>>"})
-            if (const std::size_t found = text_.find(marker);
-                found != std::string::npos && (found == 0 || text_[found - 1] == '\n'))
-                throw InputError({file_, line_of(found), 1},
+            if (const std::size_t position = text_.find(marker);
+                position != std::string::npos && (position == 0 || text_[position - 1] == '\n'))
+                throw InputError({file_, line_of(position), 1},
                     fmt::format("expected a manifest, found a conflict of a merge: '{}'", marker));
         const Json root = parsed();
         if (!root.is_object() || !root.contains("format") || root["format"] != manifest_format)
@@ -77,10 +77,10 @@ private:
     }
 
     std::string word(const std::string& view, const Json& entry, const char* key) const {
-        const auto found = entry.is_object() ? entry.find(key) : entry.end();
-        if (!entry.is_object() || found == entry.end() || !found->is_string())
+        const auto member = entry.is_object() ? entry.find(key) : entry.end();
+        if (!entry.is_object() || member == entry.end() || !member->is_string())
             fail(fmt::format("view '{}': expected a text '{}'", view, key));
-        return found->get<std::string>();
+        return member->get<std::string>();
     }
 
     ManifestView view(const std::string& name, const Json& entry, std::set<std::string>& names) const {
@@ -91,14 +91,14 @@ private:
             fail(fmt::format("view '{}': expected 'renders', a number of at most {}", name, renders_most));
         out.renders = renders.get<std::size_t>();
         if (!files.is_array() || files.empty()) fail(fmt::format("view '{}': expected a list 'files'", name));
-        for (const Json& each : files) {
-            const ManifestFile file{word(name, each, "file"), word(name, each, "xxh3_128")};
+        for (const Json& item : files) {
+            const ManifestFile file{word(name, item, "file"), word(name, item, "xxh3_128")};
             constexpr std::size_t digits = 32;
             if (file.hash.size() != digits || file.hash.find_first_not_of("0123456789abcdef") != std::string::npos)
                 fail(fmt::format("view '{}': expected a hash of {} hexadecimal digits", name, digits));
             const fs::path path(file.name);
-            const bool outside = std::find(path.begin(), path.end(), "..") != path.end();
-            if (file.name.empty() || path.is_absolute() || outside || file.name.find('\0') != std::string::npos)
+            const bool leaves_folder = std::find(path.begin(), path.end(), "..") != path.end();
+            if (file.name.empty() || path.is_absolute() || leaves_folder || file.name.find('\0') != std::string::npos)
                 fail(fmt::format(
                     "view '{}': expected a file in the folder of the manifest, found '{}'", name, file.name));
             if (!names.insert(file.name).second)
@@ -157,15 +157,15 @@ std::vector<Diagnostic> manifest_differences(
     std::vector<Diagnostic> out;
     std::map<std::string, std::string> paths;  // by name
     for (const std::string& path : files) paths.emplace(name_in(manifest.folder, path), path);
-    const auto found = manifest.views.find(view);
-    if (found != manifest.views.end())
-        for (const ManifestFile& file : found->second.files) {
+    const auto entry = manifest.views.find(view);
+    if (entry != manifest.views.end())
+        for (const ManifestFile& file : entry->second.files) {
             const auto path = paths.find(file.name);
             if (path == paths.end()) {
-                const std::string listed = manifest.folder + "/" + file.name;
+                const std::string missing_path = manifest.folder + "/" + file.name;
                 std::error_code ignored;
-                out.push_back({{listed, 0, 0},
-                    fs::exists(listed, ignored)
+                out.push_back({{missing_path, 0, 0},
+                    fs::exists(missing_path, ignored)
                         ? fmt::format("the patterns of the baseline do not match this file, which {} lists for view {}",
                               manifest_name, view)
                         : fmt::format("no such file of the baseline: {} lists it for view {}", manifest_name, view)});

@@ -36,8 +36,8 @@ public:
             files[k].is_uniform = render.is_uniform();
             const std::size_t bytes = 4 * sizeof(float) * render.size();
             const Guard guard(lock_);
-            if (kept_ + bytes <= most_kept) {
-                kept_ += bytes;
+            if (stored_bytes_ + bytes <= most_kept) {
+                stored_bytes_ += bytes;
                 files[k].render = std::move(render);
             }
         });
@@ -54,9 +54,9 @@ public:
         std::map<std::uint64_t, std::string> first;
         std::vector<std::pair<std::string, std::string>> copies;
         for (const std::string& path : paths) {
-            const auto [before, fresh] = first.emplace(hash(path), path);
-            if (fresh) out.push_back(path);
-            else copies.emplace_back(path, before->second);
+            const auto [entry, is_new] = first.emplace(hash(path), path);
+            if (is_new) out.push_back(path);
+            else copies.emplace_back(path, entry->second);
         }
         if (!copies.empty() && out.size() > 1)
             notes.push_back(
@@ -73,11 +73,11 @@ public:
         RenderSource out = source_;
         out.expand = [](const std::vector<std::string>& paths, const SourceLocation&) { return paths; };
         out.read = [this](const std::string& path, const std::string& layer) {
-            const auto found = files_.find(path);
+            const auto entry = files_.find(path);
             {
                 const Guard guard(lock_);
-                if (found != files_.end() && found->second.render.size() > 0)
-                    return found->second.given++ == 0 ? found->second.render : std::move(found->second.render);
+                if (entry != files_.end() && entry->second.render.size() > 0)
+                    return entry->second.read_count++ == 0 ? entry->second.render : std::move(entry->second.render);
             }
             return source_.read(path, layer);
         };
@@ -89,11 +89,11 @@ private:
         std::uint64_t hash = 0;
         bool is_uniform = false;
         Render render;  // without pixels if it is not kept
-        int given = 0;
+        int read_count = 0;
     };
     const RenderSource& source_;
     std::map<std::string, File> files_;
-    std::size_t kept_ = 0;
+    std::size_t stored_bytes_ = 0;
     Mutex lock_;
 };
 
@@ -122,7 +122,7 @@ ComparePlan plan_for(const Suite& suite, const SuiteView& view, const std::vecto
         RenderArm& arm = plan.arms.emplace_back();
         arm.moments = files.size() == 1 && is_moments(files.front());
         arm.name = name;
-        arm.at = {plan.file, 0, 0};
+        arm.location = {plan.file, 0, 0};
         arm.files = files;
         arm.layer = suite.options.layer;
     }
@@ -131,7 +131,7 @@ ComparePlan plan_for(const Suite& suite, const SuiteView& view, const std::vecto
     plan.flip = plan.count_pixel_p = false;
     plan.spectrum_blocks = blocks;
     plan.find_outliers = plan.shared_noise = true;
-    plan.look = suite.look;
+    plan.look_number = suite.look_number;
     plan.pair = suite.pair(view) == Pairing::always;
     plan.find_pairs = suite.pair(view) == Pairing::automatic;
     plan.brightest = suite.options.brightest;
@@ -146,7 +146,7 @@ std::vector<double> spreads_of(const ArmStats& arm, std::size_t region) {
     return out;
 }
 
-VarianceTest test_variance(const RenderStats& stats, const CompareResult& measured, std::size_t region) {
+VarianceTest test_variance(const RenderStats& stats, const CompareResult& result, std::size_t region) {
     VarianceTest out;
     out.region = stats.regions[region].name;
     if (stats.arms[0].files.size() < 3 || stats.arms[1].files.size() < 3) {
@@ -157,7 +157,7 @@ VarianceTest test_variance(const RenderStats& stats, const CompareResult& measur
                        c = mean_interval(spreads_of(stats.arms[1], region), confidence);
     out.baseline = b.mean;
     out.candidate = c.mean;
-    for (const ArmResult& arm : measured.arms)
+    for (const ArmResult& arm : result.arms)
         if (arm.regions[region].heavy()) out.why = fmt::format("heavy tail: a few pixels decide that of {}", arm.name);
     if (!out.why.empty()) return out;
     out.welch = welch_test(c, b);
@@ -166,23 +166,23 @@ VarianceTest test_variance(const RenderStats& stats, const CompareResult& measur
 
 /// `level`: of the view.
 void test_variances(
-    const RenderStats& stats, const CompareResult& measured, double level, unsigned look, ViewResult& out) {
-    double tested = 0;
+    const RenderStats& stats, const CompareResult& result, double level, unsigned look_number, ViewResult& out) {
+    double test_count = 0;
     for (std::size_t r = 0; r < stats.regions.size(); ++r) {
-        VarianceTest& test = out.variances.emplace_back(test_variance(stats, measured, r));
+        VarianceTest& test = out.variances.emplace_back(test_variance(stats, result, r));
         if (!test.why.empty()) continue;
-        if (look > 0 && test.welch.se > 0) {
+        if (look_number > 0 && test.welch.se > 0) {
             const double n = static_cast<double>(stats.arms[0].files.size()),
                          m = static_cast<double>(stats.arms[1].files.size());
             test.welch.p = anytime_p(test.welch.difference / test.welch.se, test.welch.df, n * m / (n + m));
         }
-        ++tested;
+        ++test_count;
         out.variance_p = std::fmin(out.variance_p, test.welch.p);
     }
-    if (tested > 0) out.variance_p = std::min(1.0, out.variance_p * tested);
+    if (test_count > 0) out.variance_p = std::min(1.0, out.variance_p * test_count);
     for (VarianceTest& test : out.variances)
         if (test.why.empty() && test.baseline > 0)
-            test.smallest = 1 + detectable(test.welch, level * (1 - share_of_means) / tested) / test.baseline;
+            test.smallest = 1 + detectable(test.welch, level * (1 - share_of_means) / test_count) / test.baseline;
 }
 
 /// Returns the samples a pixel that the files of a side state, if all state the same.
@@ -195,15 +195,15 @@ std::optional<double> stated_spp(const ArmStats& arm) {
 /// Returns the tile in which the variance of the candidate is largest relative to that of the baseline, of those in
 /// which they differ significantly; "" if there is none.
 std::string noisiest_place(const RenderStats& stats, const NoiseResult& noise) {
-    std::size_t found = stats.tiles.count();
+    std::size_t tile = stats.tiles.count();
     for (std::size_t t = 0; t < stats.tiles.count(); ++t)
         if (noise.distinguished[t] && noise.log2_ratio[t] > 0 &&
-            (found == stats.tiles.count() || noise.log2_ratio[t] > noise.log2_ratio[found]))
-            found = t;
-    if (found == stats.tiles.count()) return "";
-    const Box box = stats.tiles.box(found, stats.width, stats.height);
+            (tile == stats.tiles.count() || noise.log2_ratio[t] > noise.log2_ratio[tile]))
+            tile = t;
+    if (tile == stats.tiles.count()) return "";
+    const Box box = stats.tiles.box(tile, stats.width, stats.height);
     return fmt::format(
-        "x {}–{} y {}–{} ({} times)", box.x0, box.x1, box.y0, box.y1, figures(math::exp2(noise.log2_ratio[found]), 3));
+        "x {}–{} y {}–{} ({} times)", box.x0, box.x1, box.y0, box.y1, figures(math::exp2(noise.log2_ratio[tile]), 3));
 }
 
 /// Describes the channels that are not tested and differ between renders with the same pixels.
@@ -213,8 +213,8 @@ std::string other_channels(const Suite& suite, const RenderStats& stats) {
             const bool are_files =
                 std::filesystem::is_regular_file(candidate.path) && std::filesystem::is_regular_file(baseline.path);
             if (candidate.hash != baseline.hash || !are_files) continue;
-            const std::string found = differing_channels(baseline.path, candidate.path, suite.options.reading());
-            if (!found.empty()) return found;
+            const std::string channels = differing_channels(baseline.path, candidate.path, suite.options.reading());
+            if (!channels.empty()) return channels;
         }
     return "";
 }
@@ -234,11 +234,11 @@ double known_df(const RenderStats& stats, const MeanTest& test) {
 std::optional<std::size_t> renders_for(const RenderStats& stats, const BiasResult& means, const MeanTest& test,
     const std::vector<ArmResult>& arms, std::size_t region, double smallest, double level) {
     if (!test.why.empty()) {
-        std::optional<double> needed;
+        std::optional<double> count;
         for (const ArmResult& arm : arms)
             if (const auto n = arm.regions[region].renders_needed; n && arm.regions[region].mean_heavy())
-                needed = std::max(needed.value_or(0), *n);
-        if (needed) return static_cast<std::size_t>(*needed);
+                count = std::max(count.value_or(0), *n);
+        if (count) return static_cast<std::size_t>(*count);
         if (stats.arms[0].files.size() < 2 || stats.arms[1].files.size() < 2) return 3;
         return {};
     }
@@ -262,24 +262,25 @@ std::optional<std::size_t> renders_for(const RenderStats& stats, const BiasResul
     Welch planned = test.welch;
     planned.df = power.estimate_df;
     power.anytime = test.information > 0;
-    const double seen = found_difference(planned, planned.df, level, test.information),
+    const double detected_difference = found_difference(planned, planned.df, level, test.information),
                  stated = test.smallest * power.mean;
-    if (stated > seen * (1 + 1e-9))
-        power.missed = stated * static_cast<double>(std::min(stats.arms[0].files.size(), stats.arms[1].files.size()));
+    if (stated > detected_difference * (1 + 1e-9))
+        power.hidden_difference =
+            stated * static_cast<double>(std::min(stats.arms[0].files.size(), stats.arms[1].files.size()));
     return renders_needed(power, smallest, level);
 }
 
 /// Increases the stated differences that a test finds by the uncertainty of the noise; those that rare events could
 /// explain are unchanged.
 void restate_power(const RenderStats& stats, double level, BiasResult& means) {
-    const double of_region = level / 2 / static_cast<double>(means.regions.size());
+    const double region_level = level / 2 / static_cast<double>(means.regions.size());
     const auto restate = [&](MeanTest& t, std::size_t quantity) {
         if (!t.why.empty()) return;
         Welch planned = t.welch;
         planned.df = known_df(stats, t);
-        const double found =
-            found_difference(planned, planned.df, of_region * level_share(quantity, stats.quantities), t.information);
-        t.smallest = std::max(t.smallest, found / std::max(std::fabs(t.b), 1e-300));
+        const double difference = found_difference(
+            planned, planned.df, region_level * level_share(quantity, stats.quantities), t.information);
+        t.smallest = std::max(t.smallest, difference / std::max(std::fabs(t.b), 1e-300));
     };
     for (MeanTest& t : means.regions) {
         restate(t, 0);
@@ -288,10 +289,10 @@ void restate_power(const RenderStats& stats, double level, BiasResult& means) {
 }
 
 /// States why equality of the means cannot be stated, and how many renders would be needed.
-void state_power(const RenderStats& stats, const CompareResult& measured, double level, ViewResult& out) {
+void state_power(const RenderStats& stats, const CompareResult& result, double level, ViewResult& out) {
     const BiasResult& means = *out.means;
     bool is_known = true;
-    std::size_t needed = 0;
+    std::size_t count = 0;
     for (std::size_t r = 0; r < means.regions.size(); ++r) {
         const MeanTest& t = means.regions[r];
         std::string why = !t.caveat.empty() ? t.caveat : t.why;
@@ -303,11 +304,11 @@ void state_power(const RenderStats& stats, const CompareResult& measured, double
                                             : "no difference of mean Y would be found";
         if (why.empty()) continue;
         if (out.too_few.empty()) out.too_few = fmt::format("in {} {}", t.region, why);
-        const double of_region =
+        const double region_level =
             level / 2 / static_cast<double>(means.regions.size()) * level_share(0, stats.quantities);
-        const auto n = renders_for(stats, means, t, measured.arms, r, out.smallest, of_region);
+        const auto n = renders_for(stats, means, t, result.arms, r, out.smallest, region_level);
         is_known &= n.has_value();
-        needed = std::max(needed, n.value_or(0));
+        count = std::max(count, n.value_or(0));
     }
     if (means.non_finite.undecided && out.too_few.empty()) {
         out.too_few = fmt::format(
@@ -316,8 +317,8 @@ void state_power(const RenderStats& stats, const CompareResult& measured, double
             means.non_finite.undecided);
         is_known = false;
     }
-    const std::size_t present = std::min(stats.arms[0].files.size(), stats.arms[1].files.size());
-    if (!out.too_few.empty() && is_known && needed > present) out.renders_needed = needed;
+    const std::size_t render_count = std::min(stats.arms[0].files.size(), stats.arms[1].files.size());
+    if (!out.too_few.empty() && is_known && count > render_count) out.renders_needed = count;
 }
 
 /// Removes the results per pixel and tile, so that the memory of a suite does not grow with the pixels of its views.
@@ -364,34 +365,34 @@ std::string one_sided_failures(const RenderStats& stats) {
 /// Returns the outlier pixels with the test of their numbers. A test that cannot find a change at `alpha` is not made,
 /// so that it takes no share of the level; whether it can depends on the sum over both sides alone.
 ViewOutliers view_outliers(const RenderStats& stats, double alpha) {
-    constexpr std::size_t named = 3;
+    constexpr std::size_t most_places = 3;
     ViewOutliers out;
-    const OutlierPixels& found = stats.outliers;
-    out.baseline = found.groups[0];
-    out.candidate = found.groups[1];
-    out.set_apart = found.set_apart;
+    const OutlierPixels& outliers = stats.outliers;
+    out.baseline = outliers.groups[0];
+    out.candidate = outliers.groups[1];
+    out.set_apart = outliers.set_apart;
     const double baseline = static_cast<double>(stats.arms[0].files.size()),
                  candidate = static_cast<double>(stats.arms[1].files.size());
-    const std::size_t more =
+    const std::size_t side =
         static_cast<double>(out.candidate) * baseline >= static_cast<double>(out.baseline) * candidate ? 1 : 0;
-    for (const OutlierPixel& p : found.pixels) {
-        if (p.side != more || out.first.size() == named) continue;
+    for (const OutlierPixel& p : outliers.pixels) {
+        if (p.side != side || out.first.size() == most_places) continue;
         const int i = static_cast<int>(p.pixel);
         out.first.push_back(
             {stats.arms[p.side].files[p.render].path, i % stats.width, i / stats.width, p.quantity, p.value, p.others});
     }
-    const std::uint64_t total = found.total();
+    const std::uint64_t total = outliers.total();
     const double share = candidate / (baseline + candidate);
-    const double least = std::min(binomial_exact(total, total, share), binomial_exact(0, total, share));
-    if (total > 0 && least <= alpha * share_of_outliers) out.p = binomial_exact(out.candidate, total, share);
+    const double smallest_p = std::min(binomial_exact(total, total, share), binomial_exact(0, total, share));
+    if (total > 0 && smallest_p <= alpha * share_of_outliers) out.p = binomial_exact(out.candidate, total, share);
     return out;
 }
 
 ViewOutlierRender view_outlier_render(const RenderStats& stats) {
-    const auto found = outlier_render(stats);
-    if (!found) return {};
-    return {stats.arms[found->side].files[found->render].path, found->side == 1, found->ratio, found->deviation,
-        found->p, found->pixels};
+    const auto outlier = outlier_render(stats);
+    if (!outlier) return {};
+    return {stats.arms[outlier->side].files[outlier->render].path, outlier->side == 1, outlier->ratio,
+        outlier->deviation, outlier->p, outlier->pixels};
 }
 
 /// Returns a view whose files cannot be compared.
@@ -458,11 +459,11 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     ProgressMonitor quiet;
     const RenderStats stats = read_all(plan, quiet, files.reader());
     monitor.check();
-    CompareResult measured;
-    for (std::size_t a = 0; a < stats.arms.size(); ++a) measured.arms.push_back(measure_arm(plan, stats, a, quiet));
+    CompareResult result;
+    for (std::size_t a = 0; a < stats.arms.size(); ++a) result.arms.push_back(measure_arm(plan, stats, a, quiet));
     const double alpha = suite.options.alpha * share_of_means;
     const BiasLevel level{alpha / static_cast<double>(compared), alpha};
-    out.means = test_bias(plan, stats, measured, 1, 0, level, quiet);
+    out.means = test_bias(plan, stats, result, 1, 0, level, quiet);
     out.mean_p = out.means->p;
     out.non_finite = one_sided_failures(stats);
     out.width = stats.width;
@@ -474,7 +475,7 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
     if (out.means->identical) out.other_channels = other_channels(suite, stats);
     if (out.exact) {
         if (!out.means->identical) out.exact_difference = exact_difference(stats, tolerance);
-        out.tolerated = tolerance && out.exact_difference && out.exact_difference->beyond == 0 &&
+        out.tolerated = tolerance && out.exact_difference && out.exact_difference->excess == 0 &&
             out.exact_difference->one_sided == 0;
         out.mean_p = out.means->identical || out.tolerated ? 1 : 0;
     } else {
@@ -483,20 +484,20 @@ ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t c
             out.outliers = view_outliers(stats, suite.options.alpha);
             if (suite.outliers(view) == OutlierDemand::ignore) out.outliers.p = std::nan("");
             out.outlier_render = view_outlier_render(stats);
-            if (suite.look > 0) {  // these tests do not hold at any time
-                out.outliers.p = out.outliers.p * look_factor(suite.look);
-                out.outlier_render.p = out.outlier_render.p * look_factor(suite.look);
+            if (suite.look_number > 0) {  // these tests do not hold at any time
+                out.outliers.p = out.outliers.p * look_factor(suite.look_number);
+                out.outlier_render.p = out.outlier_render.p * look_factor(suite.look_number);
             }
         }
-        test_variances(stats, measured, level.each / share_of_means, suite.look, out);
+        test_variances(stats, result, level.power_level / share_of_means, suite.look_number, out);
         if (out.noise == NoiseDemand::ignore) out.variance_p = std::nan("");
         else {
             noise = compare_noise(plan, stats, 1, 0, suite.options.alpha);
             out.noisiest = noisiest_place(stats, noise);
         }
         if (!out.means->identical) {
-            restate_power(stats, level.each, *out.means);
-            state_power(stats, measured, level.each, out);
+            restate_power(stats, level.power_level, *out.means);
+            state_power(stats, result, level.power_level, out);
         }
         const auto side = constant_baseline ? "baseline" : "candidate";
         if (constant_baseline || constant_candidate) {

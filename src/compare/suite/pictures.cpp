@@ -20,7 +20,7 @@ constexpr std::size_t most_bytes = 36'000'000, most_of_view = 2'000'000;
 constexpr int largest_width = 800, smallest_width = 48;
 /// The colours of the difference map end at this multiple of the difference that must be found, or at the value that 1
 /// % of the map exceeds.
-constexpr double ends_at = 5, beyond = 0.99;
+constexpr double scale_multiple = 5, scale_quantile = 0.99;
 /// Of a tile whose noise differs: the binary logarithm of the ratio of the variances that has the full colour.
 constexpr double full_noise = 2;
 /// Of a tile that differs: p of the full colour, and the least share of it.
@@ -62,12 +62,12 @@ std::vector<double> relative_differences(const RenderStats& stats, const BiasRes
         brightness[c] += (std::fabs(a.mean[i]) + std::fabs(b.mean[i])) / 2;
         count[c] += 1;
     }
-    double mean = 0, counted = 0;
+    double mean = 0, total = 0;
     for (std::size_t c = 0; c < cells; ++c) {
         mean += brightness[c];
-        counted += count[c];
+        total += count[c];
     }
-    mean = counted > 0 ? mean / counted : 0;
+    mean = total > 0 ? mean / total : 0;
     std::vector<double> out(cells, std::nan(""));
     for (std::size_t c = 0; c < cells; ++c)  // a hundredth of the mean, so that black cells do not decide the scale
         if (count[c] > 0 && mean > 0) out[c] = difference[c] / (brightness[c] + 0.01 * mean * count[c]);
@@ -112,7 +112,7 @@ double scale_of(const std::vector<double>& values, double smallest) {
     std::vector<double> sizes;
     for (const double v : values)
         if (!std::isnan(v)) sizes.push_back(std::fabs(v));
-    return std::max(ends_at * smallest, sizes.empty() ? 0 : quantile(std::move(sizes), beyond));
+    return std::max(scale_multiple * smallest, sizes.empty() ? 0 : quantile(std::move(sizes), scale_quantile));
 }
 
 /// Calls draw(width), which sets the pictures, with smaller widths until they fit the budget. `bytes_of_one`: of a
@@ -135,11 +135,11 @@ void within_budget(const Suite& suite, int width, std::size_t bytes_of_one, View
 }  // namespace
 
 void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSource& source, ViewResult& out) {
-    const bool added = view.baseline.empty();
+    const bool is_added = view.baseline.empty();
     RenderStats stats;
-    const Render read = source.read((added ? view.candidate : view.baseline).front(), suite.options.layer);
-    stats.primaries = read.primaries;
-    const Render first = in_rec709(stats, read);
+    const Render render = source.read((is_added ? view.candidate : view.baseline).front(), suite.options.layer);
+    stats.primaries = render.primaries;
+    const Render first = in_rec709(stats, render);
     out.width = first.width;
     out.height = first.height;
     ViewPictures& to = out.pictures;
@@ -148,7 +148,7 @@ void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSou
         const plates::Block block = photograph(first, width, suite.options.exposure);
         to.width = block.width;
         to.height = block.height;
-        (added ? to.candidate : to.baseline) = png_of(block);
+        (is_added ? to.candidate : to.baseline) = png_of(block);
     });
 }
 

@@ -34,12 +34,12 @@ std::string with_values(
         {"{view}", &view}, {"{seed}", &seed}, {"{out}", &out}};
     std::string result;
     for (std::size_t i = 0; i < word.size();) {
-        const auto* found = std::find_if(std::begin(values), std::end(values),
+        const auto* match = std::find_if(std::begin(values), std::end(values),
             [&](const auto& value) { return std::string_view(word).substr(i).starts_with(value.first); });
-        if (found == std::end(values)) result += word[i++];
+        if (match == std::end(values)) result += word[i++];
         else {
-            result += *found->second;
-            i += found->first.size();
+            result += *match->second;
+            i += match->first.size();
         }
     }
     return result;
@@ -48,9 +48,9 @@ std::string with_values(
 /// Removes the ending of a picture from "{out}.png" in a word, and returns it without the dot; "" if there is none.
 std::string take_extension(std::string& word) {
     constexpr std::string_view out = "{out}";
-    const std::size_t found = word.find(out);
-    if (found == std::string::npos) return "";
-    const std::size_t end = found + out.size();
+    const std::size_t position = word.find(out);
+    if (position == std::string::npos) return "";
+    const std::size_t end = position + out.size();
     const auto ending = std::ranges::find(image_endings, std::string_view(word).substr(end));
     if (ending == image_endings.end()) return "";
     word.erase(end);
@@ -100,7 +100,7 @@ RenderEnd run_program(const RenderJob& job, const RenderLimits& limits, const Pr
             if (end) break;
             if (Clock::now() >= limits.end) {
                 out.seconds = seconds();
-                out.stopped = true;
+                out.is_stopped = true;
                 return clear(), out;
             }
             if (seconds() > limits.timeout) {
@@ -110,13 +110,13 @@ RenderEnd run_program(const RenderJob& job, const RenderLimits& limits, const Pr
         }
         out.seconds = seconds();
         if (!end->well()) {
-            const std::string said = last_line(log);
-            out.failure = fmt::format("ended with {}{}", end->text(), said.empty() ? "" : ": " + said);
+            const std::string message = last_line(log);
+            out.failure = fmt::format("ended with {}{}", end->text(), message.empty() ? "" : ": " + message);
         } else if (!fs::exists(partial)) out.failure = "wrote no file";
         else {
             (void)read_render(partial.string(), limits.layer, limits.reading);
             fs::rename(partial, target, error);
-            out.made = !error;
+            out.is_made = !error;
             if (error)
                 out.failure = fmt::format("wrote a file that cannot become {}: {}", target.string(), error.message());
         }
@@ -146,7 +146,7 @@ RenderCommand parse_render_command(const std::string& text, const std::string& f
     RenderCommand out{text, {}, {}};
     const auto fail = [&](const std::string& message) { throw InputError({flag, 0, 0}, message); };
     std::string word;
-    bool begun = false;
+    bool has_begun = false;
     char quote = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
@@ -154,27 +154,27 @@ RenderCommand parse_render_command(const std::string& text, const std::string& f
         if (escapes && i + 1 == text.size()) fail("expected a character after the last backslash");
         if (escapes) {
             word += text[++i];
-            begun = true;
+            has_begun = true;
         } else if (quote && c == quote) quote = 0;
         else if (quote) word += c;
         else if (c == '\'' || c == '"') {
             quote = c;
-            begun = true;
+            has_begun = true;
         } else if (c != ' ' && c != '\t' && c != '\n') {
             word += c;
-            begun = true;
-        } else if (begun) {
+            has_begun = true;
+        } else if (has_begun) {
             out.words.push_back(std::move(word));
             word.clear();
-            begun = false;
+            has_begun = false;
         }
     }
     if (quote) fail(fmt::format("expected the end of the text in {}", quote));
-    if (begun) out.words.push_back(std::move(word));
+    if (has_begun) out.words.push_back(std::move(word));
     if (out.words.empty()) fail("expected a command");
     if (!contains(out.words, "{out}")) fail("expected {out}, the file to write, in the command");
-    for (std::string& each : out.words) {
-        const std::string extension = take_extension(each);
+    for (std::string& entry : out.words) {
+        const std::string extension = take_extension(entry);
         if (extension.empty()) continue;
         if (!out.extension.empty() && out.extension != extension)
             fail(fmt::format("expected one ending of {{out}}, found .{} and .{}", out.extension, extension));
@@ -188,14 +188,14 @@ std::vector<RenderEnd> make_renders(
     std::vector<RenderEnd> out(jobs.size());
     std::atomic<std::size_t> next = 0;
     std::mutex lock;
-    std::exception_ptr stopped;
+    std::exception_ptr failure;
     const auto work = [&] {
         for (std::size_t k = next++; k < jobs.size(); k = next++) {
             try {
                 out[k] = run_program(jobs[k], limits, monitor);
             } catch (...) {
                 const std::lock_guard guard(lock);
-                stopped = std::current_exception();
+                failure = std::current_exception();
                 next = jobs.size();
             }
         }
@@ -205,7 +205,7 @@ std::vector<RenderEnd> make_renders(
         const std::size_t count = std::min(jobs.size(), static_cast<std::size_t>(std::max(1, limits.jobs)));
         for (std::size_t t = 0; t < count; ++t) threads.emplace_back(work);
     }
-    if (stopped) std::rethrow_exception(stopped);
+    if (failure) std::rethrow_exception(failure);
     return out;
 }
 

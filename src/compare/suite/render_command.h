@@ -34,10 +34,10 @@ struct RenderJob {
     std::uint64_t seed = 0;
 };
 struct RenderEnd {
-    bool made = false;    // the file is there and was read
-    std::string failure;  // what the program did instead; "" also if the time was over before it
+    bool is_made = false;  // the file is there and was read
+    std::string failure;   // what the program did instead; "" also if the time was over before it
     double seconds = 0;
-    bool stopped = false;  // the time was over before the program ended
+    bool is_stopped = false;  // the time was over before the program ended
 };
 
 struct RenderLimits {

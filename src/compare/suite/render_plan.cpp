@@ -44,17 +44,17 @@ double detectable_with(const RegionPower& power, std::size_t renders, double lev
     test.se = std::sqrt(power.paired ? a : a + b);
     test.df = power.paired ? n - 1 : a + b > 0 ? (a + b) * (a + b) * (n - 1) / (a * a + b * b) : 2 * (n - 1);
     const double information = !power.anytime ? 0 : power.paired ? n : n / 2;
-    return std::max(found_difference(test, power.estimate_df, level, information), power.missed / n);
+    return std::max(found_difference(test, power.estimate_df, level, information), power.hidden_difference / n);
 }
 
 std::optional<std::size_t> renders_needed(const RegionPower& power, double smallest, double level) {
     const double limit = smallest * power.mean;
-    const auto enough = [&](std::size_t n) { return detectable_with(power, n, level) <= limit; };
-    if (!(limit > 0) || !enough(most_renders)) return {};
+    const auto is_enough = [&](std::size_t n) { return detectable_with(power, n, level) <= limit; };
+    if (!(limit > 0) || !is_enough(most_renders)) return {};
     std::size_t low = 1, high = most_renders;  // too few, enough
     while (high - low > 1) {
         const std::size_t middle = low + (high - low) / 2;
-        (enough(middle) ? high : low) = middle;
+        (is_enough(middle) ? high : low) = middle;
     }
     return high;
 }
@@ -69,7 +69,7 @@ ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compar
     plan.file = suite.file.empty() ? "crescent compare" : suite.file;
     RenderArm& arm = plan.arms.emplace_back();
     arm.name = "baseline";
-    arm.at = {plan.file, 0, 0};
+    arm.location = {plan.file, 0, 0};
     arm.layer = suite.options.layer;
     arm.moments = view.baseline.size() == 1 && has_moments(view.baseline.front());
     const RenderSource source = files_read_with(suite.options.reading());
@@ -100,19 +100,19 @@ ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compar
         for (const auto& render : baseline.regions) means.push_back(render[r].y);
         const MeanInterval m = mean_interval(means, confidence);
         const double variance = m.se * m.se * static_cast<double>(m.n);
-        std::array<std::optional<std::size_t>, 3> needed;
+        std::array<std::optional<std::size_t>, 3> counts;
         for (std::size_t s = 0; s < plan_samples.size(); ++s) {
             RegionPower power;
             power.mean = std::fabs(m.mean);
             power.variance_a = power.variance_b = variance / plan_samples[s];
             power.estimate_df = static_cast<double>(m.n - 1);
-            needed[s] = renders_needed(power, out.smallest, level);
+            counts[s] = renders_needed(power, out.smallest, level);
         }
         constexpr std::size_t as_rendered = 1;
-        const auto& largest = out.needed[as_rendered];
-        if (!out.region.empty() && needed[as_rendered] && (!largest || *needed[as_rendered] <= *largest)) continue;
+        const auto& largest = out.render_counts[as_rendered];
+        if (!out.region.empty() && counts[as_rendered] && (!largest || *counts[as_rendered] <= *largest)) continue;
         out.region = stats.regions[r].name;
-        out.needed = needed;
+        out.render_counts = counts;
         out.mean = m.mean;
         out.deviation = std::sqrt(variance);
     }
@@ -121,7 +121,7 @@ ViewPlan plan_view(const Suite& suite, const SuiteView& view, std::size_t compar
 
 std::string samples_text(const ViewPlan& plan, std::size_t s) {
     const std::string renders =
-        plan.needed[s] ? plural(*plan.needed[s], "render") : std::string("more than 100000 renders");
+        plan.render_counts[s] ? plural(*plan.render_counts[s], "render") : std::string("more than 100000 renders");
     return plan.spp ? fmt::format("{} at {} spp", renders, compact(*plan.spp * plan_samples[s]))
                     : fmt::format("{} at {} times the samples", renders, compact(plan_samples[s]));
 }
@@ -180,7 +180,7 @@ std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& pl
             view["standard_deviation_of_render_mean"] = crescent::number(plan.deviation);
             for (std::size_t s = 0; s < plan_samples.size(); ++s)
                 view["needed"].push_back({{"samples", plan_samples[s]},
-                    {"renders", plan.needed[s] ? Json(*plan.needed[s]) : Json(nullptr)}});
+                    {"renders", plan.render_counts[s] ? Json(*plan.render_counts[s]) : Json(nullptr)}});
         }
         out["views"].push_back(std::move(view));
     }

@@ -46,7 +46,7 @@ TEST(RenderPower, OfPairsIsThatOfOneSideOfDifferences) {
 
 TEST(RenderPower, RareEventsFallAsOneOverTheRenders) {
     RegionPower power{1, 1e-9, 1e-9, 1e9};
-    power.missed = 8;
+    power.hidden_difference = 8;
     EXPECT_DOUBLE_EQ(detectable_with(power, 100, 0.01), 0.08);
     EXPECT_EQ(renders_needed(power, 0.05, 0.01), 160u);
     EXPECT_FALSE(renders_needed({0, 1, 1, 1e9, false, 0}, 0.05, 0.01));  // relative to a mean of 0

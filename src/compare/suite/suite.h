@@ -69,7 +69,7 @@ struct SuiteOptions {
 /// The file's statements about one view, and its renders.
 struct SuiteView {
     std::string name;
-    SourceLocation at;
+    SourceLocation location;
     std::optional<double> smallest;  // none: that of the suite
     std::optional<Pairing> pair;
     std::optional<NoiseDemand> noise;
@@ -87,7 +87,7 @@ struct Suite {
     std::vector<FilePattern> baseline, candidate;  // with {view}, from the current folder
     std::vector<SuiteView> views;                  // by name
     std::optional<Manifest> manifest;              // of the baseline
-    unsigned look = 0;                             // number of this look at its renders, see ComparePlan
+    unsigned look_number = 0;                      // number of this look at its renders, see ComparePlan
     std::size_t compared() const;                  // views with renders of both sides
     double smallest(const SuiteView& view) const { return view.smallest.value_or(options.smallest); }
     Pairing pair(const SuiteView& view) const { return view.pair.value_or(options.pair); }
@@ -203,7 +203,7 @@ struct ViewResult {
 /// All views of a suite.
 struct SuiteResult {
     std::vector<ViewResult> views;
-    std::size_t tested = 0;  // views that share alpha
+    std::size_t tested_views = 0;  // views that share alpha
     std::size_t count(ViewState state) const;
     std::string sentence;
 };
@@ -306,8 +306,8 @@ struct RegionPower {
     double variance_a = 0, variance_b = 0;  // of the mean of one render of each side; in pairs a: of a difference
     double estimate_df = 0;                 // degrees of freedom with which they are known
     bool paired = false;
-    bool anytime = false;  // of a test that holds at any time
-    double missed = 0;     // difference that rare events could hide, times the renders of a side
+    bool anytime = false;          // of a test that holds at any time
+    double hidden_difference = 0;  // difference that rare events could hide, times the renders of a side
 };
 
 /// Returns the difference that a test with `renders` renders of each side finds with a probability of 90 %.
@@ -326,9 +326,9 @@ struct ViewPlan {
     std::size_t renders = 0;   // of the baseline
     std::optional<double> spp;
     double smallest = 0, mean = 0;
-    double deviation = 0;                                // of the mean of one render
-    std::array<std::optional<std::size_t>, 3> needed{};  // of each side, at plan_samples
-    std::string why;                                     // why nothing can be stated; "" if it can
+    double deviation = 0;                                       // of the mean of one render
+    std::array<std::optional<std::size_t>, 3> render_counts{};  // of each side, at plan_samples
+    std::string why;                                            // why nothing can be stated; "" if it can
 };
 
 /// Returns the plan of each view, by name. Reads every baseline; throws InputError if a file cannot be compared.

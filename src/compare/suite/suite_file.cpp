@@ -103,9 +103,9 @@ const Section& suite_schema() {
 
 /// "2 %" -> 0.02; other text is unchanged, and the parser reports it.
 void read_percent(Node* table) {
-    Member* found = table ? table->find("smallest") : nullptr;
-    if (!found || found->value.kind != Node::Kind::text) return;
-    std::string_view text = found->value.text;
+    Member* member = table ? table->find("smallest") : nullptr;
+    if (!member || member->value.kind != Node::Kind::text) return;
+    std::string_view text = member->value.text;
     const auto trim_end = [&] { text = text.substr(0, text.find_last_not_of(" \t") + 1); };
     trim_end();
     if (!text.ends_with('%')) return;
@@ -115,8 +115,8 @@ void read_percent(Node* table) {
     double percents = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), percents);
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(percents)) return;
-    found->value.kind = Node::Kind::number;
-    found->value.number = percents / 100;
+    member->value.kind = Node::Kind::number;
+    member->value.number = percents / 100;
 }
 
 /// regions.NAME = [...] -> regions.NAME.box = [...].
@@ -126,18 +126,18 @@ void expand_regions(Node& view) {
     for (Member& region : regions->value.members) {
         if (!region.value.is_array()) continue;
         Node table;
-        table.at = region.at;
-        table.members.push_back({"box", region.at, std::move(region.value)});
+        table.location = region.location;
+        table.members.push_back({"box", region.location, std::move(region.value)});
         region.value = std::move(table);
     }
 }
 
 /// true -> "true", false -> "false".
 void read_pair(Node* table) {
-    Member* found = table ? table->find("pair") : nullptr;
-    if (!found || found->value.kind != Node::Kind::flag) return;
-    found->value.kind = Node::Kind::text;
-    found->value.text = found->value.flag ? "true" : "false";
+    Member* member = table ? table->find("pair") : nullptr;
+    if (!member || member->value.kind != Node::Kind::flag) return;
+    member->value.kind = Node::Kind::text;
+    member->value.text = member->value.flag ? "true" : "false";
 }
 
 void normalize(Node& root) {
@@ -155,8 +155,8 @@ void normalize(Node& root) {
 
 SourceLocation place_of(const Node& root, const char* key, const std::string& file) {
     const Member* suite = root.find("suite");
-    const Member* found = suite ? suite->value.find(key) : nullptr;
-    return found ? found->value.at : SourceLocation{file, 0, 0};
+    const Member* member = suite ? suite->value.find(key) : nullptr;
+    return member ? member->value.location : SourceLocation{file, 0, 0};
 }
 
 /// Reads the tolerance of [suite].
@@ -170,9 +170,9 @@ void read_tolerance(SuiteOptions& options, const SourceLocation& place, std::vec
 
 SourceLocation place_of_tolerance(const Node& root, const std::string& view, const std::string& file) {
     const Member* views = root.find("view");
-    const Member* found = views ? views->value.find(view) : nullptr;
-    const Member* tolerance = found ? found->value.find("tolerance") : nullptr;
-    return tolerance ? tolerance->value.at : SourceLocation{file, 0, 0};
+    const Member* entry = views ? views->value.find(view) : nullptr;
+    const Member* tolerance = entry ? entry->value.find("tolerance") : nullptr;
+    return tolerance ? tolerance->value.location : SourceLocation{file, 0, 0};
 }
 
 /// Returns the files of one side by view, from its patterns.
@@ -180,7 +180,7 @@ std::map<std::string, std::vector<std::string>> files_by_view(const std::vector<
     std::map<std::string, std::vector<std::string>> out;
     for (const FilePattern& pattern : patterns) {
         if (!pattern.has_view())
-            throw InputError(pattern.at(), fmt::format("expected {{view}} in the pattern '{}'", pattern.text()));
+            throw InputError(pattern.location(), fmt::format("expected {{view}} in the pattern '{}'", pattern.text()));
     }
     for (const std::vector<MatchedFile>& files : files_of_patterns(patterns))
         for (const MatchedFile& file : files) out[file.view].push_back(file.path);
@@ -209,13 +209,13 @@ void check_region_names(const Suite& suite, std::vector<Diagnostic>& diagnostics
     for (const SuiteView& view : suite.views)
         for (const Region& region : view.regions)
             if (region.name == whole_frame)
-                diagnostics.push_back({region.at, "the name 'frame' stands for all pixels: expected another"});
+                diagnostics.push_back({region.location, "the name 'frame' stands for all pixels: expected another"});
 }
 
-void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baseline_only) {
+void find_renders(Suite& suite, const SourceLocation& candidate_place, bool baseline_only) {
     auto baseline = files_by_view(suite.baseline), candidate = files_by_view(suite.candidate);
     if (candidate.empty() && !baseline_only)
-        throw InputError(candidate_at,
+        throw InputError(candidate_place,
             fmt::format("expected renders of the candidate, found no file that matches '{}'",
                 fmt::join(suite.options.candidate, "', '")));
     std::vector<std::string> names;
@@ -229,15 +229,15 @@ void find_renders(Suite& suite, const SourceLocation& candidate_at, bool baselin
     check_region_names(suite, unknown);
     for (const SuiteView& view : suite.views)
         if (!std::binary_search(names.begin(), names.end(), view.name))
-            unknown.push_back({view.at,
+            unknown.push_back({view.location,
                 fmt::format("no render of a view '{}': expected one of {}{}", view.name, listed(names, ", "),
                     hint(view.name, names))});
     throw_if_any(std::move(unknown));
     std::vector<SuiteView> views;
     for (const std::string& name : names) {
-        const auto stated = std::find_if(
+        const auto entry = std::find_if(
             suite.views.begin(), suite.views.end(), [&](const SuiteView& view) { return view.name == name; });
-        SuiteView& view = views.emplace_back(stated == suite.views.end() ? SuiteView{} : *stated);
+        SuiteView& view = views.emplace_back(entry == suite.views.end() ? SuiteView{} : *entry);
         view.name = name;
         view.baseline = baseline[name];
         view.candidate = candidate[name];
@@ -296,17 +296,17 @@ std::optional<std::string> common_folder(const std::vector<FilePattern>& pattern
 
 std::vector<std::vector<MatchedFile>> files_of_patterns(const std::vector<FilePattern>& patterns) {
     std::vector<std::vector<MatchedFile>> out;
-    std::set<std::string> known;
+    std::set<std::string> paths;
     for (const FilePattern& pattern : patterns) {
         std::vector<MatchedFile>& files = out.emplace_back(pattern.find());
-        std::erase_if(files, [&](const MatchedFile& file) { return !known.insert(file.path).second; });
+        std::erase_if(files, [&](const MatchedFile& file) { return !paths.insert(file.path).second; });
     }
     return out;
 }
 
 std::string baseline_folder(const Suite& suite) {
     if (const std::optional<std::string> folder = common_folder(suite.baseline)) return *folder;
-    throw InputError(suite.baseline.front().at(),
+    throw InputError(suite.baseline.front().location(),
         fmt::format("--accept: expected patterns of the baseline in one folder, found '{}'",
             fmt::join(suite.options.baseline, "', '")));
 }
@@ -326,8 +326,8 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     Node root;
     if (!file.empty()) root = read_toml(read_text(file, "a suite file"), file);
     normalize(root);
-    const SourceLocation baseline_at = place_of(root, "baseline", context.e.file),
-                         candidate_at = place_of(root, "candidate", context.e.file);
+    const SourceLocation baseline_place = place_of(root, "baseline", context.e.file),
+                         candidate_place = place_of(root, "candidate", context.e.file);
     if (!root.find("suite")) root.members.push_back({"suite", {context.e.file, 0, 0}, Node{}});
     put_flags(root, flags.keys);
     Suite suite;
@@ -348,14 +348,14 @@ Suite read_suite(const std::string& file, const SuiteFlags& flags) {
     for (std::vector<std::string>* patterns : {&o.baseline, &o.candidate})
         for (std::string& pattern : *patterns) pattern = pattern_in(folder, pattern);
     if (!flags.baseline.empty() || !flags.candidate.empty()) use_folders(flags, o);
-    if (o.baseline.empty()) throw InputError(baseline_at, "expected suite.baseline, or --baseline DIR");
+    if (o.baseline.empty()) throw InputError(baseline_place, "expected suite.baseline, or --baseline DIR");
     if (o.candidate.empty() && !flags.baseline_only)
-        throw InputError(candidate_at, "expected suite.candidate, or --candidate DIR");
-    for (const std::string& pattern : o.baseline) suite.baseline.emplace_back(pattern, baseline_at, true);
-    for (const std::string& pattern : o.candidate) suite.candidate.emplace_back(pattern, candidate_at, true);
+        throw InputError(candidate_place, "expected suite.candidate, or --candidate DIR");
+    for (const std::string& pattern : o.baseline) suite.baseline.emplace_back(pattern, baseline_place, true);
+    for (const std::string& pattern : o.candidate) suite.candidate.emplace_back(pattern, candidate_place, true);
     if (const std::optional<std::string> place = common_folder(suite.baseline)) suite.manifest = read_manifest(*place);
-    find_renders(suite, candidate_at, flags.baseline_only);
-    check_sides(suite, candidate_at);
+    find_renders(suite, candidate_place, flags.baseline_only);
+    check_sides(suite, candidate_place);
     return suite;
 }
 

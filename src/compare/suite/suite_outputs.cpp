@@ -37,9 +37,9 @@ Json variance_json(const VarianceTest& t) {
     return out;
 }
 
-Json places_json(const std::vector<Found>& found) {
+Json places_json(const std::vector<Found>& places) {
     Json out = Json::array();
-    for (const Found& f : found)
+    for (const Found& f : places)
         out.push_back({{"box", {f.box.x0, f.box.y0, f.box.x1, f.box.y1}}, {"channel", quantity_names[f.quantity]},
             {"baseline", crescent::number(f.b)}, {"candidate", crescent::number(f.a)}, {"p", crescent::number(f.p)}});
     return out;
@@ -79,7 +79,7 @@ Json view_json(const ViewResult& view) {
     for (const MeanTest& t : means.regions) out["means"][t.region] = mean_json(t);
     out["identical"] = means.identical && view.other_channels.empty();
     out["paired"] = means.paired;
-    out["tiles"] = {{"tested", means.tiles.tested}, {"different", means.tiles.different},
+    out["tiles"] = {{"tested", means.tiles.test_count}, {"different", means.tiles.different},
         {"first", places_json(means.tiles_found)}};
     out["pixels"] = {{"tested", means.pixels_tested}, {"different", means.pixels_different},
         {"first", places_json(means.pixels_found)}};
@@ -163,7 +163,7 @@ std::vector<const ViewResult*> by_state(const SuiteResult& result) {
 std::string suite_json(const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& p) {
     Json out = {{"format", "crescent suite 1"}, {"title", suite.options.title}, {"sentence", result.sentence},
         {"exit_code", exit_code(result, new_baseline)}, {"alpha", crescent::number(suite.options.alpha)},
-        {"share_of_means", crescent::number(share_of_means)}, {"views_tested", result.tested},
+        {"share_of_means", crescent::number(share_of_means)}, {"views_tested", result.tested_views},
         {"counts", Json::object()}, {"views", Json::array()}};
     for (std::size_t k = 0; k < view_state_names.size(); ++k)
         out["counts"][view_state_names[k]] = result.count(static_cast<ViewState>(k));
@@ -187,13 +187,13 @@ std::string suite_sarif(
     for (const ViewResult* view : by_state(result)) {
         const JunitCase::State state = junit_state(*view, new_baseline);
         if (state == JunitCase::State::passed) continue;
-        const auto stated = std::find_if(
-            suite.views.begin(), suite.views.end(), [&](const SuiteView& each) { return each.name == view->name; });
+        const auto entry = std::find_if(suite.views.begin(), suite.views.end(),
+            [&](const SuiteView& candidate) { return candidate.name == view->name; });
         const char* level = state == JunitCase::State::failed ? "error"
             : state == JunitCase::State::error                ? "warning"
                                                               : "note";
         results.push_back({name_of(view->state), level, view->name + ": " + view->headline, suite.file,
-            stated == suite.views.end() ? 0 : stated->at.line, view->name});
+            entry == suite.views.end() ? 0 : entry->location.line, view->name});
     }
     return sarif_text(provenance.version, {view_state_names.begin(), view_state_names.end()}, results);
 }
@@ -207,10 +207,12 @@ std::string failure_sarif(const std::string& version, const std::string& file, c
     if (const auto* input = dynamic_cast<const InputError*>(&error)) mistakes = input->diagnostics();
     std::vector<SarifResult> results;
     for (const Diagnostic& mistake : mistakes) {
-        const bool is_in_file = !file.empty() && mistake.at.file == file;
-        const std::string message =
-            is_in_file || mistake.at.file.empty() ? mistake.message : to_string(mistake.at) + ": " + mistake.message;
-        results.push_back({"input", "error", message, file, is_in_file ? mistake.at.line : 0u, "input: " + message});
+        const bool is_in_file = !file.empty() && mistake.location.file == file;
+        const std::string message = is_in_file || mistake.location.file.empty()
+            ? mistake.message
+            : to_string(mistake.location) + ": " + mistake.message;
+        results.push_back(
+            {"input", "error", message, file, is_in_file ? mistake.location.line : 0u, "input: " + message});
     }
     return sarif_text(version, {"input"}, results);
 }
@@ -219,7 +221,7 @@ std::string suite_markdown(const Suite& suite, const SuiteResult& result, const 
     constexpr std::size_t limit = 60'000;
     std::string out = fmt::format("### {}\n\n{}\n", cell(suite.options.title), cell(result.sentence));
     const std::string end = fmt::format("\ncrescent {}\n", provenance.version);
-    bool begun = false;
+    bool has_begun = false;
     std::size_t left_out = 0;
     for (const ViewResult* view : by_state(result)) {
         if (view->state == ViewState::same) continue;
@@ -230,8 +232,8 @@ std::string suite_markdown(const Suite& suite, const SuiteResult& result, const 
             ++left_out;
             continue;
         }
-        if (!begun) out += "\n| state | view | what was found |\n|---|---|---|\n";
-        begun = true;
+        if (!has_begun) out += "\n| state | view | what was found |\n|---|---|---|\n";
+        has_begun = true;
         out += row;
     }
     if (left_out) out += fmt::format("\n{} more; the report has them.\n", plural(left_out, "view"));
@@ -273,7 +275,7 @@ bool is_good(ViewState state) { return state == ViewState::improved || state == 
 Json frames_of(const ViewResult& view) {
     Json out = Json::array();
     if (!view.means) return out;
-    const auto percents = [](int part, int whole) { return fmt::format("{:.2f}", 100.0 * part / whole); };
+    const auto percents = [](int part, int total) { return fmt::format("{:.2f}", 100.0 * part / total); };
     for (const auto* places : {&view.means->tiles_found, &view.means->pixels_found})
         for (const Found& f : *places)
             out.push_back(
@@ -291,22 +293,22 @@ Json regions_of(const ViewResult& view) {
     if (!view.means || view.exact) return out;
     for (std::size_t r = 0; r < view.means->regions.size(); ++r) {
         const MeanTest& t = view.means->regions[r];
-        const bool tested = t.why.empty() && !view.means->identical;
+        const bool is_tested = t.why.empty() && !view.means->identical;
         const VarianceTest* v = r < view.variances.size() ? &view.variances[r] : nullptr;
-        const bool varied = v && v->why.empty() && v->baseline > 0;
+        const bool has_variance = v && v->why.empty() && v->baseline > 0;
         out.push_back({{"region", t.region}, {"baseline", cell_text(figures(t.b))},
             {"candidate", cell_text(figures(t.a))}, {"change", cell_text(relative_to_baseline(t.a, t.b))},
-            {"p", cell_text(tested ? figures(t.joint_p, 2) : "")},
-            {"smallest", cell_text(tested ? percent(t.smallest, 2) : "")},
-            {"variance", cell_text(varied ? "×" + figures(v->candidate / v->baseline, 3) : "")},
-            {"variance_p", cell_text(varied ? figures(v->welch.p, 2) : "")}});
+            {"p", cell_text(is_tested ? figures(t.joint_p, 2) : "")},
+            {"smallest", cell_text(is_tested ? percent(t.smallest, 2) : "")},
+            {"variance", cell_text(has_variance ? "×" + figures(v->candidate / v->baseline, 3) : "")},
+            {"variance_p", cell_text(has_variance ? figures(v->welch.p, 2) : "")}});
     }
     return out;
 }
 
 /// The places that the map of significance shows.
 std::string places_of(const BiasResult& means) {
-    return fmt::format("{} of {} tiles, {} of {} pixels", means.tiles.different, means.tiles.tested,
+    return fmt::format("{} of {} tiles, {} of {} pixels", means.tiles.different, means.tiles.test_count,
         means.pixels_different, means.pixels_tested);
 }
 

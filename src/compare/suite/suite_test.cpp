@@ -92,7 +92,7 @@ TEST(Suites, EachViewHasTheStateOfItsRenders) {
     EXPECT_EQ(view_of(result, "fixed").state, ViewState::same);
     EXPECT_EQ(view_of(result, "moved").state, ViewState::changed);
     EXPECT_TRUE(view_of(result, "moved").exact);
-    EXPECT_EQ(result.tested, 5u);
+    EXPECT_EQ(result.tested_views, 5u);
     EXPECT_EQ(exit_code(result, false), 1);
     EXPECT_GT(*view_of(result, "few").renders_needed, 3u);
 }
@@ -533,7 +533,7 @@ TEST(Suites, SarifNamesTheLineOfAViewInItsFile) {
     s.put_both("view", noise, brighter, 200);
     s.put_both("other", noise, noise, 300);
     s.suite.file = "tests/a suite.toml";
-    s.suite.views[0].at = {"tests/a suite.toml", 7, 2};
+    s.suite.views[0].location = {"tests/a suite.toml", 7, 2};
     const Json sarif = Json::parse(suite_sarif(s.suite, s.compare(), false, {}));
     const Json& results = sarif["runs"][0]["results"];
     ASSERT_GE(results.size(), 1u);

@@ -45,7 +45,7 @@ std::string path_of_render(const std::vector<FilePattern>& patterns, const std::
         if (const auto path = pattern.path(view, {std::to_string(seed), extension})) return *path;
     }
     if (patterns.empty()) throw InputError({"--render", 0, 0}, "expected suite.candidate, the pattern of new renders");
-    throw InputError(patterns.front().at(),
+    throw InputError(patterns.front().location(),
         fmt::format("--render: expected a pattern with {{view}} and one wildcard, for the seed, found '{}'",
             patterns.front().text()));
 }
@@ -56,13 +56,13 @@ struct Undecided {
     std::uint64_t next_seed = 1;
     std::uint64_t next_baseline_seed = 0;  // of a baseline that is made too
     unsigned looks = 0;
-    bool decided = false;
-    std::size_t made = 0;
+    bool is_decided = false;
+    std::size_t render_count = 0;
     double seconds[2] = {0, 0};  // of the renders of each side that were made
     std::size_t count[2] = {0, 0};
-    double stopped = 0;  // the longest time of a program that did not end within the budget
+    double longest_stop = 0;  // the longest time of a program that did not end within the budget
     std::string failure;
-    std::optional<ViewResult> measured;
+    std::optional<ViewResult> outcome;
 };
 
 class Rounds {
@@ -77,8 +77,8 @@ public:
             const std::uint64_t last = std::max(largest_number(files.baseline), largest_number(files.candidate));
             view.next_seed = last + 1;
             // Seeds of two sides that are made differ by this, unless they are to be the same.
-            constexpr std::uint64_t apart = 500'000'000;
-            view.next_seed = sides.baseline && !sides.same_seeds ? std::max(last + 1, apart + 1) : last + 1;
+            constexpr std::uint64_t seed_distance = 500'000'000;
+            view.next_seed = sides.baseline && !sides.same_seeds ? std::max(last + 1, seed_distance + 1) : last + 1;
             view.next_baseline_seed = largest_number(files.baseline) + 1;
             if (sides.same_seeds) view.next_seed = largest_number(files.candidate) + 1;
         }
@@ -86,15 +86,16 @@ public:
 
     SuiteResult result() {
         monitor_.begin("views that are decided", static_cast<double>(views_.size()));
-        std::size_t told = 0;
+        std::size_t reported_count = 0;
         for (;;) {
             SuiteResult out = decision();
-            const std::size_t done = static_cast<std::size_t>(
-                std::count_if(views_.begin(), views_.end(), [](const Undecided& v) { return v.decided; }));
-            monitor_.advance(static_cast<double>(done - told));
-            told = done;
+            const std::size_t decided_count = static_cast<std::size_t>(
+                std::count_if(views_.begin(), views_.end(), [](const Undecided& v) { return v.is_decided; }));
+            monitor_.advance(static_cast<double>(decided_count - reported_count));
+            reported_count = decided_count;
             monitor_.check();
-            if (done < views_.size() && std::chrono::steady_clock::now() < options_.end && add_renders()) continue;
+            if (decided_count < views_.size() && std::chrono::steady_clock::now() < options_.end && add_renders())
+                continue;
             for (std::size_t k = 0; k < views_.size(); ++k) add_stop(views_[k], out.views[k]);
             return out;
         }
@@ -108,8 +109,8 @@ private:
         for (const SuiteView& view : suite_.views) compared += sides_.baseline || !view.baseline.empty();
         for (Undecided& view : views_) {
             const SuiteView& files = suite_.views[view.index];
-            if (!view.decided && view.failure.empty()) measure(view, files, std::max<std::size_t>(1, compared));
-            out.views.push_back(view.measured.value_or(ViewResult{}));
+            if (!view.is_decided && view.failure.empty()) measure(view, files, std::max<std::size_t>(1, compared));
+            out.views.push_back(view.outcome.value_or(ViewResult{}));
             ViewResult& to = out.views.back();
             to.name = files.name;
             if (view.failure.empty()) continue;
@@ -124,10 +125,11 @@ private:
     /// States that a program was stopped at the end of the budget, if it ran for longer than others of the view.
     static void add_stop(const Undecided& view, ViewResult& to) {
         constexpr double usual = 2;  // times the mean of the others
-        const double mean = view.made == 0 ? 0 : (view.seconds[0] + view.seconds[1]) / static_cast<double>(view.made);
-        if (view.stopped <= usual * mean || to.state != ViewState::too_few) return;
-        const std::string sentence =
-            fmt::format(" The program was stopped after {} s, at the end of the budget.", figures(view.stopped, 3));
+        const double mean =
+            view.render_count == 0 ? 0 : (view.seconds[0] + view.seconds[1]) / static_cast<double>(view.render_count);
+        if (view.longest_stop <= usual * mean || to.state != ViewState::too_few) return;
+        const std::string sentence = fmt::format(
+            " The program was stopped after {} s, at the end of the budget.", figures(view.longest_stop, 3));
         to.sentence += sentence;
         if (to.headline.size() + sentence.size() <= longest_headline) to.headline += sentence;
     }
@@ -140,7 +142,7 @@ private:
 
     void measure(Undecided& view, const SuiteView& files, std::size_t compared) {
         if (awaits_renders(files)) {
-            ViewResult& none = view.measured.emplace();
+            ViewResult& none = view.outcome.emplace();
             none.state = ViewState::too_few;
             none.too_few = "no render was made yet";
             none.baseline_renders = files.baseline.size();
@@ -149,20 +151,20 @@ private:
             return;
         }
         try {
-            suite_.look = ++view.looks;
-            view.measured = measure_view(suite_, files, compared, monitor_, source_);
+            suite_.look_number = ++view.looks;
+            view.outcome = measure_view(suite_, files, compared, monitor_, source_);
             check_seeds(view, files);
         } catch (const InputError& error) { view.failure = error.what(); }
-        suite_.look = 0;
+        suite_.look_number = 0;
     }
 
     /// Names programs whose renders do not depend on their seeds. If those of one side alone are equal, the view is
     /// unreadable; if those of each side are, or both sides have the same, no number of renders shows anything.
     void check_seeds(Undecided& view, const SuiteView& files) {
-        ViewResult& measured = *view.measured;
-        const bool a = is_constant(measured.baseline_hashes), b = is_constant(measured.candidate_hashes);
+        ViewResult& outcome = *view.outcome;
+        const bool a = is_constant(outcome.baseline_hashes), b = is_constant(outcome.candidate_hashes);
         if (a != b) {
-            if (measured.uniform) return;  // such as black: a change, whatever the seeds are
+            if (outcome.uniform) return;  // such as black: a change, whatever the seeds are
             const RenderCommand* command = b ? &sides_.candidate : sides_.baseline ? &*sides_.baseline : nullptr;
             const std::vector<std::string>& other = b ? files.baseline : files.candidate;
             if (!command || other.size() < 2) return;
@@ -171,17 +173,17 @@ private:
                     command->has_seed() ? "ignores the seed" : "gets no seed, because {seed} is not in its command",
                     files.name, printable(command->text, 200));
         } else if (sides_.baseline && a && !suite_.tolerance(files)) {
-            measured.untestable = "the renders of each side are equal, " + why_equal();
-            measured.remedy =
+            outcome.untestable = "the renders of each side are equal, " + why_equal();
+            outcome.remedy =
                 "Write {seed} where the program takes the seed of its random numbers, such as '--seed {seed}'. Renders "
                 "without noise are compared with a tolerance: --tolerance '0 ulp'.";
         } else if (sides_.baseline && !a && !sides_.same_seeds) {
-            const std::optional<std::array<std::uint64_t, 2>> seeds = seeds_of_equal_renders(files, measured);
+            const std::optional<std::array<std::uint64_t, 2>> seeds = seeds_of_equal_renders(files, outcome);
             if (!seeds) return;
-            measured.untestable = fmt::format(
+            outcome.untestable = fmt::format(
                 "both sides have the same noise: the renders of a with seed {} and of b with seed {} are equal",
                 (*seeds)[0], (*seeds)[1]);
-            measured.remedy = sides_.baseline->has_seed() && sides_.candidate.has_seed()
+            outcome.remedy = sides_.baseline->has_seed() && sides_.candidate.has_seed()
                 ? "Make the program use all digits of its seed, or give --pair if both sides are to have the same "
                   "noise."
                 : "Write {seed} in both commands, where the program takes the seed of its random numbers.";
@@ -209,10 +211,10 @@ private:
 
     /// Returns the seeds of two renders of different seeds and sides with the same pixels; nothing if there are none.
     static std::optional<std::array<std::uint64_t, 2>> seeds_of_equal_renders(
-        const SuiteView& files, const ViewResult& measured) {
+        const SuiteView& files, const ViewResult& outcome) {
         for (std::size_t i = 0; i < files.baseline.size(); ++i)
             for (std::size_t j = 0; j < files.candidate.size(); ++j) {
-                if (measured.baseline_hashes[i] != measured.candidate_hashes[j]) continue;
+                if (outcome.baseline_hashes[i] != outcome.candidate_hashes[j]) continue;
                 const std::uint64_t a = seed_in_name(files.baseline[i]), b = seed_in_name(files.candidate[j]);
                 if (a != b) return std::array{a, b};
             }
@@ -221,16 +223,16 @@ private:
 
     /// Notes whether a view needs more renders, and completes its sentences.
     void finish(Undecided& view, ViewResult& to) {
-        const bool few_renders = to.candidate_renders < first_renders && !to.exact;
-        const bool open = to.state == ViewState::too_few || (few_renders && to.state != ViewState::changed);
-        view.decided = !open || to.state == ViewState::unreadable || !to.untestable.empty();
-        if (view.made > 0)
-            to.notes.push_back(fmt::format("{} made in {} s of the programs.", plural(view.made, "render"),
+        const bool has_few_renders = to.candidate_renders < first_renders && !to.exact;
+        const bool is_open = to.state == ViewState::too_few || (has_few_renders && to.state != ViewState::changed);
+        view.is_decided = !is_open || to.state == ViewState::unreadable || !to.untestable.empty();
+        if (view.render_count > 0)
+            to.notes.push_back(fmt::format("{} made in {} s of the programs.", plural(view.render_count, "render"),
                 figures(view.seconds[0] + view.seconds[1], 3)));
         if (to.state == ViewState::too_few && to.renders_needed) {
-            const std::size_t more = *to.renders_needed - std::min(*to.renders_needed, to.candidate_renders);
-            to.headline = fmt::format("Undecided: {}{}.", plural(std::max<std::size_t>(1, more), "more render"),
-                sides_.baseline ? " of each side" : "");
+            const std::size_t missing_count = *to.renders_needed - std::min(*to.renders_needed, to.candidate_renders);
+            to.headline = fmt::format("Undecided: {}{}.",
+                plural(std::max<std::size_t>(1, missing_count), "more render"), sides_.baseline ? " of each side" : "");
             if (!sides_.baseline && *to.renders_needed > to.baseline_renders)
                 to.headline +=
                     fmt::format(" The baseline has {} of {} that it needs.", to.baseline_renders, *to.renders_needed);
@@ -250,13 +252,13 @@ private:
             figures(view.seconds[1] / static_cast<double>(view.count[1]), 3)));
     }
 
-    /// Returns how many renders a side that has `now` gets next: a quarter more, at most to what is needed.
-    std::size_t next_count(const Undecided& view, std::size_t now) const {
-        if (now < first_renders) return first_renders;
-        const std::size_t step = std::max<std::size_t>(1, now / 4);
-        std::size_t next = now + step;
-        if (view.measured && view.measured->renders_needed)
-            next = std::clamp(*view.measured->renders_needed, now + 1, now + 2 * step);
+    /// Returns how many renders a side that has `count` gets next: a quarter more, at most to what is needed.
+    std::size_t next_count(const Undecided& view, std::size_t count) const {
+        if (count < first_renders) return first_renders;
+        const std::size_t step = std::max<std::size_t>(1, count / 4);
+        std::size_t next = count + step;
+        if (view.outcome && view.outcome->renders_needed)
+            next = std::clamp(*view.outcome->renders_needed, count + 1, count + 2 * step);
         return std::min(next, options_.most_renders);
     }
 
@@ -270,9 +272,9 @@ private:
         constexpr std::size_t most_over_baseline = 4;
         if (!sides_.baseline && side.size() >= most_over_baseline * std::max(first_renders, files.baseline.size()))
             return;
-        const std::size_t wanted = next_count(view, side.size());
+        const std::size_t count = next_count(view, side.size());
         std::uint64_t& seed = baseline ? view.next_baseline_seed : view.next_seed;
-        for (std::size_t k = side.size(); k < wanted; ++k, ++seed) {
+        for (std::size_t k = side.size(); k < count; ++k, ++seed) {
             const std::string& extension = sides_.extension_of(command);
             const std::string path = path_of_render(patterns, files.name, seed, extension);
             if (!command.extension.empty() && !path.ends_with("." + extension))
@@ -289,33 +291,33 @@ private:
         std::vector<RenderJob> jobs;
         std::vector<std::pair<Undecided*, bool>> owners;
         for (Undecided& view : views_) {
-            if (view.decided || !view.failure.empty()) continue;
+            if (view.is_decided || !view.failure.empty()) continue;
             if (sides_.baseline) add_jobs(view, true, jobs, owners);
             if (!suite_.views[view.index].baseline.empty() || sides_.baseline) add_jobs(view, false, jobs, owners);
         }
         if (jobs.empty()) return false;
         monitor_.log(fmt::format("{} of {} decided; making {}",
-            std::ranges::count_if(views_, [](const Undecided& v) { return v.decided; }), plural(views_.size(), "view"),
-            plural(jobs.size(), "render")));
+            std::ranges::count_if(views_, [](const Undecided& v) { return v.is_decided; }),
+            plural(views_.size(), "view"), plural(jobs.size(), "render")));
         const std::vector<RenderEnd> ends = render_(jobs);
-        bool any = false;
+        bool has_progress = false;
         for (std::size_t k = 0; k < jobs.size(); ++k) {
             const auto [view, baseline] = owners[k];
             const RenderEnd& end = ends[k];
-            any |= end.made || !end.failure.empty();
-            if (end.stopped) view->stopped = std::max(view->stopped, end.seconds);
+            has_progress |= end.is_made || !end.failure.empty();
+            if (end.is_stopped) view->longest_stop = std::max(view->longest_stop, end.seconds);
             if (!end.failure.empty() && view->failure.empty())
                 view->failure = fmt::format(
                     "The program {} for seed {}: {}", end.failure, jobs[k].seed, printable(jobs[k].command->text, 200));
-            if (!end.made) continue;
+            if (!end.is_made) continue;
             SuiteView& files = suite_.views[view->index];
             std::vector<std::string>& side = baseline ? files.baseline : files.candidate;
             side.insert(std::lower_bound(side.begin(), side.end(), jobs[k].out), jobs[k].out);
-            ++view->made;
+            ++view->render_count;
             ++view->count[baseline ? 0 : 1];
             view->seconds[baseline ? 0 : 1] += end.seconds;
         }
-        return any;
+        return has_progress;
     }
 
     Suite& suite_;
@@ -360,8 +362,8 @@ Suite suite_of_commands(
         (*side == 'a' ? out.baseline : out.candidate).emplace_back(pattern, place, true);
     }
     for (const std::string& name : views) {
-        const auto found = std::ranges::find(stated.views, name, &SuiteView::name);
-        SuiteView& view = out.views.emplace_back(found == stated.views.end() ? SuiteView{} : *found);
+        const auto entry = std::ranges::find(stated.views, name, &SuiteView::name);
+        SuiteView& view = out.views.emplace_back(entry == stated.views.end() ? SuiteView{} : *entry);
         view.name = name;
     }
     for (const bool baseline : {true, false})

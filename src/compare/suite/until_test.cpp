@@ -62,11 +62,11 @@ struct Made {
             for (std::size_t k = 0; k < jobs.size(); ++k) {
                 if (!failure.empty()) out[k].failure = failure;
                 else if (made < render_limit) {
-                    out[k].made = true;
+                    out[k].is_made = true;
                     out[k].seconds = seconds;
                     ++made;
                 } else {
-                    out[k].stopped = stopped_after > 0;
+                    out[k].is_stopped = stopped_after > 0;
                     out[k].seconds = stopped_after;
                 }
                 seeds.push_back(jobs[k].seed);
@@ -189,7 +189,7 @@ ViewResult decide_two(const std::string& command,
     };
     const Renderer render = [&](const std::vector<RenderJob>& jobs) {
         std::vector<RenderEnd> out(jobs.size());
-        for (RenderEnd& end : out) end.made = true;
+        for (RenderEnd& end : out) end.is_made = true;
         return out;
     };
     ProgressMonitor monitor;
@@ -309,7 +309,7 @@ TEST_F(Programs, AreGivenTheirValuesAsWordsThatNoShellReads) {
 }
 
 TEST_F(Programs, ThatFailAreNamedAndLeaveNoFile) {
-    EXPECT_TRUE(make("sh -c 'printf \"Pf\\n1 1\\n-1\\n1234\" >\"$0\"' {out}").made);
+    EXPECT_TRUE(make("sh -c 'printf \"Pf\\n1 1\\n-1\\n1234\" >\"$0\"' {out}").is_made);
     EXPECT_TRUE(std::filesystem::exists(path("out/v-1.pfm")));
     std::filesystem::remove(path("out/v-1.pfm"));
     EXPECT_THAT(make("sh -c 'echo out of memory >&2; exit 3' {out}").failure, HasSubstr("exit code 3: out of memory"));
@@ -319,7 +319,7 @@ TEST_F(Programs, ThatFailAreNamedAndLeaveNoFile) {
     EXPECT_THAT(make("sh -c 'sleep 60' {out}", "v", 0.2).failure, HasSubstr("did not end within 0.2 s"));
     EXPECT_THAT(make("./no-such-program {out}").failure, HasSubstr("no-such-program"));
     const RenderEnd over = make("sh -c 'sleep 60' {out}", "v", 60, 0.2);
-    EXPECT_TRUE(over.stopped && !over.made && over.failure.empty());
+    EXPECT_TRUE(over.is_stopped && !over.is_made && over.failure.empty());
     EXPECT_GE(over.seconds, 0.2);
     EXPECT_TRUE(std::filesystem::is_empty(path("out")));
 }

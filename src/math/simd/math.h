@@ -30,9 +30,9 @@ template <class F> CRESCENT_INLINE SinCos<F> sincos_turns(F u) {
     using U = UintOf<F>;
     const F magic = number<F>(round_magic);
     const F a = number<F>(4) * u;
-    const F shifted = a + magic;
-    const U quarter = bits(shifted);
-    const F r = a - (shifted - magic);  // in quarter turns, [-1/2, 1/2]
+    const F magic_sum = a + magic;
+    const U quarter = bits(magic_sum);
+    const F r = a - (magic_sum - magic);  // in quarter turns, [-1/2, 1/2]
     const F z = r * r;
     const F s = r *
         (number<F>(1.5707963220e+00) +
@@ -54,8 +54,8 @@ template <class F> struct Power {
     F value, one_minus;
 };
 
-/// 2^(k + r) for r in [-1/2, 1/2] and the integer k in the low bits of `shifted` (k + 1.5 * 2^23 as a float).
-template <class F> CRESCENT_INLINE Power<F> exp2_split(F shifted, F r) {
+/// 2^(k + r) for r in [-1/2, 1/2] and the integer k in the low bits of `magic_sum` (k + 1.5 * 2^23 as a float).
+template <class F> CRESCENT_INLINE Power<F> exp2_split(F magic_sum, F r) {
     using U = UintOf<F>;
     const F one = number<F>(1);
     const F r2 = r * r;  // Estrin's scheme shortens the chain of dependent operations
@@ -63,15 +63,15 @@ template <class F> CRESCENT_INLINE Power<F> exp2_split(F shifted, F r) {
     const F middle = number<F>(5.5503571055e-02) + r * number<F>(9.6180308269e-03);
     const F high = number<F>(1.3390866863e-03) + r * number<F>(1.5469717178e-04);
     const F q = r * (low + r2 * (middle + r2 * high));
-    const F value = (one + q) * from_bits<F>(shift_left<23>(bits(shifted) + U(127u)));
-    return {value, select(shifted == number<F>(round_magic), -q, one - value)};
+    const F value = (one + q) * from_bits<F>(shift_left<23>(bits(magic_sum) + U(127u)));
+    return {value, select(magic_sum == number<F>(round_magic), -q, one - value)};
 }
 
 template <class F> CRESCENT_INLINE F exp2(F x) {
     const F magic = number<F>(round_magic);
-    const F inside = larger(x, number<F>(-126));
-    const F shifted = inside + magic;
-    return select(x >= number<F>(-126), exp2_split(shifted, inside - (shifted - magic)).value, number<F>(0));
+    const F exponent = larger(x, number<F>(-126));
+    const F magic_sum = exponent + magic;
+    return select(x >= number<F>(-126), exp2_split(magic_sum, exponent - (magic_sum - magic)).value, number<F>(0));
 }
 
 /// (log((1+s)/(1-s)) - 2s)/s for z = s^2 <= 0.03, from FreeBSD's e_logf.c (Remez, 2^-34).
@@ -109,9 +109,9 @@ template <class F> CRESCENT_INLINE Split<F> log2_split(F x, F x_minus_1) {
     const F a = hi * number<F>(1.4428710938);  // 1/ln 2 = 1.4428710938 (12 bits) - 1.7605285393e-04
     const F b = (lo + hi) * number<F>(-1.7605285393e-04) + lo * number<F>(1.4428710938);
     const F sum = e + a;
-    const F rest = select(e == number<F>(0), number<F>(0), a - (sum - e)) + b;
+    const F remainder = select(e == number<F>(0), number<F>(0), a - (sum - e)) + b;
     const F top = upper_half(sum);
-    return {top, (sum - top) + rest};
+    return {top, (sum - top) + remainder};
 }
 
 /// log(1 - u) for u in [0, 1 - 2^-24], without cancellation for small u.
@@ -133,10 +133,10 @@ template <class F> CRESCENT_INLINE Power<F> power(F x, F x_minus_1, F y) {
     const F high = yh * l.hi;  // exact: 12 x 12 bits
     const F low = yh * l.lo + (y - yh) * (l.hi + l.lo);
     const auto in_range = positive & (high + low > number<F>(-126));
-    const F h = select(in_range, high, none), rest = select(in_range, low, none);
+    const F h = select(in_range, high, none), low_part = select(in_range, low, none);
     const F magic = number<F>(round_magic);
-    const F shifted = (h + rest) + magic;
-    const Power<F> p = exp2_split(shifted, (h - (shifted - magic)) + rest);
+    const F magic_sum = (h + low_part) + magic;
+    const Power<F> p = exp2_split(magic_sum, (h - (magic_sum - magic)) + low_part);
     return {select(in_range, p.value, none), select(in_range, p.one_minus, number<F>(1))};
 }
 template <class F> CRESCENT_INLINE F pow(F x, F y) { return power(x, x - number<F>(1), y).value; }
@@ -156,8 +156,8 @@ template <class F> CRESCENT_INLINE Power<F> root(F u, F y) {
     const F square = number<F>(0.5) * f * f;
     const F l = f - (square - s * (square + R));  // FreeBSD e_logf.c
     const F x = y * (e + l * number<F>(1.44269504));
-    const F shifted = x + number<F>(round_magic);
-    return exp2_split(shifted, x - (shifted - number<F>(round_magic)));
+    const F magic_sum = x + number<F>(round_magic);
+    return exp2_split(magic_sum, x - (magic_sum - number<F>(round_magic)));
 }
 /// The same in double.
 inline Power<double> root(double u, double y) {

@@ -20,12 +20,12 @@ namespace {
 /// shadow is not convex.
 bool hides_all(const Blocker& blocker, Vec3d x, const Figure& figure) {
     if (holds(blocker.body, x)) return false;
-    const auto whole = [&](Vec3d from, Vec3d to) {
-        const Interval part = hidden(blocker.body, x, from, to, blocker.between)[0];
+    const auto hides_side = [&](Vec3d from, Vec3d to) {
+        const Interval part = hidden(blocker.body, x, from, to, blocker.limits)[0];
         return part.lo <= 0 && part.hi >= 1;
     };
     const std::array<Vec3d, 4> corners = corners_about(figure);
-    return whole(corners[0], corners[1]) && whole(corners[3], corners[2]);
+    return hides_side(corners[0], corners[1]) && hides_side(corners[3], corners[2]);
 }
 
 /// Returns whether the lobe is wide compared with the disk as seen from the point, so that rules that do not know its
@@ -48,12 +48,12 @@ bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
     return std::visit(
         [&](const auto& b) {
             const Vec3d d = b.middle() - c;
-            const auto beyond = [&](Vec3d axis) {
+            const auto is_beyond = [&](Vec3d axis) {
                 return dot(axis, d) - b.half_extent(axis) > radius * std::sqrt(dot(axis, axis));  // never along 0
             };
-            if (beyond(d)) return false;
+            if (is_beyond(d)) return false;
             for (const Vec3d& axis : b.faces())
-                if (beyond(axis) || beyond(-axis)) return false;
+                if (is_beyond(axis) || is_beyond(-axis)) return false;
             return true;
         },
         body.body);
@@ -63,29 +63,29 @@ bool may_reach_into(const Occluder& body, Vec3d c, double radius) {
 /// the integral.
 class FigureSeen {
 public:
-    FigureSeen(const DiskPoint& point, const Figure& figure, Vec3d normal, const std::vector<const Blocker*>& near)
+    FigureSeen(const DiskPoint& point, const Figure& figure, Vec3d normal, const std::vector<const Blocker*>& blockers)
         : figure_(figure),
-          near_(near),
+          blockers_(blockers),
           height_(dot(middle_of(figure) - point.x, normal)),
           at_horizon_(!(height_ - half_extent_of(figure, normal) > 0)),
-          is_hidden_(
-              std::any_of(near.begin(), near.end(), [&](const Blocker* b) { return hides_all(*b, point.x, figure); })) {
-    }
+          is_hidden_(std::any_of(
+              blockers.begin(), blockers.end(), [&](const Blocker* b) { return hides_all(*b, point.x, figure); })) {}
 
     /// At the same point, with another lobe.
     DiskIntegral operator()(const DiskPoint& point) {
         if (is_hidden_) return {};
         const bool soft = is_soft(point, figure_, height_);
         const shapes::Disk* disk = std::get_if<shapes::Disk>(&figure_);
-        if (disk && near_.empty() && soft && !at_horizon_) return whole_disk(point, *disk, frame_about(disk->normal));
+        if (disk && blockers_.empty() && soft && !at_horizon_)
+            return whole_disk(point, *disk, frame_about(disk->normal));
         std::optional<AllFans>& fans = soft ? about_light_ : about_lobe_;
-        if (!fans) fans.emplace(point, figure_, near_, !soft, at_horizon_);
+        if (!fans) fans.emplace(point, figure_, blockers_, !soft, at_horizon_);
         return fan_by_fan(point, *fans);
     }
 
 private:
     const Figure& figure_;
-    const std::vector<const Blocker*>& near_;
+    const std::vector<const Blocker*>& blockers_;
     double height_;
     bool at_horizon_, is_hidden_;
     std::optional<AllFans> about_light_, about_lobe_;
@@ -118,35 +118,35 @@ DiskIntegral enclosed(const DiskIntegral& a, const DiskIntegral& b) {
 /// Returns the distance of the ball's nearest point, as a fraction of the distance to the middle of its figure.
 double nearest_of(const lights::Sphere& ball, Vec3d x) {
     const Vec3d d = ball.center - x;
-    const double far = std::sqrt(dot(d, d));
-    return far / (far + ball.radius);
+    const double distance = std::sqrt(dot(d, d));
+    return distance / (distance + ball.radius);
 }
 
 /// A ball that bodies or other lights reach into. Its surface lies before the figure, and a body behind that surface
 /// hides nothing. The integral is taken in rings around the middle, each at the distance of its inner edge and at that
 /// of its outer edge: the true value is between the two.
 DiskIntegral ring_by_ring(
-    const DiskPoint& point, Vec3d normal, const lights::Sphere& ball, const std::vector<const Blocker*>& near) {
-    const shapes::Disk whole = std::get<shapes::Disk>(ball.seen_from(point.x));
-    const Vec3d d = whole.center - point.x, c = ball.center - point.x;
-    const double plane = std::sqrt(dot(d, d)), far = std::sqrt(dot(c, c));
+    const DiskPoint& point, Vec3d normal, const lights::Sphere& ball, const std::vector<const Blocker*>& blockers) {
+    const shapes::Disk disk = std::get<shapes::Disk>(ball.seen_from(point.x));
+    const Vec3d d = disk.center - point.x, c = ball.center - point.x;
+    const double plane = std::sqrt(dot(d, d)), distance = std::sqrt(dot(c, c));
     // The fraction of the way at which the ball is met, on the way to a point of the figure at `offset` from its
     // middle.
     const auto met_at = [&](double offset) {
-        const double way = std::sqrt(sqr(plane) + sqr(offset)), along = far * plane / way;
-        const double half2 = sqr(ball.radius) - sqr(far * offset / way);
-        return std::min(1.0, (along - std::sqrt(std::max(half2, 0.0))) / way);
+        const double way = std::sqrt(sqr(plane) + sqr(offset)), projection = distance * plane / way;
+        const double half2 = sqr(ball.radius) - sqr(distance * offset / way);
+        return std::min(1.0, (projection - std::sqrt(std::max(half2, 0.0))) / way);
     };
     constexpr int rings = 8;
     DiskIntegral sum;
     for (int k = 0; k < rings; ++k) {
         // About evenly spaced in the distance between surface and figure, which falls like a root at the edge.
         const auto edge = [&](int number) {
-            return whole.radius * std::sqrt(1 - sqr(1 - static_cast<double>(number) / rings));
+            return disk.radius * std::sqrt(1 - sqr(1 - static_cast<double>(number) / rings));
         };
         const auto up_to = [&](double radius, double way) {
-            const Figure part = moved(shapes::Disk{whole.center, whole.normal, radius}, point.x, way);
-            return radius > 0 ? FigureSeen(point, part, normal, near)(point) : DiskIntegral{};
+            const Figure part = moved(shapes::Disk{disk.center, disk.normal, radius}, point.x, way);
+            return radius > 0 ? FigureSeen(point, part, normal, blockers)(point) : DiskIntegral{};
         };
         const double from = edge(k), to = edge(k + 1);
         const auto ring = [&](double way) { return up_to(to, way) - up_to(from, way); };
@@ -158,13 +158,13 @@ DiskIntegral ring_by_ring(
 /// The result for a ball whose figure gives `out`, for cases in which a body may lie between the ball's surface and the
 /// figure.
 DiskIntegral before_bulge(const DiskPoint& point, Vec3d normal, const lights::Sphere& ball,
-    const std::vector<const Blocker*>& near, const DiskIntegral& out) {
+    const std::vector<const Blocker*>& blockers, const DiskIntegral& out) {
     const Figure nearest = moved(ball.seen_from(point.x), point.x, nearest_of(ball, point.x));
-    const DiskIntegral least = FigureSeen(point, nearest, normal, near)(point);
-    if (std::fabs(least.diffuse - out.diffuse) <= least.diffuse_error + out.diffuse_error &&
-        std::fabs(least.lobe - out.lobe) <= least.lobe_error + out.lobe_error)
-        return enclosed(out, least);
-    return ring_by_ring(point, normal, ball, near);
+    const DiskIntegral nearest_integral = FigureSeen(point, nearest, normal, blockers)(point);
+    if (std::fabs(nearest_integral.diffuse - out.diffuse) <= nearest_integral.diffuse_error + out.diffuse_error &&
+        std::fabs(nearest_integral.lobe - out.lobe) <= nearest_integral.lobe_error + out.lobe_error)
+        return enclosed(out, nearest_integral);
+    return ring_by_ring(point, normal, ball, blockers);
 }
 
 }  // namespace
@@ -184,11 +184,11 @@ std::vector<const Blocker*> DiskQuadrature::in_the_way(const Hit& hit, const Fig
     const Ball ball = {middle_of(figure), radius_of(figure)};
     for (const Blocker& b : blockers_) {
         if (b.body.shape == hit.shape || (b.light && !b.light->shines_on(hit.x))) continue;
-        if (passes_by(b.around, hit.x, ball)) continue;
+        if (passes_by(b.ball, hit.x, ball)) continue;
         // A light in the plane of this one lies before it at the end of the way, or not at all.
-        const bool apart = b.light ? is_separated(b.body, {hit.x}, body_of(moved(figure, hit.x, b.between.to)))
-                                   : is_separated(b.body, {hit.x}, light);
-        if (!apart) out.push_back(&b);
+        const bool is_apart = b.light ? is_separated(b.body, {hit.x}, body_of(moved(figure, hit.x, b.limits.to)))
+                                      : is_separated(b.body, {hit.x}, light);
+        if (!is_apart) out.push_back(&b);
     }
     return out;
 }
@@ -210,16 +210,16 @@ void DiskQuadrature::operator()(const Hit& hit, std::span<const Surface> surface
         .frame = local,
         .surface = surfaces[0],
         .light_normal = normal_of(figure)};
-    const std::vector<const Blocker*> near = in_the_way(hit, figure);
+    const std::vector<const Blocker*> blockers = in_the_way(hit, figure);
     const lights::Sphere* ball = std::get_if<lights::Sphere>(&light_.form);
-    const bool bulges = ball && std::any_of(near.begin(), near.end(), [&](const Blocker* b) {
+    const bool bulges = ball && std::any_of(blockers.begin(), blockers.end(), [&](const Blocker* b) {
         return may_reach_into(b->body, ball->center, ball->radius);
     });
-    FigureSeen seen(point, figure, hit.n, near);
+    FigureSeen integral(point, figure, hit.n, blockers);
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
         point.surface = surfaces[k];
-        out[k] = seen(point);
-        if (bulges) out[k] = before_bulge(point, hit.n, *ball, near, out[k]);
+        out[k] = integral(point);
+        if (bulges) out[k] = before_bulge(point, hit.n, *ball, blockers, out[k]);
     }
 }
 
@@ -265,13 +265,13 @@ const std::vector<PolarRule>& polar_rules() {
 /// factors, elements parallel and perpendicular to a disk), written without cancellation.
 double whole_disk_diffuse(const DiskPoint& point, const shapes::Disk& disk) {
     const Vec3d d = disk.center - point.x;
-    const double along = dot(d, disk.normal), r2 = sqr(disk.radius), h = std::fabs(along);
-    const Vec3d axis = along < 0 ? -disk.normal : disk.normal;
-    const Vec3d aside = d - h * axis;
-    const double p2 = dot(aside, aside), a = p2 + h * h + r2;
+    const double height = dot(d, disk.normal), r2 = sqr(disk.radius), h = std::fabs(height);
+    const Vec3d axis = height < 0 ? -disk.normal : disk.normal;
+    const Vec3d offset = d - h * axis;
+    const double p2 = dot(offset, offset), a = p2 + h * h + r2;
     const double root = std::sqrt(a * a - 4 * r2 * p2);
     const double parallel = r2 * (1 - 2 * p2 / (a + root)) / root;
-    return dot(point.frame.n, axis) * parallel + dot(point.frame.n, aside) * (2 * h * r2 / (root * (a + root)));
+    return dot(point.frame.n, axis) * parallel + dot(point.frame.n, offset) * (2 * h * r2 / (root * (a + root)));
 }
 
 }  // namespace
@@ -287,13 +287,14 @@ DiskIntegral whole_disk(const DiskPoint& point, const shapes::Disk& disk, const 
                 n.weight * point.lobe_at(disk.center + frame.t * (disk.radius * n.x) + frame.b * (disk.radius * n.y));
         return sum * sqr(disk.radius);
     };
-    constexpr double good = 1e-5;  // relative, between two rules; the finer rule, which is kept, is much more accurate
+    // Relative, between two rules; the finer rule, which is kept, is much more accurate.
+    constexpr double tolerance = 1e-5;
     const auto& rules = polar_rules();
     double coarse = apply(rules[0]);
     for (std::size_t k = 1; k < rules.size(); ++k) {
         out.lobe = apply(rules[k]);
         out.lobe_error = std::fabs(out.lobe - coarse);
-        if (point.weigh({0, out.lobe_error}) <= good * point.weigh({out.diffuse, out.lobe})) break;
+        if (point.weigh({0, out.lobe_error}) <= tolerance * point.weigh({out.diffuse, out.lobe})) break;
         coarse = out.lobe;
     }
     return out;

@@ -39,8 +39,8 @@ struct DiskPoint {
     double sharpness(double t) const {
         if (!(surface.rho_s > 0)) return 0;
         const LobeInfo& lobe = lobe_info(surface.brdf);
-        const double across = t * std::sqrt(lobe.exponent(surface.s, surface.alpha));
-        return lobe.about_mirror ? across : across / wo.z;
+        const double ratio = t * std::sqrt(lobe.exponent(surface.s, surface.alpha));
+        return lobe.about_mirror ? ratio : ratio / wo.z;
     }
     /// Returns Y of the pair under light of radiance 1.
     double weigh(Parts p) const {
@@ -58,9 +58,9 @@ struct DiskIntegral {
 /// What may block a light: a body, or another light if it is nearer.
 struct Blocker {
     Occluder body;
-    Between between = before_light;
+    Between limits = before_light;
     const Light* light = nullptr;  // absent as seen from behind if it is one-sided
-    Ball around = ball_around(body);
+    Ball ball = ball_around(body);
 };
 
 class DiskQuadrature {

@@ -31,9 +31,9 @@ double sector(const Direction& d) {
 
 }  // namespace
 
-Fan::Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about, const math::SinCos& azimuth)
-    : axis(about.n), aside(azimuth.cos * about.t + azimuth.sin * about.b) {
-    const Vec3d k = cross(axis, aside);
+Fan::Fan(const DiskPoint& point, const Figure& light, const Frame<double>& frame, const math::SinCos& azimuth)
+    : axis(frame.n), side(azimuth.cos * frame.t + azimuth.sin * frame.b) {
+    const Vec3d k = cross(axis, side);
     const std::optional<Line> line = std::visit(
         [&](const auto& figure) {
             if constexpr (requires { figure.center; }) return cut(figure, figure.center - point.x, k);
@@ -42,7 +42,7 @@ Fan::Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about
         light);
     if (!line) return;
     Vec3d from = line->from, to = line->to;
-    const double side0 = dot(aside, from), side1 = dot(aside, to);
+    const double side0 = dot(side, from), side1 = dot(side, to);
     if (side0 <= 0 && side1 <= 0) return;
     const Vec3d end = from + (side0 / (side0 - side1)) * (to - from);  // where the half-plane ends
     if (side0 < 0) from = end;
@@ -55,22 +55,23 @@ Fan::Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about
 
 Direction Fan::at(double v) const {
     const Vec3d d = to0 + v * step;
-    const double sin = std::max(0.0, dot(d, aside)), cos = dot(d, axis), size = 1 / std::sqrt(sin * sin + cos * cos);
+    const double sin = std::max(0.0, dot(d, side)), cos = dot(d, axis), size = 1 / std::sqrt(sin * sin + cos * cos);
     return {sin * size, cos * size, math::atan2(sin, cos)};
 }
 
 void Fan::rise_above(const DiskPoint& point, Direction& from, Direction& to) const {  // cos(al - top) > 0
-    const double along = dot(point.frame.n, axis), across = dot(point.frame.n, aside),
-                 size = std::sqrt(along * along + across * across);
-    double top = math::atan2(across, along);
+    const double axis_part = dot(point.frame.n, axis), side_part = dot(point.frame.n, side),
+                 size = std::sqrt(axis_part * axis_part + side_part * side_part);
+    double top = math::atan2(side_part, axis_part);
     if (top < -pi / 2) top += 2 * pi;
-    if (from.al < top - pi / 2) from = {-along / size, across / size, top - pi / 2};
-    if (to.al > top + pi / 2) to = {along / size, -across / size, top + pi / 2};
+    if (from.al < top - pi / 2) from = {-axis_part / size, side_part / size, top - pi / 2};
+    if (to.al > top + pi / 2) to = {axis_part / size, -side_part / size, top + pi / 2};
 }
 
 double Fan::lambert(const DiskPoint& point, const Direction& from, const Direction& to) const {
-    const double along = 0.5 * (to.sin + from.sin) * (to.sin - from.sin), across = 0.5 * (sector(to) - sector(from));
-    return dot(point.frame.n, axis) * along + dot(point.frame.n, aside) * across;
+    const double axis_part = 0.5 * (to.sin + from.sin) * (to.sin - from.sin),
+                 side_part = 0.5 * (sector(to) - sector(from));
+    return dot(point.frame.n, axis) * axis_part + dot(point.frame.n, side) * side_part;
 }
 
 namespace {
@@ -98,9 +99,9 @@ struct FansUnderLobe {
         for (const Interval& open : fans.parts(fan)) {
             const Interval part = {open.lo, std::min(open.hi, reach)};
             if (part.empty()) continue;
-            const AlongLobe along = lobe_along(point, fan.axis, fan.aside, part, width);
-            sum.lobe += along.value;
-            sum.inner += along.error;
+            const AlongLobe integral = lobe_along(point, fan.axis, fan.side, part, width);
+            sum.lobe += integral.value;
+            sum.inner += integral.error;
         }
         return fan.slope * sum;
     }
@@ -130,10 +131,10 @@ private:
 struct Panel {
     Span span;
     double lo, hi;  // in u
-    FanSum fine, off, spread;
+    FanSum fine, difference, spread;
     std::optional<Interval> kink;  // in u: the edges differ between its two ends
 
-    Panel(const FansUnderLobe& fans, const Span& whole, double u0, double u1) : span(whole), lo(u0), hi(u1) {
+    Panel(const FansUnderLobe& fans, const Span& full_span, double u0, double u1) : span(full_span), lo(u0), hi(u1) {
         std::array<std::pair<double, FanEdges>, 9> nodes;
         std::size_t count = 0;
         const auto f = [&](double u) {
@@ -141,10 +142,10 @@ struct Panel {
             nodes[count++] = {u, fan.edges};
             return span.slope(u) * fans(fan);
         };
-        const TwoRules<FanSum> both = by_two_rules(kronrod_7, f, lo, hi);
-        fine = both.fine;
-        off = both.off;
-        spread = both.spread;
+        const TwoRules<FanSum> rules = by_two_rules(kronrod_7, f, lo, hi);
+        fine = rules.fine;
+        difference = rules.difference;
+        spread = rules.spread;
         for (const double u : {1e-3, 1 - 1e-3})  // between an end of the span and the nearest node
             if (u > lo && u < hi) nodes[count++] = {u, fans.fans.edges_at(span.tau(u))};
         std::sort(nodes.begin(), nodes.begin() + count);
@@ -154,21 +155,21 @@ struct Panel {
 
     /// Returns the expected error of the larger rule: smaller than that of the smaller rule by the factor by which the
     /// smaller one improves on the middle point.
-    FanSum expected_off() const {
+    FanSum expected_difference() const {
         const auto error_of = [](double error, double coarser) {
             return std::fabs(error) * std::min(1.0, 4 * std::fabs(error) / std::max(std::fabs(coarser), 1e-300));
         };
-        return {error_of(off.diffuse, spread.diffuse), error_of(off.lobe, spread.lobe), 0};
+        return {error_of(difference.diffuse, spread.diffuse), error_of(difference.lobe, spread.lobe), 0};
     }
 
     /// Returns where to cut it: at the first kink, else in the middle.
     double cut(AllFans& fans) const {
         if (!kink) return 0.5 * (lo + hi);
         Interval interval = *kink;
-        const FanEdges before = fans.edges_at(span.tau(interval.lo));
+        const FanEdges start_edges = fans.edges_at(span.tau(interval.lo));
         for (int k = 0; k < 9; ++k) {  // the effect of the remainder is quadratic
             const double middle = 0.5 * (interval.lo + interval.hi);
-            (fans.edges_at(span.tau(middle)) == before ? interval.lo : interval.hi) = middle;
+            (fans.edges_at(span.tau(middle)) == start_edges ? interval.lo : interval.hi) = middle;
         }
         return interval.hi;
     }
@@ -179,23 +180,23 @@ constexpr int halvings = 14, first_halvings = 2;
 /// The sum of panels, cut where their rules differ, and first at kinks, where a shadow's edge meets the light's; no
 /// node may lie there.
 struct Adaptive {
-    const FansUnderLobe& all;
+    const FansUnderLobe& fans;
     double tolerance = 0;  // for one panel, in the unit of `weigh`
     DiskIntegral sum{};
 
     void add(const Panel& panel, int depth = 0) {
-        const FanSum error = panel.expected_off();
-        const bool good = all.point.weigh({error.diffuse, error.lobe}) <= tolerance;
-        if (depth == halvings || (good && !(panel.kink && depth < first_halvings))) {
+        const FanSum error = panel.expected_difference();
+        const bool is_good = fans.point.weigh({error.diffuse, error.lobe}) <= tolerance;
+        if (depth == halvings || (is_good && !(panel.kink && depth < first_halvings))) {
             sum.diffuse += panel.fine.diffuse;
             sum.lobe += panel.fine.lobe;
-            sum.diffuse_error += std::fabs(panel.off.diffuse);
-            sum.lobe_error += std::fabs(panel.off.lobe) + panel.fine.inner;
+            sum.diffuse_error += std::fabs(panel.difference.diffuse);
+            sum.lobe_error += std::fabs(panel.difference.lobe) + panel.fine.inner;
             return;
         }
-        const double cut = panel.cut(all.fans);
-        add(Panel(all, panel.span, panel.lo, cut), depth + 1);
-        add(Panel(all, panel.span, cut, panel.hi), depth + 1);
+        const double cut = panel.cut(fans.fans);
+        add(Panel(fans, panel.span, panel.lo, cut), depth + 1);
+        add(Panel(fans, panel.span, cut, panel.hi), depth + 1);
     }
 };
 
@@ -241,10 +242,10 @@ Azimuths azimuths_of(const Bodies::Any& body, Vec3d x, const Frame<double>& fram
 /// Returns the frame about R; its t lies in the plane of incidence and points away from the surface.
 Frame<double> frame_about_lobe(const DiskPoint& point) {
     const Vec3d r = mirror(point.wo);
-    const Vec3d up = Vec3d{0, 0, 1} - r.z * r;
-    const double size = std::sqrt(dot(up, up));
+    const Vec3d tangent = Vec3d{0, 0, 1} - r.z * r;
+    const double size = std::sqrt(dot(tangent, tangent));
     if (!(size > 1e-12)) return frame_about(point.frame.to_world(r));
-    const Vec3d n = point.frame.to_world(r), t = point.frame.to_world((1 / size) * up);
+    const Vec3d n = point.frame.to_world(r), t = point.frame.to_world((1 / size) * tangent);
     return {t, cross(n, t), n};
 }
 
@@ -259,15 +260,15 @@ AllFans::AllFans(const DiskPoint& point, const Figure& light, const std::vector<
     bool about_lobe, bool at_horizon)
     : point_(point),
       figure_(light),
-      about_(about_lobe ? frame_about_lobe(point) : frame_about_light(point, light)),
+      frame_(about_lobe ? frame_about_lobe(point) : frame_about_light(point, light)),
       about_lobe_(about_lobe),
       at_horizon_(at_horizon),
-      light_(azimuths_of(body_of(light), point.x, about_)) {
-    for (const Blocker* body : bodies) bodies_.push_back({body, azimuths_of(body->body.body, point.x, about_)});
+      light_(azimuths_of(body_of(light), point.x, frame_)) {
+    for (const Blocker* body : bodies) bodies_.push_back({body, azimuths_of(body->body.body, point.x, frame_)});
     add_all_cuts();
 }
 
-double AllFans::azimuth_of(Vec3d d) const { return math::atan2(dot(d, about_.b), dot(d, about_.t)); }
+double AllFans::azimuth_of(Vec3d d) const { return math::atan2(dot(d, frame_.b), dot(d, frame_.t)); }
 
 AllFans::Turn AllFans::turn(double tau) const {
     if (light_.whole()) return {light_.middle + tau, 1};
@@ -300,8 +301,8 @@ void AllFans::add_cuts(const Body& body) {
 }
 
 void AllFans::add_all_cuts() {
-    const int even = light_.whole() ? 4 : 2;
-    for (int k = 0; k <= even; ++k) cuts_.push_back({last() * (2.0 * k / even - 1), false});
+    const int steps = light_.whole() ? 4 : 2;
+    for (int k = 0; k <= steps; ++k) cuts_.push_back({last() * (2.0 * k / steps - 1), false});
     for (const Body& body : bodies_) add_cuts(body);
     if (std::holds_alternative<shapes::Quad>(figure_))
         for (const Vec3d corner : corners_about(figure_)) cut(azimuth_of(corner - point_.x), false);
@@ -314,27 +315,27 @@ void AllFans::add_all_cuts() {
             }
         }
     std::ranges::sort(cuts_, {}, &FanCut::tau);
-    std::vector<FanCut> apart;
+    std::vector<FanCut> distinct_cuts;
     for (const FanCut& c : cuts_)
-        if (!apart.empty() && c.tau - apart.back().tau <= 1e-14) apart.back().root |= c.root;
-        else apart.push_back(c);
-    cuts_ = std::move(apart);
+        if (!distinct_cuts.empty() && c.tau - distinct_cuts.back().tau <= 1e-14) distinct_cuts.back().root |= c.root;
+        else distinct_cuts.push_back(c);
+    cuts_ = std::move(distinct_cuts);
 }
 
 void AllFans::look_between(double lo, double hi) {
-    near_.clear();
+    blockers_.clear();
     const double from = turn(lo).azimuth, to = turn(hi).azimuth;
     for (const Body& body : bodies_)
-        if (body.azimuths.whole() || body.azimuths.meet(from, to)) near_.push_back(body.blocker);
+        if (body.azimuths.whole() || body.azimuths.meet(from, to)) blockers_.push_back(body.blocker);
 }
 
 template <class F> FanEdges AllFans::each_open(const Fan& fan, F&& f) {
     FanEdges edges = 1;
     if (fan.empty) return edges;
     hidden_.clear();
-    for (const Blocker* b : near_)
+    for (const Blocker* b : blockers_)
         for (const Interval& part :
-            hidden(b->body, point_.x, point_.x + fan.to0, point_.x + (fan.to0 + fan.step), b->between))
+            hidden(b->body, point_.x, point_.x + fan.to0, point_.x + (fan.to0 + fan.step), b->limits))
             hidden_.push_back(part);
     each_open_part(hidden_, [&](Interval open) {
         edges = 4 * edges + (open.lo > 0 ? 2 : 0) + (open.hi < 1 ? 1 : 0);
@@ -344,13 +345,13 @@ template <class F> FanEdges AllFans::each_open(const Fan& fan, F&& f) {
 }
 
 OpenFan AllFans::look_at(double tau) {
-    const Turn turned = turn(tau);
-    const math::SinCos azimuth = math::sincos(turned.azimuth);
-    const Fan fan(point_, figure_, about_, azimuth);
+    const Turn node = turn(tau);
+    const math::SinCos azimuth = math::sincos(node.azimuth);
+    const Fan fan(point_, figure_, frame_, azimuth);
     OpenFan out = {.axis = point_.frame.to_local(fan.axis),
-        .aside = point_.frame.to_local(fan.aside),
+        .side = point_.frame.to_local(fan.side),
         .cos_azimuth = azimuth.cos,
-        .slope = turned.slope};
+        .slope = node.slope};
     out.first_part = parts_.size();
     out.edges = each_open(fan, [&](Interval open) {
         Direction from = fan.at(open.lo), to = fan.at(open.hi);
@@ -369,7 +370,7 @@ const OpenFan& AllFans::operator()(double tau) {
 
 FanEdges AllFans::edges_at(double tau) {
     return edges_(
-        tau, [&] { return each_open(Fan(point_, figure_, about_, math::sincos(turn(tau).azimuth)), [](Interval) {}); });
+        tau, [&] { return each_open(Fan(point_, figure_, frame_, math::sincos(turn(tau).azimuth)), [](Interval) {}); });
 }
 
 }  // namespace crescent

@@ -17,7 +17,7 @@
 namespace crescent {
 
 // ---- One fan of directions from a surface point: the half-plane that ends in an axis, and the line in which it cuts a
-// light. Directions in it are cos(al) axis + sin(al) aside, al in [0, pi]; double precision.
+// light. Directions in it are cos(al) axis + sin(al) side, al in [0, pi]; double precision.
 
 /// sin(al), cos(al), al.
 struct Direction {
@@ -25,11 +25,11 @@ struct Direction {
 };
 
 struct Fan {
-    Vec3d axis, aside;
+    Vec3d axis, side;
     Vec3d to0{}, step{};  // from the point to the start of the light, and from there to its end
     bool empty = true;
 
-    Fan(const DiskPoint& point, const Figure& light, const Frame<double>& about, const math::SinCos& azimuth);
+    Fan(const DiskPoint& point, const Figure& light, const Frame<double>& frame, const math::SinCos& azimuth);
     /// Returns the direction to the light's point at fraction v between its start and its end.
     Direction at(double v) const;
     /// Keeps the part that is above the surface's horizon; to.al < from.al if there is none.
@@ -53,7 +53,7 @@ struct FanCut {
 
 /// What is visible of the light in a fan, for any lobe.
 struct OpenFan {
-    Vec3d axis, aside;   // like Fan, in the surface's frame
+    Vec3d axis, side;    // like Fan, in the surface's frame
     double cos_azimuth;  // about the lobe's axis: from the plane of incidence
     double slope;        // d azimuth / d tau
     double diffuse = 0;  // Lambert's part without rho_d
@@ -110,11 +110,11 @@ private:
 
     const DiskPoint& point_;
     const Figure& figure_;
-    Frame<double> about_;
+    Frame<double> frame_;
     bool about_lobe_, at_horizon_;
     Azimuths light_;
     std::vector<Body> bodies_;
-    std::vector<const Blocker*> near_;
+    std::vector<const Blocker*> blockers_;
     std::vector<FanCut> cuts_;
     std::vector<Interval> hidden_, parts_;
     Replay<OpenFan> fans_;

@@ -22,13 +22,13 @@ namespace {
 
 /// Halves an interval a few times if two rules differ.
 template <std::size_t n, class F>
-AlongLobe panel(const KronrodRule<n>& rule, const F& f, double lo, double hi, double good, int halvings) {
-    const auto [fine, off, spread] = by_two_rules(rule, f, lo, hi);
-    const double error = std::fabs(off);
-    if (halvings == 0 || error <= good || error <= 1e-7 * std::fabs(fine)) return {fine, error};
+AlongLobe panel(const KronrodRule<n>& rule, const F& f, double lo, double hi, double tolerance, int halvings) {
+    const auto [fine, difference, spread] = by_two_rules(rule, f, lo, hi);
+    const double error = std::fabs(difference);
+    if (halvings == 0 || error <= tolerance || error <= 1e-7 * std::fabs(fine)) return {fine, error};
     const double middle = 0.5 * (lo + hi);
-    const AlongLobe a = panel(rule, f, lo, middle, good, halvings - 1),
-                    b = panel(rule, f, middle, hi, good, halvings - 1);
+    const AlongLobe a = panel(rule, f, lo, middle, tolerance, halvings - 1),
+                    b = panel(rule, f, middle, hi, tolerance, halvings - 1);
     return {a.value + b.value, a.error + b.error};
 }
 
@@ -40,19 +40,19 @@ double lobe_stretch(const DiskPoint& point) {
 
 LobeShape::LobeShape(const DiskPoint& point) : stretch(lobe_stretch(point)) {
     const Surface& surface = point.surface;
-    const LobeWidth across = lobe_info(surface.brdf).width(surface.s, surface.alpha);
-    width = std::min(across.width, 1.0);
-    reach = across.reach;
+    const LobeWidth lobe_width = lobe_info(surface.brdf).width(surface.s, surface.alpha);
+    width = std::min(lobe_width.width, 1.0);
+    reach = lobe_width.reach;
 }
 
 double LobeShape::width_at(double c) const {  // (al cos / width)^2 + (al sin / (width stretch))^2 = 1
     return width / std::sqrt(c * c + (1 - c * c) / sqr(stretch));
 }
 
-AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval part, double width) {
+AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d side, Interval part, double width) {
     const auto f = [&](double al) {
         const auto [sin, cos] = math::sincos(al);
-        const Vec3d wi = cos * axis + sin * aside;
+        const Vec3d wi = cos * axis + sin * side;
         return wi.z > 0 ? point.lobe(wi) * wi.z * sin : 0.0;
     };
     if (part.hi - part.lo < 0.3 * width) return panel(kronrod_7, f, part.lo, part.hi, 0, 2);
@@ -60,9 +60,9 @@ AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval p
     for (double lo = part.lo, hi; lo < part.hi; lo = hi) {
         hi = std::max(width, 2 * lo);
         if (hi > 0.75 * part.hi) hi = part.hi;
-        const AlongLobe one = panel(kronrod_15, f, lo, hi, 1e-8 * sum.value, 6);
-        sum.value += one.value;
-        sum.error += one.error;
+        const AlongLobe integral = panel(kronrod_15, f, lo, hi, 1e-8 * sum.value, 6);
+        sum.value += integral.value;
+        sum.error += integral.error;
     }
     return sum;
 }
@@ -103,8 +103,8 @@ double half_vector_albedo(const L& lobe, double cos_o, const Normals& normals, c
     // u is monotone in the tilt of m: the range is split at the first m whose wi is below the horizon and ends at the
     // last m whose wi is above it.
     const double upright = normals.below(1), dips = normals.below(math::cos(0.5 * (pi / 2 - theta_o))),
-                 gone = normals.below(math::cos(0.5 * (pi / 2 + theta_o)));
-    return std::fabs(piece(upright, dips) + piece(dips, gone));
+                 end = normals.below(math::cos(0.5 * (pi / 2 + theta_o)));
+    return std::fabs(piece(upright, dips) + piece(dips, end));
 }
 
 }  // namespace
@@ -117,11 +117,11 @@ double lobe_albedo(LobeKind kind, double s, double alpha, double cos_o, const Yi
             out = half_vector_albedo(L<double>(s, alpha), c, typename L<double>::Normals(s, alpha), yield_to_host);
         else
             out = L<double>::albedo(s, alpha, std::clamp(cos_o, 0.0, 1.0), [&](const auto& f, double a, double b) {
-                const auto one = [&](double x) {
+                const auto evaluate = [&](double x) {
                     if (yield_to_host) yield_to_host(band_steps);
                     return f(x);
                 };
-                return integrate(one, a, b);
+                return integrate(evaluate, a, b);
             });
     });
     return out;
@@ -141,29 +141,34 @@ double through_five(const std::array<double, 5>& v, double t) {
 LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha, const YieldToHost& yield_to_host) {
     const auto exact = [&](double theta) { return lobe_albedo(kind, s, alpha, math::cos(theta), yield_to_host); };
     const bool about_mirror = lobe_info(kind).about_mirror;
-    const double good = about_mirror ? 1e-7 : 1e-6;  // half vectors take forty times as long
+    const double tolerance = about_mirror ? 1e-7 : 1e-6;  // half vectors take forty times as long
     const double rounding = about_mirror ? 1e-10 : 1e-6;
-    constexpr int even = 8, halvings = 12;
-    std::vector<Cell> open(even), next;
-    std::vector<std::array<double, 4>> between;
-    for (std::size_t k = 0; k < even; ++k)
-        open[k] = {.from = pi / 2 * static_cast<double>(k) / even, .size = pi / 2 / even, .value = {}, .error = 0};
-    parallel_for(std::size_t{0}, open.size() * 5, [&](std::size_t i) {
-        open[i / 5].value[i % 5] = exact(open[i / 5].from + open[i / 5].size * static_cast<double>(i % 5) / 4);
+    constexpr int first_cells = 8, halvings = 12;
+    std::vector<Cell> open_cells(first_cells), next;
+    std::vector<std::array<double, 4>> midpoints;
+    for (std::size_t k = 0; k < first_cells; ++k)
+        open_cells[k] = {.from = pi / 2 * static_cast<double>(k) / first_cells,
+            .size = pi / 2 / first_cells,
+            .value = {},
+            .error = 0};
+    parallel_for(std::size_t{0}, open_cells.size() * 5, [&](std::size_t i) {
+        open_cells[i / 5].value[i % 5] =
+            exact(open_cells[i / 5].from + open_cells[i / 5].size * static_cast<double>(i % 5) / 4);
     });
-    for (int depth = 0; !open.empty(); ++depth, std::swap(open, next)) {
-        between.resize(open.size());  // the points that measure a cell's error are nodes of its halves
-        parallel_for(std::size_t{0}, open.size() * 4, [&](std::size_t i) {
-            between[i / 4][i % 4] = exact(open[i / 4].from + open[i / 4].size * (static_cast<double>(i % 4) + 0.5) / 4);
+    for (int depth = 0; !open_cells.empty(); ++depth, std::swap(open_cells, next)) {
+        midpoints.resize(open_cells.size());  // the points that measure a cell's error are nodes of its halves
+        parallel_for(std::size_t{0}, open_cells.size() * 4, [&](std::size_t i) {
+            midpoints[i / 4][i % 4] =
+                exact(open_cells[i / 4].from + open_cells[i / 4].size * (static_cast<double>(i % 4) + 0.5) / 4);
         });
         next.clear();
-        for (std::size_t k = 0; k < open.size(); ++k) {
-            Cell& c = open[k];
+        for (std::size_t k = 0; k < open_cells.size(); ++k) {
+            Cell& c = open_cells[k];
             const std::array<double, 5>& v = c.value;
-            const std::array<double, 4>& m = between[k];
+            const std::array<double, 4>& m = midpoints[k];
             for (std::size_t i = 0; i < 4; ++i)
                 c.error = std::max(c.error, std::fabs(through_five(v, static_cast<double>(i) + 0.5) - m[i]));
-            if (c.error < good || depth == halvings) {
+            if (c.error < tolerance || depth == halvings) {
                 c.error = 2 * c.error + rounding;  // midpoints are not exactly where the interpolation error is largest
                 cells_.push_back(c);
                 continue;
@@ -176,9 +181,9 @@ LobeAlbedo::LobeAlbedo(LobeKind kind, double s, double alpha, const YieldToHost&
 }
 
 const LobeAlbedo::Cell& LobeAlbedo::cell(double theta) const {
-    const auto after =
+    const auto next_cell =
         std::upper_bound(cells_.begin() + 1, cells_.end(), theta, [](double t, const Cell& c) { return t < c.from; });
-    return *std::prev(after);
+    return *std::prev(next_cell);
 }
 
 double LobeAlbedo::operator()(double cos_o) const {

@@ -34,9 +34,9 @@ struct AlongLobe {
     double value = 0, error = 0;
 };
 
-/// Returns the integral of lobe cos(theta_i) sin(al) over [lo, hi], directions cos(al) axis + sin(al) aside in the
+/// Returns the integral of lobe cos(theta_i) sin(al) over [lo, hi], directions cos(al) axis + sin(al) side in the
 /// local frame. Panels double in size from al = 0, `width` being the first; the error is the difference of two rules.
-AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d aside, Interval part, double width);
+AlongLobe lobe_along(const DiskPoint& point, Vec3d axis, Vec3d side, Interval part, double width);
 
 /// Called before every `steps` steps, a tenth of a microsecond each, on the calling thread, so that a page stays
 /// responsive: near the horizon one albedo takes millions of steps.

@@ -54,11 +54,11 @@ Moments estimate(const ShadingPoints& points, const Combination& combination, st
 void write_paired(const Scene& scene, const ShadingPoints& points, const PairedPlan& plan,
     const std::atomic<bool>* stop, ReferenceFilm& film) {
     const Combination combination = combination_for(points);
-    const std::array both = {estimate(points, combination, plan.n, plan.seeds[0], stop),
+    const std::array estimates = {estimate(points, combination, plan.n, plan.seeds[0], stop),
         estimate(points, combination, plan.n, plan.seeds[1], stop)};
     for (std::size_t i = 0; i < points.count; ++i) {
-        const Rgb first = mean_radiance(scene, points, both[0], plan.n, i),
-                  second = mean_radiance(scene, points, both[1], plan.n, i);
+        const Rgb first = mean_radiance(scene, points, estimates[0], plan.n, i),
+                  second = mean_radiance(scene, points, estimates[1], plan.n, i);
         Rgb mean{};
         for (std::size_t c = 0; c < 3; ++c) mean[c] = 0.5 * (first[c] + second[c]);
         store_pixel(film, points.pixel[i], mean, 0.5 * std::fabs(luminance(first) - luminance(second)));

@@ -26,7 +26,7 @@ public:
                 tables_.try_emplace(key(surface), surface.brdf, surface.s, surface.alpha, yield_to_host);
         }
     }
-    const LobeAlbedo& of(const Surface& surface) const { return tables_.at(key(surface)); }
+    const LobeAlbedo& table_of(const Surface& surface) const { return tables_.at(key(surface)); }
 
 private:
     using Key = std::tuple<LobeKind, double, double>;
@@ -94,7 +94,7 @@ private:
         double albedo = 0;
         Sum out;
         if (surface.rho_s > 0) {
-            const LobeAlbedo& table = albedos.of(surface);
+            const LobeAlbedo& table = albedos.table_of(surface);
             albedo = table(dot(hit.n, hit.wo));
             out.error = surface.rho_s * surface.tinted(fill) * table.error(dot(hit.n, hit.wo));
         }
@@ -121,12 +121,12 @@ private:
 
 PixelQuadrature::PixelQuadrature(
     const Scene& scene, const std::vector<double>& exponents, const YieldToHost& yield_to_host)
-    : made_(std::make_unique<const Made>(scene, exponents, yield_to_host)) {}
+    : content_(std::make_unique<const Made>(scene, exponents, yield_to_host)) {}
 PixelQuadrature::~PixelQuadrature() = default;
 PixelQuadrature::PixelQuadrature(PixelQuadrature&&) noexcept = default;
 PixelQuadrature& PixelQuadrature::operator=(PixelQuadrature&&) noexcept = default;
 
-void PixelQuadrature::write(const TileBox& box, std::span<ReferenceFilm> films) const { made_->write(box, films); }
+void PixelQuadrature::write(const TileBox& box, std::span<ReferenceFilm> films) const { content_->write(box, films); }
 
 void store_pixel(ReferenceFilm& film, std::size_t index, const Rgb& radiance, double error) {
     film.r[index] = static_cast<float>(radiance[0]);

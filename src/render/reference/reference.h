@@ -41,7 +41,7 @@ public:
 
 private:
     class Made;
-    std::unique_ptr<const Made> made_;
+    std::unique_ptr<const Made> content_;
 };
 
 /// Stores one pixel of a reference.
@@ -86,31 +86,31 @@ template <class V> class Replay {
 public:
     /// Starts empty.
     Replay() {
-        asked_.reserve(64);
+        arguments_.reserve(64);
         values_.reserve(64);
     }
     /// Returns the value for x, valid until the next call; calls make() if x was not used before the last rewind.
     template <class Make> const V& operator()(double x, Make&& make) {
-        const auto last = asked_.begin() + static_cast<std::ptrdiff_t>(known_);
-        auto found = std::find(asked_.begin() + static_cast<std::ptrdiff_t>(next_), last, x);
-        if (found == last) found = std::find(asked_.begin(), last, x);
-        if (found == last) {
-            asked_.push_back(x);
+        const auto last = arguments_.begin() + static_cast<std::ptrdiff_t>(old_count_);
+        auto match = std::find(arguments_.begin() + static_cast<std::ptrdiff_t>(next_), last, x);
+        if (match == last) match = std::find(arguments_.begin(), last, x);
+        if (match == last) {
+            arguments_.push_back(x);
             values_.push_back(make());
             return values_.back();
         }
-        next_ = static_cast<std::size_t>(found - asked_.begin()) + 1;
+        next_ = static_cast<std::size_t>(match - arguments_.begin()) + 1;
         return values_[next_ - 1];
     }
     void rewind() {
         next_ = 0;
-        known_ = asked_.size();
+        old_count_ = arguments_.size();
     }
 
 private:
-    std::vector<double> asked_;
+    std::vector<double> arguments_;
     std::vector<V> values_;
-    std::size_t next_ = 0, known_ = 0;  // number of values before the last rewind; where the search begins
+    std::size_t next_ = 0, old_count_ = 0;  // number of values before the last rewind; where the search begins
 };
 
 /// Returns one film per exponent, in order.

@@ -42,17 +42,17 @@ struct Canvas::Surface {
 
     void ink(const Colour& c);
     /// Lays out markup at `px`; width < 0: unbounded.
-    Rect lay(const std::string& markup, const Text& how, double px, double width);
+    Rect lay(const std::string& markup, const Text& style, double px, double width);
 };
 
 // ---- Points Fontconfig at the fonts that are installed with the program, by its environment variable FONTCONFIG_FILE.
 
 void use_fonts_beside_program() {
-    static const bool once = [] {
+    static const bool is_set = [] {
         const std::string config = shared_file("fonts/fonts.conf");
         return !config.empty() && ::setenv("FONTCONFIG_FILE", config.c_str(), 0) == 0;
     }();
-    static_cast<void>(once);
+    static_cast<void>(is_set);
 }
 
 Colour colour(const Srgb8& c) { return {c[0] / 255.0, c[1] / 255.0, c[2] / 255.0, 1}; }
@@ -80,48 +80,48 @@ void Canvas::clear(const Colour& paper) {
 
 Canvas::~Canvas() = default;
 
-Rect Canvas::measure(const std::string& markup, const Text& how) const {
-    Text one = how;
-    one.lines = 1;
-    return surface_->lay(markup, one, how.px, -1);
+Rect Canvas::measure(const std::string& markup, const Text& style) const {
+    Text line_style = style;
+    line_style.lines = 1;
+    return surface_->lay(markup, line_style, style.px, -1);
 }
 
-Rect Canvas::text(const Rect& box, const std::string& markup, const Text& how) {
+Rect Canvas::text(const Rect& box, const std::string& markup, const Text& style) {
     if (markup.empty()) return {box.x, box.y, 0, 0};
     PangoLayout* l = surface_->layout.get();
     auto fits = [&](const Rect& e) {
-        return pango_layout_get_line_count(l) <= how.lines && e.w <= box.w + 0.5 && e.h <= box.h + 0.5;
+        return pango_layout_get_line_count(l) <= style.lines && e.w <= box.w + 0.5 && e.h <= box.h + 0.5;
     };
-    double width = how.lines > 1 ? box.w : -1;
-    double px = how.px;
-    Rect e = surface_->lay(markup, how, px, width);
-    while (!fits(e) && px > how.least) {
-        px = std::max(how.least, px - 0.5);
-        e = surface_->lay(markup, how, px, width);
+    double width = style.lines > 1 ? box.w : -1;
+    double px = style.px;
+    Rect e = surface_->lay(markup, style, px, width);
+    while (!fits(e) && px > style.least_px) {
+        px = std::max(style.least_px, px - 0.5);
+        e = surface_->lay(markup, style, px, width);
     }
-    bool cut = false;
+    bool is_cut = false;
     if (!fits(e)) {
-        e = surface_->lay(markup, how, px, box.w);
+        e = surface_->lay(markup, style, px, box.w);
         pango_layout_set_wrap(l, PANGO_WRAP_WORD_CHAR);
         pango_layout_set_ellipsize(l, PANGO_ELLIPSIZE_END);
-        pango_layout_set_height(l, -how.lines);
-        cut = true;
+        pango_layout_set_height(l, -style.lines);
+        is_cut = true;
     }
     // Text that exceeds the width by less than half a pixel must not be wrapped.
-    pango_layout_set_width(l, static_cast<int>(std::ceil((cut ? box.w : std::max(box.w, e.w)) * PANGO_SCALE)));
+    pango_layout_set_width(l, static_cast<int>(std::ceil((is_cut ? box.w : std::max(box.w, e.w)) * PANGO_SCALE)));
     PangoRectangle r;
     pango_layout_get_extents(l, nullptr, &r);
     double h = double(r.height) / PANGO_SCALE;
     double y = box.y +
-        (how.vertical == Vertical::top             ? 0
-                : how.vertical == Vertical::middle ? (box.h - h) / 2
-                                                   : box.h - h);
-    surface_->ink(how.ink);
+        (style.vertical == Vertical::top             ? 0
+                : style.vertical == Vertical::middle ? (box.h - h) / 2
+                                                     : box.h - h);
+    surface_->ink(style.ink);
     cairo_move_to(surface_->cr, box.x, y);
     if (!text_hidden_) pango_cairo_show_layout(surface_->cr, l);
-    Rect took{box.x + double(r.x) / PANGO_SCALE, y, double(r.width) / PANGO_SCALE, h};
-    settings_.push_back({markup, box, took, px, cut, themed(how.ink, theme_)});
-    return took;
+    Rect extents{box.x + double(r.x) / PANGO_SCALE, y, double(r.width) / PANGO_SCALE, h};
+    settings_.push_back({markup, box, extents, px, is_cut, themed(style.ink, theme_)});
+    return extents;
 }
 
 const unsigned char* Canvas::pixels(int& stride) const {
@@ -133,9 +133,9 @@ const unsigned char* Canvas::pixels(int& stride) const {
 std::string Canvas::svg() {
     cairo_surface_finish(surface_->image);
     std::string out = std::move(surface_->document);
-    const std::string counted = "id=\"surface";  // and how many surfaces the process has made
-    if (const auto found = out.find(counted); found != std::string::npos) {
-        const auto from = found + counted.size();
+    const std::string prefix = "id=\"surface";  // and how many surfaces the process has made
+    if (const auto position = out.find(prefix); position != std::string::npos) {
+        const auto from = position + prefix.size();
         out.erase(from, out.find_first_not_of("0123456789", from) - from);
     }
     return out;
@@ -290,15 +290,15 @@ void Canvas::paint(const Block& block, double x, double y, int times, double alp
     cairo_surface_flush(surface_->image);
     unsigned char* data = cairo_image_surface_get_data(surface_->image);
     const int stride = cairo_image_surface_get_stride(surface_->image);
-    const std::vector<Cover> across = covers(x0, x1, left_edge, size, block.width);
+    const std::vector<Cover> column_covers = covers(x0, x1, left_edge, size, block.width);
     for (int j = y0; j < y1; ++j) {
-        const Cover down = cover(j, top, size, block.height);
+        const Cover row_cover = cover(j, top, size, block.height);
         unsigned char* to = data + std::ptrdiff_t(j) * stride + std::ptrdiff_t(4) * x0;
-        for (const Cover& c : across) {
+        for (const Cover& c : column_covers) {
             double sum[3] = {0, 0, 0}, area = 0;
-            for (int v = down.first; v <= down.last; ++v) {
+            for (int v = row_cover.first; v <= row_cover.last; ++v) {
                 for (int u = c.first; u <= c.last; ++u) {
-                    const double share = c.share(u) * down.share(v);
+                    const double share = c.share(u) * row_cover.share(v);
                     const unsigned char* from =
                         &block.rgb[3 * (std::size_t(v) * std::size_t(block.width) + std::size_t(u))];
                     for (int k = 0; k < 3; ++k) sum[k] += share * from[k];
@@ -344,19 +344,19 @@ void require_font(PangoFontMap* map) {
     PangoFontFamily** families = nullptr;
     int count = 0;
     pango_font_map_list_families(map, &families, &count);
-    bool found = false;
-    for (int i = 0; i < count; ++i) found |= std::strcmp(pango_font_family_get_name(families[i]), family) == 0;
+    bool has_font = false;
+    for (int i = 0; i < count; ++i) has_font |= std::strcmp(pango_font_family_get_name(families[i]), family) == 0;
     g_free(families);
-    if (!found) {
+    if (!has_font) {
         throw OutputError(std::string("plates are set in the font ") + family +
             ", which this machine does not have: install the package fonts-inter");
     }
 }
 
 void replace_all(std::string& text, std::string_view what, const std::string& replacement) {
-    for (auto found = text.find(what); found != std::string::npos;
-        found = text.find(what, found + replacement.size())) {
-        text.replace(found, what.size(), replacement);
+    for (auto position = text.find(what); position != std::string::npos;
+        position = text.find(what, position + replacement.size())) {
+        text.replace(position, what.size(), replacement);
     }
 }
 
@@ -384,8 +384,8 @@ cairo_status_t append(void* document, const unsigned char* bytes, unsigned int c
 
 }  // namespace
 
-Canvas::Surface::Surface(int width, int height, double pixels_a_unit, Theme how, Medium medium)
-    : scale(pixels_a_unit), theme(how) {
+Canvas::Surface::Surface(int width, int height, double pixels_a_unit, Theme colours, Medium medium)
+    : scale(pixels_a_unit), theme(colours) {
     use_fonts_beside_program();
     require_font(pango_cairo_font_map_get_default());
     image = medium == Medium::svg ? cairo_svg_surface_create_for_stream(append, &document, width, height)
@@ -406,8 +406,8 @@ Canvas::Surface::Surface(int width, int height, double pixels_a_unit, Theme how,
     pango_context_set_language(context, pango_language_from_string("en"));
 }
 void Canvas::Surface::ink(const Colour& c) {
-    const Colour shown = themed(c, theme);
-    cairo_set_source_rgba(cr, shown.r, shown.g, shown.b, shown.a);
+    const Colour shade = themed(c, theme);
+    cairo_set_source_rgba(cr, shade.r, shade.g, shade.b, shade.a);
 }
 
 Canvas::Surface::~Surface() {
@@ -416,15 +416,15 @@ Canvas::Surface::~Surface() {
     cairo_surface_destroy(image);
 }
 
-Rect Canvas::Surface::lay(const std::string& markup, const Text& how, double px, double width) {
+Rect Canvas::Surface::lay(const std::string& markup, const Text& style, double px, double width) {
     PangoLayout* l = layout.get();
-    pango_layout_set_font_description(l, describe(px, how.weight).get());
+    pango_layout_set_font_description(l, describe(px, style.weight).get());
     pango_layout_set_ellipsize(l, PANGO_ELLIPSIZE_NONE);
     pango_layout_set_height(l, -1);
     pango_layout_set_width(l, width < 0 ? -1 : static_cast<int>(std::ceil(width * PANGO_SCALE)));
     pango_layout_set_wrap(l, PANGO_WRAP_WORD);
-    pango_layout_set_alignment(l, to_pango(how.align));
-    pango_layout_set_line_spacing(l, how.lines > 1 ? 1.12f : 0.0f);
+    pango_layout_set_alignment(l, to_pango(style.align));
+    pango_layout_set_line_spacing(l, style.lines > 1 ? 1.12f : 0.0f);
     std::string text = spans(markup, px);
     pango_layout_set_markup(l, text.c_str(), static_cast<int>(text.size()));
     PangoRectangle r;

@@ -47,15 +47,15 @@ enum class Weight { regular = 400, medium = 500, semibold = 600 };
 enum class Align { left, centre, right };
 enum class Vertical { top, middle, bottom };
 
-/// How text is set. It is reduced from `px` to `least` until it fits its box, then wrapped words are ellipsized.
+/// How text is set. It is reduced from `px` to `least_px` until it fits its box, then wrapped words are ellipsized.
 struct Text {
     double px = 18;
     Colour ink;
     Weight weight = Weight::regular;
     Align align = Align::left;
     Vertical vertical = Vertical::top;
-    int lines = 1;      // at most
-    double least = 13;  // px
+    int lines = 1;  // at most
+    double least_px = 13;
 };
 
 /// The result of setting one piece of text: for tests, which require that nothing is cut or overlaps its neighbour.
@@ -98,9 +98,9 @@ public:
     Canvas& operator=(const Canvas&) = delete;
 
     /// Sets Pango markup in `box`; names from the experiment must have gone through `escaped`. Returns its extents.
-    Rect text(const Rect& box, const std::string& markup, const Text& how);
+    Rect text(const Rect& box, const std::string& markup, const Text& style);
     /// Returns width and height of the markup on one line at how.px.
-    Rect measure(const std::string& markup, const Text& how) const;
+    Rect measure(const std::string& markup, const Text& style) const;
 
     /// Shapes, in units of the canvas. `width` is a line's, `dash` the length of a dash and of the gap after it, 0 for
     /// none. Polygons and dots are filled; an arrow has its head at `to`.

@@ -50,13 +50,13 @@ void draw_rays(Canvas& c, const Frame& f, double tilt) {
         c.line(f.x, f.y, rim.x, rim.y, rule, 1);
         if (std::abs(a) == 90) continue;
         Canvas::Point p = f.at(a * radians_per_degree, 1 + 8 / f.radius);
-        Text how = with(with(with_px(small_text, 16), Vertical::middle),
+        Text style = with(with(with_px(small_text, 16), Vertical::middle),
             a < 0       ? Align::right
                 : a > 0 ? Align::left
                         : Align::centre);
         double x = a < 0 ? p.x - 80 : a > 0 ? p.x : p.x - 40;
         std::string name = angle_name(a, int(std::lround(tilt / radians_per_degree)), f.radius >= 110);
-        c.text({x, p.y - 11 - 6 * math::cos(a * radians_per_degree), 80, 22}, name, how);
+        c.text({x, p.y - 11 - 6 * math::cos(a * radians_per_degree), 80, 22}, name, style);
     }
     Canvas::Point r = f.at(tilt, 1);
     c.line(f.x, f.y, r.x, r.y, muted, 1.5, 5);
@@ -79,7 +79,7 @@ std::vector<std::string> ring_labels(const DensityScale& scale, double step, dou
 
 void draw_circles(Canvas& c, const Frame& f, const std::vector<std::string>& labels) {
     const int rings = static_cast<int>(labels.size()) - 1;
-    Text how = with(with_px(small_text, 16), Align::centre);
+    Text style = with(with_px(small_text, 16), Align::centre);
     for (int k = 0; k <= rings; ++k) {
         double fraction = double(k) / rings;
         std::vector<Canvas::Point> arc;
@@ -87,7 +87,7 @@ void draw_circles(Canvas& c, const Frame& f, const std::vector<std::string>& lab
         if (k > 0) c.polyline(arc, rule, 1);
         double x = f.x + f.radius * fraction;
         c.line(x, f.y, x, f.y + 5, muted, 1.5);
-        c.text({x - 28, f.y + 7, 56, 20}, labels[static_cast<std::size_t>(k)], how);
+        c.text({x - 28, f.y + 7, 56, 20}, labels[static_cast<std::size_t>(k)], style);
     }
     c.line(f.x - f.radius, f.y, f.x + f.radius, f.y, muted, 1.5);
     if (f.radius >= 100) c.text({f.x - f.radius, f.y + 7, f.radius - 30, 20}, "p, 1/sr", with_px(small_text, 16));
@@ -152,8 +152,8 @@ namespace {
 
 /// Returns a point of the surface for which the density is shown.
 ShadingPoint<double> point_of(const Experiment& e, double s, double tilt) {
-    const auto shown = surface_of_densities(e);
-    Material material = shown ? e.material(*shown) : Material{};
+    const auto surface_index = surface_of_densities(e);
+    Material material = surface_index ? e.material(*surface_index) : Material{};
     material.s = s;
     const Surface surface = surface_of(material, s);
     ShadingPoint<double> shading_point{};
@@ -182,7 +182,7 @@ std::vector<Vec3d> directions_to_light(const OpenPixel& pixel, const SamplerInfo
     if (!sampler.reaches.sky && !sampler.reaches.triangles) return out;
     constexpr std::uint64_t draws = 32;
     const std::vector<PixelSample> samples = pixel.samples(sampler.name, draws, 1);
-    const auto density = [](const PixelSample& s) { return s.around && s.x > 0 ? s.pdf : 0.0f; };
+    const auto density = [](const PixelSample& s) { return s.meets_surroundings && s.x > 0 ? s.pdf : 0.0f; };
     const auto densest = std::ranges::max_element(samples, {}, density);
     if (densest != samples.end() && density(*densest) > 0) out.push_back(widen(densest->wi));
     return out;
@@ -192,15 +192,15 @@ std::vector<Vec3d> directions_to_light(const OpenPixel& pixel, const SamplerInfo
 /// in radians; infinite if no such light reaches it or R is n.
 double off_the_plane(const OpenPixel& pixel, const SamplerInfo& sampler, double tilt) {
     const Vec3d r = pixel.mirror();
-    const double out = math::hypot(r.x, r.y);
-    double least = std::numeric_limits<double>::infinity();
-    if (!(out > 0.01)) return least;
+    const double radius = math::hypot(r.x, r.y);
+    double smallest = std::numeric_limits<double>::infinity();
+    if (!(radius > 0.01)) return smallest;
     for (const Vec3d& towards : directions_to_light(pixel, sampler))
         if (towards.z > 0.05)
-            least = std::min(least,
-                std::fabs(math::atan2(out, r.z) - tilt) +
-                    std::fabs(math::asin((r.x * towards.y - r.y * towards.x) / out)));
-    return least;
+            smallest = std::min(smallest,
+                std::fabs(math::atan2(radius, r.z) - tilt) +
+                    std::fabs(math::asin((r.x * towards.y - r.y * towards.x) / radius)));
+    return smallest;
 }
 
 /// Selects among a few thousand pixels that see the shape whose exponent is the experiment's, or any shape if there is
@@ -208,19 +208,19 @@ double off_the_plane(const OpenPixel& pixel, const SamplerInfo& sampler, double 
 std::shared_ptr<const OpenPixel> lit_pixel(const Experiment& e, const SamplerInfo& sampler, double s, double tilt) {
     const Scene scene = Scene(e).with_s(s);
     const auto surface = e.surface_of_s();
-    const std::ptrdiff_t wanted = surface ? static_cast<std::ptrdiff_t>(*surface) : -1;
+    const std::ptrdiff_t shape = surface ? static_cast<std::ptrdiff_t>(*surface) : -1;
     const int step =
         std::max(1, static_cast<int>(std::sqrt(e.image.width * static_cast<double>(e.image.height) / 4e3)));
     std::shared_ptr<const OpenPixel> best;
-    double least = std::numeric_limits<double>::infinity();
+    double smallest = std::numeric_limits<double>::infinity();
     for (int j = 0; j < e.image.height; j += step)
         for (int i = 0; i < e.image.width; i += step) {
             const auto hit = scene.primary(i, j);
-            if (!hit || (wanted >= 0 && hit->shape != wanted)) continue;
+            if (!hit || (shape >= 0 && hit->shape != shape)) continue;
             auto pixel = std::make_shared<const OpenPixel>(scene, i, j);
             const double distance = off_the_plane(*pixel, sampler, tilt);
-            if (distance < least) {
-                least = distance;
+            if (distance < smallest) {
+                smallest = distance;
                 best = std::move(pixel);
             }
         }
@@ -260,19 +260,19 @@ Density::Density(const Experiment& e, const std::string& sampler, double s, doub
     find_peak();
 }
 
-Density::Density(const Experiment& e, const SamplerAdapter& outside, double s, double tilt) : tilt_(tilt) {
+Density::Density(const Experiment& e, const SamplerAdapter& external, double s, double tilt) : tilt_(tilt) {
     const ShadingPoint<double> shading_point = point_of(e, s, tilt);
-    const SamplerDeclaration declaration = outside.declaration();
-    ask_ = [&outside, longest = declaration.batch_rows, wo = shading_point.wo,
-               on = SurfaceParameters{shading_point.s, shading_point.alpha, shading_point.diffuse, shading_point.lobe}](
-               std::span<const Vec3d> wi, std::span<double> out) {
+    const SamplerDeclaration declaration = external.declaration();
+    ask_ = [&external, longest = declaration.batch_rows, wo = shading_point.wo,
+               surface = SurfaceParameters{shading_point.s, shading_point.alpha, shading_point.diffuse,
+                   shading_point.lobe}](std::span<const Vec3d> wi, std::span<double> out) {
         std::vector<Pair> pairs;
         for (const Vec3d w : wi) pairs.push_back({wo, w});
         for (std::size_t first = 0; first < wi.size(); first += longest) {
             const std::size_t rows = std::min(wi.size() - first, longest);
-            const SurfaceRun run{wo, on, rows, {on.diffuse, on.diffuse, on.diffuse}};
+            const SurfaceRun run{wo, surface, rows, {surface.diffuse, surface.diffuse, surface.diffuse}};
             const SceneRows scene{.runs = {&run, 1}};
-            outside.evaluate(
+            external.evaluate(
                 {.kind = SamplerQuery::Kind::pdf, .pairs = std::span(pairs).subspan(first, rows), .scene = &scene},
                 {.values = out.subspan(first, rows)});
         }
@@ -292,15 +292,15 @@ void Density::query_at_a_pixel(const Experiment& e, const std::string& sampler, 
     const std::shared_ptr<const OpenPixel> pixel = lit_pixel(e, *find_arm_info(sampler), s, tilt_);
     if (!pixel) return;
     const Vec3d r = pixel->mirror();
-    const double out = math::hypot(r.x, r.y), x = r.x / out, y = r.y / out;  // from n towards R
-    tilt_ = math::atan2(out, r.z);
+    const double radius = math::hypot(r.x, r.y), x = r.x / radius, y = r.y / radius;  // from n towards R
+    tilt_ = math::atan2(radius, r.z);
     where_ = fmt::format("pixel ({}, {})", pixel->i(), pixel->j());
     ask_ = one_by_one([=](const Vec3d& wi) {
         const double p = pixel->pdf(sampler, {wi.x * x - wi.y * y, wi.x * y + wi.y * x, wi.z});
         return wi.z > 0 && std::isfinite(p) ? p : 0.0;
     });
-    for (const PixelSample& drawn : pixel->samples(sampler, 1024, 1))
-        if (drawn.cos > 0) peak_ = std::max(peak_, static_cast<double>(drawn.pdf));
+    for (const PixelSample& sample : pixel->samples(sampler, 1024, 1))
+        if (sample.cos > 0) peak_ = std::max(peak_, static_cast<double>(sample.pdf));
 }
 
 std::vector<double> Density::at(std::span<const Vec3d> wi) const {
@@ -338,9 +338,9 @@ namespace {
 
 struct Axes {
     Rect plot;
-    Axis across, up;
-    double x(double n) const { return plot.x + plot.w * across.share(n); }
-    double y(double v) const { return plot.bottom() - plot.h * up.share(v); }
+    Axis n_axis, value_axis;
+    double x(double n) const { return plot.x + plot.w * n_axis.share(n); }
+    double y(double v) const { return plot.bottom() - plot.h * value_axis.share(v); }
 };
 
 Axes axes_of(const std::vector<LadderCurve>& curves, const Rect& plot) {
@@ -369,7 +369,7 @@ void draw_axes(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves)
             {x - 40, a.plot.bottom() + 6, 80, 20}, sample_count_label(n), with(with_px(small_text, 16), Align::centre));
         last = x;
     }
-    for (const double v : a.up.ticks) {
+    for (const double v : a.value_axis.ticks) {
         c.line(a.plot.x, a.y(v), a.plot.right(), a.y(v), rule, 1);
         c.text({a.plot.x - 66, a.y(v) - 11, 58, 22}, number(v, 3),
             with(with(with_px(small_text, 16), Align::right), Vertical::middle));
@@ -387,23 +387,24 @@ std::string slope_text(const LadderCurve& l) {
 // Places the names at the ends of their lines, `pitch` apart and next to the plot.
 std::vector<double> name_places(const Axes& a, const std::vector<LadderCurve>& curves, double pitch) {
     std::vector<double> ends;
-    for (const LadderCurve& l : curves) ends.push_back(a.up.can_hold(l.value.back()) ? a.y(l.value.back()) : a.plot.y);
+    for (const LadderCurve& l : curves)
+        ends.push_back(a.value_axis.can_hold(l.value.back()) ? a.y(l.value.back()) : a.plot.y);
     return moved_apart(ends, pitch, a.plot.y - 30 + pitch, a.plot.bottom() + 12 - pitch / 2);
 }
 
 // Draws each name with its slope, and under it the slope's interval if there is room for two lines.
 void draw_names(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves) {
     double pitch = std::min(44.0, (a.plot.h + 30) / double(curves.size()));
-    bool two = pitch >= 40;
-    double h = two ? 22 : std::min(24.0, pitch);
-    std::vector<double> places = name_places(a, curves, two ? 44 : std::min(pitch, 24.0));
+    bool has_two_lines = pitch >= 40;
+    double h = has_two_lines ? 22 : std::min(24.0, pitch);
+    std::vector<double> places = name_places(a, curves, has_two_lines ? 44 : std::min(pitch, 24.0));
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const LadderCurve& l = curves[i];
         Rect line{a.plot.right() + 10, places[i] - h / 2, 178, h};
-        Text how = with(with(with_px(body_text, 17), l.ink), Vertical::middle);
-        how.least = 9;
-        c.text(line, slope_text(l), how);
-        if (!two || l.heavy || !std::isfinite(l.low) || !std::isfinite(l.high)) continue;
+        Text style = with(with(with_px(body_text, 17), l.ink), Vertical::middle);
+        style.least_px = 9;
+        c.text(line, slope_text(l), style);
+        if (!has_two_lines || l.heavy || !std::isfinite(l.low) || !std::isfinite(l.high)) continue;
         line.y += h - 2;
         line.h = 20;
         c.text(line, signed_number(l.low) + " to " + signed_number(l.high), small_text);
@@ -411,7 +412,7 @@ void draw_names(Canvas& c, const Axes& a, const std::vector<LadderCurve>& curves
 }
 
 void draw_interval(Canvas& c, const Axes& a, double n, const std::pair<double, double>& ends, const Colour& ink) {
-    if (!a.up.can_hold(ends.first) || !a.up.can_hold(ends.second)) return;
+    if (!a.value_axis.can_hold(ends.first) || !a.value_axis.can_hold(ends.second)) return;
     const double x = a.x(n), low = a.y(ends.first), high = a.y(ends.second);
     c.line(x, low, x, high, ink, 1.5);
     for (const double y : {low, high}) c.line(x - 4, y, x + 4, y, ink, 1.5);
@@ -421,12 +422,12 @@ void draw_interval(Canvas& c, const Axes& a, double n, const std::pair<double, d
 
 std::vector<LadderCurve> ladder_curves(const Sheet& sheet, const std::string& region) {
     const Experiment& e = sheet.experiment();
-    const std::vector<RunKey> shown = keys_of(sheet.plan, e);
+    const std::vector<RunKey> keys = keys_of(sheet.plan, e);
     std::vector<LadderCurve> out;
     for (const Ladder& l : sheet.in.metrics.ladders) {
-        const bool here =
-            shown.empty() || std::any_of(shown.begin(), shown.end(), [&](const RunKey& k) { return k.arm == l.arm; });
-        if (!here || l.region != region || l.s != e.s() || l.n.size() < 2) continue;
+        const bool is_shown =
+            keys.empty() || std::any_of(keys.begin(), keys.end(), [&](const RunKey& k) { return k.arm == l.arm; });
+        if (!is_shown || l.region != region || l.s != e.s() || l.n.size() < 2) continue;
         out.push_back({arm_name(l.arm, e), arm_colour(l.arm, e), {l.n.begin(), l.n.end()}, l.rmse, {}, l.slope, l.low,
             l.high, l.heavy});
     }
@@ -441,7 +442,7 @@ void draw_ladder_chart(Canvas& c, const Rect& slot, const std::string& title, co
     for (const LadderCurve& l : curves) {
         std::vector<Canvas::Point> path;
         for (std::size_t k = 0; k < l.n.size(); ++k) {
-            if (a.up.can_hold(l.value[k])) path.push_back({a.x(l.n[k]), a.y(l.value[k])});
+            if (a.value_axis.can_hold(l.value[k])) path.push_back({a.x(l.n[k]), a.y(l.value[k])});
             if (k < l.interval.size()) draw_interval(c, a, l.n[k], l.interval[k], l.ink);
         }
         c.polyline(path, l.ink, 2.5);

@@ -56,7 +56,7 @@ public:
     /// has density 0.
     Density(const Experiment& e, const std::string& sampler, double s, double tilt);
     /// The density of an external sampler, which must outlive this object; 0 if it cannot be evaluated or returns none.
-    Density(const Experiment& e, const SamplerAdapter& outside, double s, double tilt);
+    Density(const Experiment& e, const SamplerAdapter& external, double s, double tilt);
     double at(const Vec3d& wi) const { return at(std::span(&wi, 1))[0]; }
     /// Returns the densities of many directions in one call.
     std::vector<double> at(std::span<const Vec3d> wi) const;

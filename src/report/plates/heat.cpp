@@ -19,7 +19,7 @@ struct Residual {
     RunKey key;
     const Film* film = nullptr;
     const ReferenceFilm* reference = nullptr;
-    bool there() const { return film && reference; }
+    bool is_complete() const { return film && reference; }
     double at(int x, int y) const {
         std::size_t i = std::size_t(y) * std::size_t(film->width) + std::size_t(x);
         return std::abs(double(film->y[i]) - double(reference->y[i]));
@@ -57,8 +57,8 @@ std::string reading(const Residual& r, const Box& box, double top, const PlateIn
             figure(rms_difference(r.film->y, r.reference->y, AreaPixels(region.area(), in.shapes)))));
     }
     std::vector<double> v = values(r, box);
-    auto above = std::count_if(v.begin(), v.end(), [&](double x) { return x > top; });
-    const double percent = 100.0 * double(above) / double(v.size());
+    auto count = std::count_if(v.begin(), v.end(), [&](double x) { return x > top; });
+    const double percent = 100.0 * double(count) / double(v.size());
     parts.push_back(fmt::format("{} % above scale", number(percent, percent < 99.5 ? 2 : 3)));
     return joined(parts, ", ");
 }
@@ -66,8 +66,8 @@ std::string reading(const Residual& r, const Box& box, double top, const PlateIn
 void outline_regions(Sheet& sheet, const Rect& picture, const Box& box) {
     for (const Region& region : sheet.experiment().regions) {
         const Box& b = region.box;
-        bool same = b.width() == box.width() && b.height() == box.height();
-        if (!within(b, box) || same) continue;
+        bool is_equal_size = b.width() == box.width() && b.height() == box.height();
+        if (!within(b, box) || is_equal_size) continue;
         Rect r = on_picture(picture, box, b).inset(-1.5);
         outline_over(sheet.canvas, r, bright);
         name_tag(sheet, picture, r, region.name, bright);
@@ -77,7 +77,7 @@ void outline_regions(Sheet& sheet, const Rect& picture, const Box& box) {
 void draw_run(Sheet& sheet, const Residual& r, const Box& box, const Fit& f, double top, const Rect& col) {
     const Experiment& e = sheet.experiment();
     Rect slot{col.x, col.y, col.w, double(f.out_h)};
-    if (r.there()) {
+    if (r.is_complete()) {
         Block block = turbo_block(box, f, [&](int x, int y) {
             double v = r.at(x, y);
             return std::isfinite(v) ? v / top : std::nan("");
@@ -89,7 +89,7 @@ void draw_run(Sheet& sheet, const Residual& r, const Box& box, const Fit& f, dou
     }
     double y = slot.bottom() + 8;
     sheet.canvas.text({col.x, y, col.w, 28}, runs_label({r.key}, e), with(with_px(title_text, 22), Align::centre));
-    if (r.there()) {
+    if (r.is_complete()) {
         sheet.canvas.text({col.x, y + 29, col.w, 23}, reading(r, box, top, sheet.in),
             with(with(with_px(body_text, 17), muted), Align::centre));
     }
@@ -117,7 +117,7 @@ void draw_heat(Sheet& sheet) {
     Box box = shown_box(sheet);
     std::vector<double> pooled;
     for (const Residual& r : runs) {
-        if (!r.there()) continue;
+        if (!r.is_complete()) continue;
         for (double v : values(r, box)) {
             if (std::isfinite(v)) pooled.push_back(v);
         }

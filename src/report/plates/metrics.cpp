@@ -20,14 +20,14 @@ struct Column {
 
 std::vector<Column> columns_of(const Experiment& e) {
     std::vector<Column> c;
-    auto named = [](const char* what, const Region& r) {
+    auto title_of = [](const char* what, const Region& r) {
         return std::string(what) + "<sub>" + escaped(r.name) + "</sub>";
     };
     for (std::size_t i = 0; i < e.regions.size() && i < most_regions; ++i) {
-        c.push_back({"rmse." + e.regions[i].name, named("RMSE", e.regions[i])});
+        c.push_back({"rmse." + e.regions[i].name, title_of("RMSE", e.regions[i])});
     }
     c.push_back({"fireflies", "fireflies"});
-    if (!e.regions.empty()) c.push_back({"var." + e.regions[0].name, named("var", e.regions[0])});
+    if (!e.regions.empty()) c.push_back({"var." + e.regions[0].name, title_of("var", e.regions[0])});
     c.push_back({"horizon_frac", "horizon_frac"});
     c.push_back({"y_mean", "Y<sub>mean</sub>"});
     return c;
@@ -50,7 +50,7 @@ std::string band_text(const Canvas& c, const std::string& metric, const Band& b,
     if (b.heavy) return "heavy tail";
     const auto with_digits = [&](int n) { return value(metric, b.q05, n) + " – " + value(metric, b.q95, n); };
     int digits = 4;
-    while (digits > 2 && c.measure(with_digits(digits), with_px(small_text, small_text.least)).w > width) --digits;
+    while (digits > 2 && c.measure(with_digits(digits), with_px(small_text, small_text.least_px)).w > width) --digits;
     return with_digits(digits);
 }
 
@@ -79,7 +79,7 @@ struct Table {
     std::vector<const RunMetrics*> rows;
     std::size_t runs = 0;  // the rows shown are those that fit
     std::vector<Column> columns;
-    bool published = false, band = false;
+    bool has_published = false, has_band = false;
     double row_h = 0, head_h = 32, name_w = 250;
 };
 
@@ -90,13 +90,16 @@ Table plan_table(const Sheet& sheet) {
     t.rows = rows_of(sheet);
     t.runs = t.rows.size();
     t.columns = columns_of(sheet.experiment());
-    auto height = [&] { return value_h + under_h * (t.published + t.band) + (t.published || t.band ? 13 : 5); };
+    auto height = [&] {
+        return value_h + under_h * (t.has_published + t.has_band) + (t.has_published || t.has_band ? 13 : 5);
+    };
     auto too_high = [&] { return double(t.rows.size()) * height() > content_band.h - t.head_h; };
-    t.band = seeds_of(sheet.in.metrics) > 1;
+    t.has_band = seeds_of(sheet.in.metrics) > 1;
     const auto& bands = sheet.in.metrics.bands;
-    t.published = std::any_of(bands.begin(), bands.end(), [](const SeedSpread& b) { return b.published.has_value(); });
-    if (too_high()) t.published = false;
-    if (too_high()) t.band = false;
+    t.has_published =
+        std::any_of(bands.begin(), bands.end(), [](const SeedSpread& b) { return b.published.has_value(); });
+    if (too_high()) t.has_published = false;
+    if (too_high()) t.has_band = false;
     t.row_h = height();
     t.rows.resize(std::min(t.rows.size(), static_cast<std::size_t>((content_band.h - t.head_h) / t.row_h)));
     return t;
@@ -115,9 +118,9 @@ Rect cell(const Table& t, std::size_t c, double y, double h) {
 }
 
 void draw_head(Sheet& sheet, const Table& t) {
-    Text how = with(with(with_px(body_text, 17), muted), Align::right);
+    Text style = with(with(with_px(body_text, 17), muted), Align::right);
     for (std::size_t c = 0; c < t.columns.size(); ++c) {
-        sheet.canvas.text(cell(t, c, content_band.y, 26), t.columns[c].title, how);
+        sheet.canvas.text(cell(t, c, content_band.y, 26), t.columns[c].title, style);
     }
     double y = content_band.y + t.head_h - 0.5;
     sheet.canvas.line(content_band.x, y, content_band.right(), y, muted, 1);
@@ -128,30 +131,31 @@ void draw_name(Sheet& sheet, const Table& t, const RunMetrics& r, double y, int 
     sheet.canvas.text(line, runs_label({r.key}, sheet.experiment()), with(with_px(body_text, 20), Weight::semibold));
     line.y += value_h;
     line.h = under_h + 2;
-    if (t.published) {
+    if (t.has_published) {
         sheet.canvas.text(line, "published", small_text);
         line.y += under_h;
     }
-    if (t.band) sheet.canvas.text(line, fmt::format("5–95 % of {} seeds", seeds), small_text);
+    if (t.has_band) sheet.canvas.text(line, fmt::format("5–95 % of {} seeds", seeds), small_text);
 }
 
 void draw_row(Sheet& sheet, const Table& t, const RunMetrics& r, double y, int seeds) {
     Canvas& c = sheet.canvas;
     Text value_text = with(with(with_px(body_text, 20), Weight::medium), Align::right);
-    Text under = with(small_text, Align::right);
-    double top = y + (t.published || t.band ? 6 : 2);
+    Text detail_text = with(small_text, Align::right);
+    double top = y + (t.has_published || t.has_band ? 6 : 2);
     draw_name(sheet, t, r, top, seeds);
     for (std::size_t k = 0; k < t.columns.size(); ++k) {
         const std::string& metric = t.columns[k].metric;
         const SeedSpread* b = band_of(sheet.in.metrics, r.key, metric);
         c.text(cell(t, k, top, value_h), b ? value(metric, metric_value(r, metric)) : "–", value_text);
         double next = top + value_h;
-        if (t.published) {
-            c.text(cell(t, k, next, under_h + 2), b && b->published ? value(metric, *b->published) : "–", under);
+        if (t.has_published) {
+            c.text(cell(t, k, next, under_h + 2), b && b->published ? value(metric, *b->published) : "–", detail_text);
             next += under_h;
         }
-        if (t.band)
-            c.text(cell(t, k, next, under_h + 2), b ? band_text(c, metric, b->band, cell(t, k, 0, 0).w) : "–", under);
+        if (t.has_band)
+            c.text(cell(t, k, next, under_h + 2), b ? band_text(c, metric, b->band, cell(t, k, 0, 0).w) : "–",
+                detail_text);
     }
     c.line(content_band.x, y + t.row_h - 0.5, content_band.right(), y + t.row_h - 0.5, rule, 1);
 }
@@ -160,9 +164,9 @@ void draw_charts(Sheet& sheet, const Rect& slot) {
     const Experiment& e = sheet.experiment();
     std::vector<std::string> regions;
     for (const Region& r : e.regions) {
-        bool any = std::any_of(sheet.in.metrics.ladders.begin(), sheet.in.metrics.ladders.end(),
+        bool has_ladder = std::any_of(sheet.in.metrics.ladders.begin(), sheet.in.metrics.ladders.end(),
             [&](const Ladder& l) { return l.region == r.name && l.n.size() > 1 && l.s == e.s(); });
-        if (any && regions.size() < 2) regions.push_back(r.name);
+        if (has_ladder && regions.size() < 2) regions.push_back(r.name);
     }
     for (std::size_t i = 0; i < regions.size(); ++i) {
         draw_ladder_chart(sheet.canvas, column(slot, regions.size(), i),
@@ -187,12 +191,12 @@ void draw_meters(Sheet& sheet) {
         draw_row(sheet, t, *r, y, seeds);
         y += t.row_h;
     }
-    Rect rest{content_band.x, y + 18, content_band.w, content_band.bottom() - y - 18};
-    if (rest.h >= 170) draw_charts(sheet, rest);
+    Rect slot{content_band.x, y + 18, content_band.w, content_band.bottom() - y - 18};
+    if (slot.h >= 170) draw_charts(sheet, slot);
     note_what_is_left_out(sheet, t);
     note_biased_arms(sheet);
     if (seeds < 2) sheet.notes.push_back("one seed: no band");
-    if (rest.h >= 170)
+    if (slot.h >= 170)
         sheet.notes.push_back(seeds > 1 ? "slopes: fit, and 5–95 % over seeds" : "slopes: fit and its interval");
     sheet.notes.push_back(
         fmt::format("Y in {}; fireflies: geometry pixels with |Y<sub>N</sub> − Y<sub>ref</sub>| > {} "

@@ -63,40 +63,40 @@ std::vector<Marked> marked(const Experiment& e) {
     const std::size_t regions = out.size();
     for (const PlatePlan& plate : e.plates) {
         if (!plate.crop) continue;
-        const auto same = std::find_if(out.begin() + static_cast<std::ptrdiff_t>(regions), out.end(),
+        const auto entry = std::find_if(out.begin() + static_cast<std::ptrdiff_t>(regions), out.end(),
             [&](const Marked& m) { return m.box == *plate.crop; });
-        if (same == out.end())
+        if (entry == out.end())
             out.push_back({plate.name, std::to_string(out.size() - regions + 1), *plate.crop, bright, true});
-        else same->name += ", " + plate.name;
+        else entry->name += ", " + plate.name;
     }
     return out;
 }
 
 /// White on black, which is visible on any photograph and in any theme.
 void dashed(Sheet& sheet, const Rect& r) {
-    const std::vector<Canvas::Point> around = {
+    const std::vector<Canvas::Point> path = {
         {r.x, r.y}, {r.right(), r.y}, {r.right(), r.bottom()}, {r.x, r.bottom()}, {r.x, r.y}};
-    sheet.canvas.polyline(around, {0, 0, 0, 0.6}, 4);
-    sheet.canvas.polyline(around, {1, 1, 1}, 2, 6);
+    sheet.canvas.polyline(path, {0, 0, 0, 0.6}, 4);
+    sheet.canvas.polyline(path, {1, 1, 1}, 2, 6);
 }
 
 /// Draws numbers under the picture and next to it, and faint lines through it.
 void rulers(Sheet& sheet, const Rect& picture, const View& v) {
     const double step = std::max(1.0, round_up(std::max(v.width, v.height) / 10.0));
     const Colour grid{1, 1, 1, 0.16};
-    const Text under = with(with_px(small_text, 14), Align::centre),
-               beside = with(with_px(small_text, 14), Align::right);
+    const Text x_label = with(with_px(small_text, 14), Align::centre),
+               y_label = with(with_px(small_text, 14), Align::right);
     for (double x = 0; x < v.width; x += step) {
         const double tick = picture.x + (x + 0.5) / v.width * picture.w;
         sheet.canvas.line(tick, picture.y, tick, picture.bottom(), grid, 1);
         sheet.canvas.line(tick, picture.bottom(), tick, picture.bottom() + 5, muted, 1);
-        sheet.canvas.text({tick - 24, picture.bottom() + 7, 48, 20}, fmt::format("{:.0f}", x), under);
+        sheet.canvas.text({tick - 24, picture.bottom() + 7, 48, 20}, fmt::format("{:.0f}", x), x_label);
     }
     for (double y = 0; y < v.height; y += step) {
         const double tick = picture.bottom() - (y + 0.5) / v.height * picture.h;
         sheet.canvas.line(picture.x, tick, picture.right(), tick, grid, 1);
         sheet.canvas.line(picture.x - 5, tick, picture.x, tick, muted, 1);
-        sheet.canvas.text({picture.x - ruler_w, tick - 10, ruler_w - 8, 20}, fmt::format("{:.0f}", y), beside);
+        sheet.canvas.text({picture.x - ruler_w, tick - 10, ruler_w - 8, 20}, fmt::format("{:.0f}", y), y_label);
     }
 }
 
@@ -107,7 +107,7 @@ void outline(Sheet& sheet, const Rect& r, const Marked& m) {
 
 /// Lists crops by the number that they have on the picture.
 void list_boxes(Sheet& sheet, const std::vector<Marked>& boxes, double y) {
-    const Text inside = with(with(with_px(small_text, 14), Align::centre), Vertical::middle);
+    const Text tag_text = with(with(with_px(small_text, 14), Align::centre), Vertical::middle);
     Rect line{facts_slot.x, y + 14, facts_slot.w, 24};
     for (std::size_t i = 0; i < boxes.size(); ++i, line.y += 50) {
         if (line.y + 46 > facts_slot.bottom()) {
@@ -117,7 +117,7 @@ void list_boxes(Sheet& sheet, const std::vector<Marked>& boxes, double y) {
         const Marked& m = boxes[i];
         const Rect swatch{line.x, line.y + 2, 20, 20};
         sheet.canvas.fill(swatch, m.colour);
-        if (m.crop) sheet.canvas.text(swatch, m.tag, with(with(inside, ground), Weight::semibold));
+        if (m.crop) sheet.canvas.text(swatch, m.tag, with(with(tag_text, ground), Weight::semibold));
         sheet.canvas.text({line.x + 30, line.y, line.w - 30, 24}, (m.crop ? "crop of " : "region ") + escaped(m.name),
             with(with_px(body_text, 16), Weight::semibold));
         sheet.canvas.text({line.x + 30, line.y + 24, line.w - 30, 20},
@@ -147,9 +147,9 @@ void paint_preview(Sheet& sheet) {
     slot.y += std::floor((slot.h - f.out_h) / 2);
     const Rect picture = paint_photograph(sheet, v, whole(v), slot);
     rulers(sheet, picture, v);
-    const auto place = [&](const Marked& m) { return on_picture(picture, whole(v), inside(m.box, v)).inset(-1.5); };
-    for (const Marked& m : boxes) outline(sheet, place(m), m);
-    for (const Marked& m : boxes) name_tag(sheet, picture, place(m), m.tag, m.colour);
+    const auto place_of = [&](const Marked& m) { return on_picture(picture, whole(v), inside(m.box, v)).inset(-1.5); };
+    for (const Marked& m : boxes) outline(sheet, place_of(m), m);
+    for (const Marked& m : boxes) name_tag(sheet, picture, place_of(m), m.tag, m.colour);
     sheet.notes.push_back("drawn through Khronos PBR Neutral, exposure " + number(e.exposure) + ", " + to_string(f));
     const double y =
         facts(sheet, "Preview", reference_words(e), {{"image", fmt::format("{} × {}", e.image.width, e.image.height)}});
@@ -227,13 +227,13 @@ std::vector<unsigned char> encode_png(
     std::string error;
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &error, fail, ignore);
     png_infop info = png ? png_create_info_struct(png) : nullptr;
-    bool done = false;
+    bool is_written = false;
     if (info) {
         png_set_write_fn(png, &out, append, keep);
-        done = write(png, info, picture, chunks);
+        is_written = write(png, info, picture, chunks);
     }
     png_destroy_write_struct(&png, &info);
-    if (!done) throw OutputError("PNG: " + (error.empty() ? std::string("out of memory") : error));
+    if (!is_written) throw OutputError("PNG: " + (error.empty() ? std::string("out of memory") : error));
     return out;
 }
 

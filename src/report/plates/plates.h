@@ -24,7 +24,7 @@ struct PlateInputs {
     std::function<const ReferenceFilm*(double s)> reference;  // the one the metrics use
     std::string backend;                                      // "CPU" or the GL strings, for the back end plates
     Theme theme = Theme::dark;
-    std::function<const SamplerAdapter*(const std::string& arm)> outside{};  // nullptr: it is built in
+    std::function<const SamplerAdapter*(const std::string& arm)> external_sampler{};  // nullptr: it is built in
 };
 
 /// A finished picture: 8-bit sRGB, 3 bytes per pixel, rows top-down.

@@ -46,11 +46,11 @@ std::vector<Share> shares(int in, int out) {
 template <int C, class Read, class Write> void reduce(const Box& box, const Fit& f, Read read, Write write) {
     using Cell = std::array<double, C>;
     std::vector<Share> sx = shares(f.in_w, f.out_w), sy = shares(f.in_h, f.out_h);
-    std::vector<Cell> row(std::size_t(f.out_w) + 1), here(std::size_t(f.out_w)), next(std::size_t(f.out_w));
+    std::vector<Cell> row(std::size_t(f.out_w) + 1), sums(std::size_t(f.out_w)), next_sums(std::size_t(f.out_w));
     auto flush = [&](int j) {
-        for (int i = 0; i < f.out_w; ++i) write(i, j, here[std::size_t(i)]);
-        std::swap(here, next);
-        std::fill(next.begin(), next.end(), Cell{});
+        for (int i = 0; i < f.out_w; ++i) write(i, j, sums[std::size_t(i)]);
+        std::swap(sums, next_sums);
+        std::fill(next_sums.begin(), next_sums.end(), Cell{});
     };
     for (int j = 0; j < f.in_h; ++j) {
         std::fill(row.begin(), row.end(), Cell{});
@@ -67,12 +67,12 @@ template <int C, class Read, class Write> void reduce(const Box& box, const Fit&
         for (int i = 0; i < f.out_w; ++i) {
             for (int k = 0; k < C; ++k) {
                 double v = row[std::size_t(i)][k];
-                here[std::size_t(i)][k] += s.part0 * v;
-                if (s.part1 > 0) next[std::size_t(i)][k] += s.part1 * v;
+                sums[std::size_t(i)][k] += s.part0 * v;
+                if (s.part1 > 0) next_sums[std::size_t(i)][k] += s.part1 * v;
             }
         }
-        bool last = j + 1 == f.in_h;
-        if (last || sy[std::size_t(j) + 1].first != s.first) flush(s.first);
+        bool is_last = j + 1 == f.in_h;
+        if (is_last || sy[std::size_t(j) + 1].first != s.first) flush(s.first);
     }
 }
 

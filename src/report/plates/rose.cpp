@@ -24,15 +24,15 @@ constexpr double tilt_deg = 30;
 // At the right of each half, for the colour bar and the legend.
 constexpr double scale_room = 128;
 // The dome is seen from 45 deg above the surface, across the plane of incidence.
-const double up = math::sin(45 * radians_per_degree), away = math::cos(45 * radians_per_degree);
+const double view_sine = math::sin(45 * radians_per_degree), view_cosine = math::cos(45 * radians_per_degree);
 
 struct Dome {
     double x = 0, y = 0, radius = 0;  // centre of the base on the sheet
     Canvas::Point at(const Direction& d, double reach = 1) const {
-        return {x + reach * radius * d.x, y - reach * radius * (d.z * away + d.y * up)};
+        return {x + reach * radius * d.x, y - reach * radius * (d.z * view_cosine + d.y * view_sine)};
     }
     static bool visible(const Direction& d) {
-        return d.z * up - d.y * away >= -1e-9;
+        return d.z * view_sine - d.y * view_cosine >= -1e-9;
     }  // the rim's two ends lie on the edge
 };
 
@@ -42,23 +42,23 @@ Direction from_angles(double theta, double phi) {
 
 // Returns the dome's pixels: the part of the sphere towards the viewer and above the surface.
 Block dome_block(const Density& p, const DensityScale& scale, int r, const Srgb8& nothing) {
-    Block block(2 * r, static_cast<int>(std::ceil(r * (1 + up))));
-    std::vector<Direction> seen;
+    Block block(2 * r, static_cast<int>(std::ceil(r * (1 + view_sine))));
+    std::vector<Direction> directions;
     std::vector<std::pair<int, int>> pixels;
     for (int j = 0; j < block.height; ++j) {
         for (int i = 0; i < block.width; ++i) {
             double u = (i + 0.5) / r - 1, v = 1 - (j + 0.5) / r, w2 = 1 - u * u - v * v;
             double w = w2 > 0 ? std::sqrt(w2) : 0;
-            Direction d{u, v * up - w * away, v * away + w * up};
+            Direction d{u, v * view_sine - w * view_cosine, v * view_cosine + w * view_sine};
             block.set(i, j, nothing);
             if (w2 > 0 && d.z >= 0) {
-                seen.push_back(d);
+                directions.push_back(d);
                 pixels.emplace_back(i, j);
             }
         }
     }
-    const std::vector<double> density = p.at(seen);
-    for (std::size_t k = 0; k < seen.size(); ++k)
+    const std::vector<double> density = p.at(directions);
+    for (std::size_t k = 0; k < directions.size(); ++k)
         block.set(pixels[k].first, pixels[k].second, turbo(scale.share(density[k])));
     return block;
 }
@@ -102,9 +102,9 @@ void draw_grid(Canvas& c, const Dome& dome) {
 void draw_arrow(Canvas& c, const Dome& dome, const Direction& d, const std::string& name, double side) {
     Canvas::Point foot = dome.at(d), tip = dome.at(d, 1.62);
     c.arrow(foot, tip, bright, 2.5);
-    Text how = with(with(body_text, Weight::semibold), side < 0 ? Align::right : Align::left);
+    Text style = with(with(body_text, Weight::semibold), side < 0 ? Align::right : Align::left);
     double x = side < 0 ? tip.x - 48 : tip.x + 8;
-    c.text({x, tip.y - 8, 40, 24}, name, how);
+    c.text({x, tip.y - 8, 40, 24}, name, style);
 }
 
 struct Part {
@@ -116,7 +116,7 @@ struct Part {
 
 void draw_dome(Sheet& sheet, const Part& part, const Rect& slot) {
     double head = 26;  // above the dome, for the tips of the arrows
-    int r = static_cast<int>(std::min((slot.w - scale_room - 24) / 2, (slot.h - head) / (1 + up)));
+    int r = static_cast<int>(std::min((slot.w - scale_room - 24) / 2, (slot.h - head) / (1 + view_sine)));
     if (r < 8) return;
     Dome dome{std::floor(slot.x + (slot.w - scale_room) / 2), slot.y + head + r, double(r)};
     sheet.canvas.paint(
@@ -124,14 +124,14 @@ void draw_dome(Sheet& sheet, const Part& part, const Rect& slot) {
     draw_grid(sheet.canvas, dome);
     draw_arrow(sheet.canvas, dome, {0, 0, 1}, "n", -1);
     draw_arrow(sheet.canvas, dome, {math::sin(part.p.tilt()), 0, math::cos(part.p.tilt())}, "R", 1);
-    Rect bar{slot.right() - scale_room + 24, slot.y + head + 8, 22, std::floor(dome.radius * (1 + up)) - 8};
+    Rect bar{slot.right() - scale_room + 24, slot.y + head + 8, 22, std::floor(dome.radius * (1 + view_sine)) - 8};
     sheet.canvas.text({bar.x, slot.y - 2, scale_room - 24, 22}, "p, 1/sr", with_px(small_text, 16));
     colour_bar(sheet, bar, part.peak, false, part.scale.decades);
 }
 
 /// Returns null if the sampler is built in, or if there is none to evaluate.
 const SamplerAdapter* from_external(const Sheet& sheet, const std::string& arm) {
-    return sheet.in.outside ? sheet.in.outside(arm) : nullptr;
+    return sheet.in.external_sampler ? sheet.in.external_sampler(arm) : nullptr;
 }
 
 std::vector<Part> parts_of(const Sheet& sheet, double tilt) {
@@ -160,11 +160,11 @@ double draw_words(Sheet& sheet, const std::vector<Part>& parts, std::size_t i, c
     if (i > 0 && part.peak > 0 && parts[0].peak > 0) {
         peak += fmt::format(" = {} × {}", number(part.peak / parts[0].peak, 3), arm_name(parts[0].key.arm, e));
     }
-    Text how = with(with_px(body_text, 17), muted);
+    Text style = with(with_px(body_text, 17), muted);
     Rect line{col.x, col.y + 31, col.w, 24};
     if (!narrow && !peak.empty()) formula += ",  " + peak;
-    sheet.canvas.text(line, formula, how);
-    if (narrow) sheet.canvas.text({line.x, line.y + 25, line.w, line.h}, peak, how);
+    sheet.canvas.text(line, formula, style);
+    if (narrow) sheet.canvas.text({line.x, line.y + 25, line.w, line.h}, peak, style);
     return line.y + (narrow ? 56 : 31);
 }
 
@@ -209,8 +209,8 @@ void draw_part(Sheet& sheet, const std::vector<Part>& parts, std::size_t i) {
     plot.scale = {.top = peak_in_plane(part), .decades = part.scale.decades};
     plot.tilt = part.p.tilt();
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        bool lower = parts[k].peak < part.peak && parts[k].peak > 0;
-        if (k != i && (narrow || !lower)) continue;
+        bool is_lower = parts[k].peak < part.peak && parts[k].peak > 0;
+        if (k != i && (narrow || !is_lower)) continue;
         plot.curves.push_back({k == i, arm_colour(parts[k].key.arm, e), escaped(parts[k].key.arm),
             [&p = parts[k].p](double a) { return p.in_plane(a); }});
     }
@@ -237,8 +237,8 @@ void draw_rose(Sheet& sheet) {
              std::string("polar: plane of incidence")})
         sheet.notes.push_back(note);
     const Experiment& e = sheet.experiment();
-    if (const auto shown = surface_of_densities(e); shown && *shown >= e.shapes.size()) {
-        const MeshObject& mesh = e.meshes[*shown - e.shapes.size()];
+    if (const auto surface = surface_of_densities(e); surface && *surface >= e.shapes.size()) {
+        const MeshObject& mesh = e.meshes[*surface - e.shapes.size()];
         if (mesh.rho_d_texture.file || mesh.alpha_texture.file)
             sheet.notes.push_back(fmt::format("the material of {} without its textures", escaped(mesh.name)));
     }

@@ -41,7 +41,7 @@ TEST(Rose, AsksAnArmFromOutsideForItsDensity) {
     plan.runs = {{"mine", 0, 0}};
     ExternalCosine mine;
     PlateInputs in = world.inputs();
-    in.outside = [&](const std::string& arm) { return arm == "mine" ? &mine : nullptr; };
+    in.external_sampler = [&](const std::string& arm) { return arm == "mine" ? &mine : nullptr; };
     const auto says = [&](const char* text) {
         Sheet sheet(plan, in);
         draw(sheet);
@@ -50,7 +50,7 @@ TEST(Rose, AsksAnArmFromOutsideForItsDensity) {
     EXPECT_TRUE(says("peak 0.318 sr"));
     mine.asked = false;
     EXPECT_TRUE(says("a library without crescent_sampler_pdf"));
-    in.outside = {};
+    in.external_sampler = {};
     EXPECT_TRUE(says("density cannot be evaluated"));
 }
 

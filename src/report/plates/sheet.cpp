@@ -31,12 +31,12 @@ std::string formula_of(const std::string& arm, const Experiment& e, const cresce
 
 // Returns the distinct values in order of appearance, joined by " | ".
 template <class F> std::string distinct(const std::vector<RunKey>& runs, F text) {
-    std::vector<std::string> seen;
+    std::vector<std::string> values;
     for (const RunKey& r : runs) {
         std::string t = text(r);
-        if (std::find(seen.begin(), seen.end(), t) == seen.end()) seen.push_back(t);
+        if (std::find(values.begin(), values.end(), t) == values.end()) values.push_back(t);
     }
-    return joined(seen, " | ");
+    return joined(values, " | ");
 }
 
 std::string not_finite_word(double v) { return std::isnan(v) ? "not a number" : v > 0 ? "∞" : "−∞"; }
@@ -54,10 +54,10 @@ std::string typeset(std::string text) {
 
 }  // namespace
 
-std::string joined(const std::vector<std::string>& parts, std::string_view between) {
+std::string joined(const std::vector<std::string>& parts, std::string_view separator) {
     std::string text;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (i > 0) text += between;
+        if (i > 0) text += separator;
         text += parts[i];
     }
     return text;
@@ -103,9 +103,11 @@ std::string runs_label(const std::vector<RunKey>& runs, const Experiment& e, boo
         return fmt::format("{}{}", r.n, arm && techniques_of(*arm) > 1 ? " pairs" : "");
     };
     if (with_n) label += " N=" + distinct(runs, n_of);
-    std::vector<RunKey> telling;
-    std::ranges::copy_if(runs, std::back_inserter(telling), [&](const RunKey& r) { return tells_s(r.arm, r.s, e); });
-    return telling.empty() ? label : label + " s=" + distinct(telling, [](const RunKey& r) { return number(r.s); });
+    std::vector<RunKey> keys_with_s;
+    std::ranges::copy_if(
+        runs, std::back_inserter(keys_with_s), [&](const RunKey& r) { return tells_s(r.arm, r.s, e); });
+    return keys_with_s.empty() ? label
+                               : label + " s=" + distinct(keys_with_s, [](const RunKey& r) { return number(r.s); });
 }
 
 std::string reference_words(const Experiment& e) {
@@ -184,10 +186,10 @@ void backend_header(
                     "reference not good enough in " + escaped(r.region) + ": errors there are too large");
                 break;
             }
-    const std::string& on = sheet.in.backend;
-    if (!on.empty())
+    const std::string& backend = sheet.in.backend;
+    if (!backend.empty())
         sheet.notes.push_back(
-            (of_films || on == "CPU" ? "measured on " : "computed on the CPU, films on ") + escaped(on));
+            (of_films || backend == "CPU" ? "measured on " : "computed on the CPU, films on ") + escaped(backend));
 }
 
 void note_biased_arms(Sheet& sheet) {
@@ -195,9 +197,9 @@ void note_biased_arms(Sheet& sheet) {
     const std::vector<RunKey> runs = keys_of(sheet.plan, e);
     std::vector<std::string> names;
     for (const ArmPlan& arm : e.arms) {
-        const bool shown =
+        const bool is_shown =
             runs.empty() || std::ranges::any_of(runs, [&](const RunKey& k) { return k.arm == arm.name; });
-        if (shown && !missed_light(arm, e).empty()) names.push_back(arm_name(arm.name, e));
+        if (is_shown && !missed_light(arm, e).empty()) names.push_back(arm_name(arm.name, e));
     }
     if (!names.empty()) sheet.notes.push_back("biased, some light is out of reach: " + joined(names, ", "));
 }
@@ -208,27 +210,27 @@ void finish(Sheet& sheet) {
     // A caption that does not fit in two lines is set smaller, in three.
     Text probe = with_px(caption, body_text.px);
     if (sheet.canvas.measure(text, probe).w > 1.9 * caption_band.w) caption = with_lines(with_px(caption, 15), 3);
-    caption.least = 13;
+    caption.least_px = 13;
     sheet.canvas.text(caption_band, text, caption);
 
     Rect foot = footer_band;
     if (sheet.not_finite > 0) {
         std::string message = fmt::format(
             "{} pixel{} not a number, shown in magenta", count(sheet.not_finite), sheet.not_finite == 1 ? "" : "s");
-        Text how = with(with(with(small_text, alert), Align::right), Weight::semibold);
-        double w = sheet.canvas.measure(message, how).w + 2;
-        sheet.canvas.text({foot.right() - w, foot.y, w, foot.h}, message, how);
+        Text style = with(with(with(small_text, alert), Align::right), Weight::semibold);
+        double w = sheet.canvas.measure(message, style).w + 2;
+        sheet.canvas.text({foot.right() - w, foot.y, w, foot.h}, message, style);
         foot.w -= w + gap;
     }
     std::string notes = joined(sheet.notes, "  ·  ");
     for (const double px : {17.0, small_text.px}) {  // the larger size if it fits: footers are read from a distance
-        const Text how = with_px(small_text, px);
-        if (sheet.canvas.measure(notes, how).w > foot.w) continue;
-        sheet.canvas.text(foot, notes, how);
+        const Text style = with_px(small_text, px);
+        if (sheet.canvas.measure(notes, style).w > foot.w) continue;
+        sheet.canvas.text(foot, notes, style);
         return;
     }
-    Text two = with(with_lines(with_px(small_text, 13), 2), Vertical::bottom);
-    sheet.canvas.text({foot.x, foot.y - 12, foot.w, 35}, notes, two);
+    Text two_lines = with(with_lines(with_px(small_text, 13), 2), Vertical::bottom);
+    sheet.canvas.text({foot.x, foot.y - 12, foot.w, 35}, notes, two_lines);
 }
 
 Rect paint_framed(Sheet& sheet, const Block& block, const Rect& slot) {
@@ -254,8 +256,8 @@ Rect paint_photograph(Sheet& sheet, const View& v, const Box& box, const Rect& s
 }
 
 Colour arm_colour(const std::string& arm, const Experiment& e) {
-    auto found = std::find_if(e.arms.begin(), e.arms.end(), [&](const ArmPlan& a) { return a.name == arm; });
-    return series[std::size_t(found - e.arms.begin()) % series_count];
+    auto match = std::find_if(e.arms.begin(), e.arms.end(), [&](const ArmPlan& a) { return a.name == arm; });
+    return series[std::size_t(match - e.arms.begin()) % series_count];
 }
 
 void outline_over(Canvas& canvas, const Rect& r, const Colour& ink) {
@@ -265,26 +267,26 @@ void outline_over(Canvas& canvas, const Rect& r, const Colour& ink) {
     canvas.outline(r, ink, 2);
 }
 
-Rect on_picture(const Rect& picture, const Box& shown, const Box& box) {
-    double sx = picture.w / shown.width(), sy = picture.h / shown.height();
-    return {picture.x + (box.x0 - shown.x0) * sx, picture.y + (shown.y1 - box.y1) * sy, box.width() * sx,
+Rect on_picture(const Rect& picture, const Box& frame, const Box& box) {
+    double sx = picture.w / frame.width(), sy = picture.h / frame.height();
+    return {picture.x + (box.x0 - frame.x0) * sx, picture.y + (frame.y1 - box.y1) * sy, box.width() * sx,
         box.height() * sy};
 }
 
 void name_tag(Sheet& sheet, const Rect& picture, const Rect& outline, const std::string& name, const Colour& c) {
     constexpr double h = 26;
-    Text how = with(with(with(with(body_text, ground), Weight::semibold), Align::centre), Vertical::middle);
+    Text style = with(with(with(with(body_text, ground), Weight::semibold), Align::centre), Vertical::middle);
     std::string text = escaped(name);
-    double w = std::min(sheet.canvas.measure(text, how).w + 16, picture.w);
-    double left_edge = outline.x - 1.25, right = outline.right() + 1.25 - w, above = outline.y - h - 1,
-           below = outline.bottom() + 1;
-    for (auto [x, y] :
-        {std::pair{left_edge, above}, {right, above}, {left_edge, below}, {right, below}, {left_edge, outline.y}}) {
+    double w = std::min(sheet.canvas.measure(text, style).w + 16, picture.w);
+    double left_edge = outline.x - 1.25, right_edge = outline.right() + 1.25 - w, top_y = outline.y - h - 1,
+           bottom_y = outline.bottom() + 1;
+    for (auto [x, y] : {std::pair{left_edge, top_y}, {right_edge, top_y}, {left_edge, bottom_y}, {right_edge, bottom_y},
+             {left_edge, outline.y}}) {
         Rect tag{std::clamp(x, picture.x, picture.right() - w), y, w, h};
-        bool clear = std::none_of(sheet.tags.begin(), sheet.tags.end(), [&](const Rect& t) { return t.meets(tag); });
-        if (!clear || tag.y < picture.y || tag.bottom() > picture.bottom()) continue;
+        bool is_clear = std::none_of(sheet.tags.begin(), sheet.tags.end(), [&](const Rect& t) { return t.meets(tag); });
+        if (!is_clear || tag.y < picture.y || tag.bottom() > picture.bottom()) continue;
         sheet.canvas.fill(tag, c);
-        sheet.canvas.text({tag.x + 4, tag.y, w - 8, h}, text, how);
+        sheet.canvas.text({tag.x + 4, tag.y, w - 8, h}, text, style);
         sheet.tags.push_back(tag);
         return;
     }
@@ -302,11 +304,11 @@ void colour_bar(Sheet& sheet, const Rect& bar, double top, bool open_ended, int 
     double y0 = std::floor(bar.y), x0 = std::floor(bar.x);
     c.paint(block, static_cast<int>(x0), static_cast<int>(y0));
     c.outline({x0 - 0.5, y0 - 0.5, w + 1.0, h + 1.0}, rule, 1);
-    Text how = with(with(with_px(small_text, 16), bright), Vertical::middle);
+    Text style = with(with(with_px(small_text, 16), bright), Vertical::middle);
     auto tick = [&](double share, const std::string& text) {
         double y = y0 + h * (1 - share);
         c.line(x0 + w, y, x0 + w + 6, y, muted, 1.5);
-        c.text({x0 + w + 11, y - 12, 80, 24}, text, how);
+        c.text({x0 + w + 11, y - 12, 80, 24}, text, style);
     };
     tick(1, (open_ended ? "≥ " : "") + number(top, 3));
     if (decades > 0) {

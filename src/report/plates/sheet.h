@@ -76,28 +76,28 @@ inline constexpr Text label_text{.px = 20,
     .align = Align::left,
     .vertical = Vertical::middle,
     .lines = 1,
-    .least = 15};
+    .least_px = 15};
 inline constexpr Text title_text{.px = 24,
     .ink = bright,
     .weight = Weight::semibold,
     .align = Align::left,
     .vertical = Vertical::top,
     .lines = 1,
-    .least = 15};
+    .least_px = 15};
 inline constexpr Text body_text{.px = 18,
     .ink = bright,
     .weight = Weight::regular,
     .align = Align::left,
     .vertical = Vertical::top,
     .lines = 1,
-    .least = 14};
+    .least_px = 14};
 inline constexpr Text small_text{.px = 15,
     .ink = muted,
     .weight = Weight::regular,
     .align = Align::left,
     .vertical = Vertical::top,
     .lines = 1,
-    .least = 12};
+    .least_px = 12};
 
 /// A text style with one thing changed.
 constexpr Text with(Text t, Align a) { return t.align = a, t; }
@@ -147,8 +147,8 @@ std::string figure(double v, int digits = 4);
 /// Formats 12345678 as "12 345 678" with thin spaces.
 std::string count(std::uint64_t v);
 
-/// Joins the parts with `between`.
-std::string joined(const std::vector<std::string>& parts, std::string_view between);
+/// Joins the parts with `separator`.
+std::string joined(const std::vector<std::string>& parts, std::string_view separator);
 
 inline constexpr const char* radiance_unit = "W·sr<sup>−1</sup>·m<sup>−2</sup>";
 
@@ -198,8 +198,8 @@ Colour arm_colour(const std::string& arm, const Experiment& e);
 /// Draws a frame over a picture, on a halo of the sheet's ground, so that it is visible at any brightness.
 void outline_over(Canvas& canvas, const Rect& r, const Colour& ink);
 
-/// Returns where image box `box` lies in the picture of `shown`.
-Rect on_picture(const Rect& picture, const Box& shown, const Box& box);
+/// Returns where image box `box` lies in the picture of `frame`.
+Rect on_picture(const Rect& picture, const Box& frame, const Box& box);
 
 /// Draws the name of an outlined region on a tag at one of its corners, on the picture and clear of earlier tags; none
 /// if there is no such place.

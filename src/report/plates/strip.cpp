@@ -11,7 +11,7 @@ namespace crescent::plates {
 
 namespace {
 
-constexpr double between = 12;  // frame and crop
+constexpr double picture_gap = 12;  // frame and crop
 
 struct Varies {
     bool arm = false, n = false, s = false;
@@ -74,7 +74,7 @@ Text density_text() { return with(with(with_px(body_text, 17), muted), Align::ce
 // Returns how many lines the longest density takes, with a tenth of a line for what breaking at words leaves empty.
 int density_lines(const Sheet& sheet, const std::vector<RunKey>& runs, const Varies& varies, double width) {
     constexpr int most_lines = 4;
-    const Text smallest = with_px(density_text(), density_text().least);
+    const Text smallest = with_px(density_text(), density_text().least_px);
     double longest = 0;
     for (const RunKey& run : runs)
         longest = std::max(longest, sheet.canvas.measure(density_of(run, varies, sheet.experiment()), smallest).w);
@@ -100,12 +100,12 @@ Layout lay_out(
         l.frame_h = l.frame.out_h;
     }
     if (l.crops) {
-        double height_left = room - (l.frames ? l.frame_h + between : 0);
+        double height_left = room - (l.frames ? l.frame_h + picture_gap : 0);
         l.crop = fit(crop->width(), crop->height(), std::floor(w), std::floor(height_left));
         l.crop_h = l.crop.out_h;
     }
-    double used = l.frame_h + l.crop_h + (l.frames && l.crops ? between : 0) + l.words_h;
-    l.top = std::floor((l.cell(0).h - used) / 2);
+    double height = l.frame_h + l.crop_h + (l.frames && l.crops ? picture_gap : 0) + l.words_h;
+    l.top = std::floor((l.cell(0).h - height) / 2);
     return l;
 }
 
@@ -116,7 +116,7 @@ void draw_pictures(Sheet& sheet, const View& v, const Rect& col, const Layout& l
     if (l.frames) {
         Rect r = paint_framed(sheet, photograph_block(v, frame, l.frame, exposure), slot);
         if (l.crops) outline_over(sheet.canvas, on_picture(r, frame, *crop).inset(-1), photograph_accent);
-        slot.y += l.frame_h + between;
+        slot.y += l.frame_h + picture_gap;
     }
     if (l.crops) {
         slot.h = l.crop_h;
@@ -137,13 +137,13 @@ void draw_words(Sheet& sheet, const RunKey& run, const Varies& varies, const Lay
 
 void add_notes(Sheet& sheet, const Layout& l, const std::optional<Box>& crop) {
     if (l.frames) {
-        std::string how = l.frame.reduced ? "area average in linear light, then tone-mapped" : "pixels as they are";
-        sheet.notes.push_back(fmt::format("frames {} ({})", to_string(l.frame), how));
+        std::string method = l.frame.reduced ? "area average in linear light, then tone-mapped" : "pixels as they are";
+        sheet.notes.push_back(fmt::format("frames {} ({})", to_string(l.frame), method));
     }
     if (l.crops) {
-        std::string how = l.crop.reduced ? " (area average in linear light)" : ", pixels as they are";
-        sheet.notes.push_back(
-            fmt::format("crop x {}–{}, y {}–{}, {}{}", crop->x0, crop->x1, crop->y0, crop->y1, to_string(l.crop), how));
+        std::string method = l.crop.reduced ? " (area average in linear light)" : ", pixels as they are";
+        sheet.notes.push_back(fmt::format(
+            "crop x {}–{}, y {}–{}, {}{}", crop->x0, crop->x1, crop->y0, crop->y1, to_string(l.crop), method));
     }
     sheet.notes.push_back(fmt::format("exposure {}", number(sheet.experiment().exposure)));
 }
@@ -159,11 +159,11 @@ void draw_strip(Sheet& sheet) {
         return;
     }
     photograph_header(sheet, runs_label(runs, e), stream_words(runs));
-    View any;
-    any.width = e.image.width;
-    any.height = e.image.height;
+    View frame;
+    frame.width = e.image.width;
+    frame.height = e.image.height;
     std::optional<Box> crop = crop_of(sheet);
-    if (crop) crop = inside(*crop, any);
+    if (crop) crop = inside(*crop, frame);
     Varies varies(runs);
     Layout l = lay_out(sheet, runs, varies, crop);
     for (std::size_t i = 0; i < runs.size(); ++i) {

@@ -90,7 +90,7 @@ bool DomainPart::is_infinite() const { return kind == Kind::line && (!std::isfin
 
 std::string DomainPart::fault(std::span<const double> x) const {
     if (std::ranges::any_of(x, [](double v) { return std::isnan(v); })) return "is not a number";
-    const auto within = [](double v, double low, double high) { return v >= low - edge && v <= high + edge; };
+    const auto is_within = [](double v, double low, double high) { return v >= low - edge && v <= high + edge; };
     switch (kind) {
         case Kind::hemisphere:
         case Kind::sphere: {
@@ -102,13 +102,15 @@ std::string DomainPart::fault(std::span<const double> x) const {
         case Kind::disk: return x[0] * x[0] + x[1] * x[1] <= 1 + edge ? "" : "is outside the unit disk";
         case Kind::square:
         case Kind::cube:
-            return std::ranges::all_of(x, [&](double v) { return within(v, 0, 1); }) ? "" : "is outside [0, 1]";
+            return std::ranges::all_of(x, [&](double v) { return is_within(v, 0, 1); }) ? "" : "is outside [0, 1]";
         case Kind::triangle:
-            return within(x[0], 0, 1) && within(x[1], 0, 1) && x[0] + x[1] <= 1 + edge ? "" : "is outside the triangle";
+            return is_within(x[0], 0, 1) && is_within(x[1], 0, 1) && x[0] + x[1] <= 1 + edge
+                ? ""
+                : "is outside the triangle";
         case Kind::line: {
             const double size = is_infinite() ? 1 : to - from, slack = edge * size;
-            const bool inside = std::isfinite(x[0]) && x[0] >= from - slack && x[0] <= to + slack;
-            return inside ? "" : fmt::format("is outside [{:g}, {:g}]", from, to);
+            const bool is_inside = std::isfinite(x[0]) && x[0] >= from - slack && x[0] <= to + slack;
+            return is_inside ? "" : fmt::format("is outside [{:g}, {:g}]", from, to);
         }
         case Kind::set:
             if (x[0] != std::floor(x[0])) return "is not an integer";

@@ -62,10 +62,10 @@ struct Tail {
 
     explicit Tail(std::span<const double> values) {
         const auto n = static_cast<double>(values.size());
-        const auto quantile = [&](double beyond) {  // of the mass that this tail leaves beyond it
-            const double rank = std::clamp(n * (1 - beyond) - 0.5, 0.0, n - 1), whole = std::floor(rank);
-            const auto i = static_cast<std::size_t>(whole);
-            return values[i] + (rank - whole) * (values[std::min(i + 1, values.size() - 1)] - values[i]);
+        const auto quantile = [&](double tail_mass) {  // the value beyond which this mass lies
+            const double rank = std::clamp(n * (1 - tail_mass) - 0.5, 0.0, n - 1), lower_rank = std::floor(rank);
+            const auto i = static_cast<std::size_t>(lower_rank);
+            return values[i] + (rank - lower_rank) * (values[std::min(i + 1, values.size() - 1)] - values[i]);
         };
         for (int k = body / 2; k < body; ++k) add(k / static_cast<double>(body), quantile(1 - k / (body + 0.0)));
         int j = 6;
@@ -73,11 +73,11 @@ struct Tail {
             add(1 - std::ldexp(1.0, -j), quantile(std::ldexp(1.0, -j)));
         constexpr int halvings = 3;
         const double last = quantile(std::ldexp(1.0, -(j - 1))) - quantile(std::ldexp(1.0, -(j - 2)));
-        const double before =
+        const double previous =
             quantile(std::ldexp(1.0, -(j - 1 - halvings))) - quantile(std::ldexp(1.0, -(j - 2 - halvings)));
         // Twice for each halving of the mass at least, as of a density of 1 / x^2: a light tail may hide a wide
         // component of the density that few pilot draws are of.
-        const double growth = before > 0 ? std::clamp(math::pow(last / before, 1.0 / 3), 2.0, 16.0) : 2;
+        const double growth = previous > 0 ? std::clamp(math::pow(last / previous, 1.0 / 3), 2.0, 16.0) : 2;
         double gap = std::max(last, 1e-12 * std::max(std::fabs(x.back()), 1e-300));
         for (; j <= last_halving + 1; ++j) {
             gap *= growth;
@@ -139,8 +139,8 @@ DomainChart::Knots DomainChart::Knots::fitted(std::vector<double> values, double
         out.x.insert(out.x.end(), tail.x.begin(), tail.x.end());
     }
     for (std::size_t k = 1; k < out.x.size(); ++k) {
-        const double least = out.x[k - 1] + 1e-13 * std::max(std::fabs(out.x[k - 1]), 1e-300);
-        if (!(out.x[k] > least)) out.x[k] = std::max(least, std::nextafter(out.x[k - 1], 1e308));
+        const double minimum = out.x[k - 1] + 1e-13 * std::max(std::fabs(out.x[k - 1]), 1e-300);
+        if (!(out.x[k] > minimum)) out.x[k] = std::max(minimum, std::nextafter(out.x[k - 1], 1e308));
     }
     return out;
 }
@@ -153,8 +153,8 @@ double DomainChart::Knots::to_unit(double value) const {
 }
 
 double DomainChart::Knots::from_unit(double unit, double& value) const {
-    const auto above = static_cast<std::size_t>(std::ranges::upper_bound(y, unit) - y.begin());
-    const std::size_t k = std::clamp<std::size_t>(above, 1, y.size() - 1);
+    const auto next_knot = static_cast<std::size_t>(std::ranges::upper_bound(y, unit) - y.begin());
+    const std::size_t k = std::clamp<std::size_t>(next_knot, 1, y.size() - 1);
     const double slope = (x[k] - x[k - 1]) / (y[k] - y[k - 1]);
     value = x[k - 1] + (unit - y[k - 1]) * slope;
     return slope;
@@ -204,9 +204,9 @@ void DomainChart::to_cube(std::span<const double> point, std::span<const double>
                 y[d + 1] = azimuth_of(x[0], x[1]);
                 break;
             case Kind::triangle: {  // Turk 1990, "Generating random points in triangles"
-                const double rest = 1 - x[0];
-                y[d] = rest * rest;
-                y[d + 1] = rest > 0 ? x[1] / rest : 0;
+                const double remainder = 1 - x[0];
+                y[d] = remainder * remainder;
+                y[d + 1] = remainder > 0 ? x[1] / remainder : 0;
                 break;
             }
             case Kind::line:
@@ -241,16 +241,16 @@ double DomainChart::from_cube(std::span<const double> y, std::span<double> point
             }
             case Kind::disk: {
                 const double r = std::sqrt(y[d]);
-                const math::SinCos around = math::sincos(two_pi * y[d + 1]);
-                x[0] = r * around.cos;
-                x[1] = r * around.sin;
+                const math::SinCos azimuth = math::sincos(two_pi * y[d + 1]);
+                x[0] = r * azimuth.cos;
+                x[1] = r * azimuth.sin;
                 measure *= two_pi / 2;
                 break;
             }
             case Kind::triangle: {
-                const double rest = std::sqrt(y[d]);
-                x[0] = 1 - rest;
-                x[1] = rest * y[d + 1];
+                const double remainder = std::sqrt(y[d]);
+                x[0] = 1 - remainder;
+                x[1] = remainder * y[d + 1];
                 measure *= 0.5;
                 break;
             }
@@ -348,14 +348,14 @@ Vec3d DomainChart::shifted(Vec3d w, std::size_t axis, double distance) const {
 // ---- Words.
 
 void DomainChart::note_outside(std::span<const double> point) const {
-    const Guard one_at_a_time(outside_->lock);
-    if (outside_->first.empty())
-        outside_->first = fmt::format("{}, which {}", domain_.text(point), domain_.fault(point));
+    const Guard one_at_a_time(outside_point_->lock);
+    if (outside_point_->first.empty())
+        outside_point_->first = fmt::format("{}, which {}", domain_.text(point), domain_.fault(point));
 }
 
 std::string DomainChart::first_outside() const {
-    const Guard one_at_a_time(outside_->lock);
-    return outside_->first;
+    const Guard one_at_a_time(outside_point_->lock);
+    return outside_point_->first;
 }
 
 std::string DomainChart::text(Vec3d w) const {
@@ -384,10 +384,10 @@ std::string DomainChart::text(const check::ChartRect& rect) const {
         // Of the bits of a dimension those above the first that is not cut are the same over the box.
         const int cut[] = {halvings((rect.t1 - rect.t0) / 2), halvings((rect.phi1 - rect.phi0) / two_pi)};
         for (std::size_t d = 0; d < dimensions; ++d) {
-            int same = 0;
-            for (std::size_t n = d; static_cast<int>(n / 2) < cut[n % 2]; n += dimensions) ++same;
-            low[d] = std::ldexp(std::floor(std::ldexp(low[d], same)), -same);
-            high[d] = low[d] + std::ldexp(1.0, -same);
+            int common_bits = 0;
+            for (std::size_t n = d; static_cast<int>(n / 2) < cut[n % 2]; n += dimensions) ++common_bits;
+            low[d] = std::ldexp(std::floor(std::ldexp(low[d], common_bits)), -common_bits);
+            high[d] = low[d] + std::ldexp(1.0, -common_bits);
         }
     } else {
         low[0] = rect.t0 / 2;

@@ -84,7 +84,7 @@ private:
         std::string first;
     };
     Domain domain_;
-    std::shared_ptr<Outside> outside_ = std::make_shared<Outside>();
+    std::shared_ptr<Outside> outside_point_ = std::make_shared<Outside>();
     std::vector<Knots> knots_;                                 // by part; empty where the line is finite
     using Cube = std::array<double, Domain::most_dimensions>;  // of which the first dimensions() are used
     Cube cube_of(Vec3d w) const;

@@ -30,8 +30,8 @@ inline ChartPoint to_chart(Vec3d w) {
 
 inline Vec3d from_chart(ChartPoint point) {
     const double r = std::sqrt(std::max(0.0, point.t * (2 - point.t)));
-    const math::SinCos around = math::sincos(point.phi);
-    return {r * around.cos, r * around.sin, 1 - point.t};
+    const math::SinCos azimuth = math::sincos(point.phi);
+    return {r * azimuth.cos, r * azimuth.sin, 1 - point.t};
 }
 
 /// Polar angle of t, radians.

@@ -17,8 +17,8 @@ using Figure = std::variant<shapes::Disk, shapes::Quad>;
 /// Returns whether an emitting side of a flat light faces the point; d leads from the point to its centre. A light
 /// whose plane passes through the point, within 1e-6 of the distance of its own points, contributes nothing.
 inline bool shines_flat(Vec3d d, Vec3d normal, double radius, bool two_sided) {
-    const double along = dot(d, normal);
-    return std::fabs(along) > 1e-6 * (std::sqrt(dot(d, d)) + radius) && (two_sided || along < 0);
+    const double height = dot(d, normal);
+    return std::fabs(height) > 1e-6 * (std::sqrt(dot(d, d)) + radius) && (two_sided || height < 0);
 }
 
 /// A light as a surface point sees it, in the point's local frame. The meaning of the vectors and numbers depends on

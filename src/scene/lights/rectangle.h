@@ -51,18 +51,19 @@ struct Rectangle {
     LightNumbers numbers(Vec3d x, const Frame<double>& frame) const {
         const double u = std::sqrt(dot(edge_u, edge_u)), v = std::sqrt(dot(edge_v, edge_v));
         const Vec3d d = body().middle() - x, b = edge_u * (1 / u), c = edge_v * (1 / v);
-        const double z2 = sqr(dot(d, cross(b, c))), across = dot(d, b), up = dot(d, c);
+        const double z2 = sqr(dot(d, cross(b, c))), centre_x = dot(d, b), centre_y = dot(d, c);
         const auto slope = [&](double from) { return from / std::sqrt(z2 + from * from); };
-        const double b0 = -slope(up - v / 2), b1 = slope(up + v / 2);
-        const auto before = [&](double height) {
+        const double b0 = -slope(centre_y - v / 2), b1 = slope(centre_y + v / 2);
+        const auto angle_to = [&](double height) {
             return math::asin(b0 * slope(height)) + math::asin(b1 * slope(height));
         };
         const bool shines = shines_on(x);
-        const double from = shines ? before(across - u / 2) : 0, whole = shines ? before(across + u / 2) - from : 0;
+        const double from = shines ? angle_to(centre_x - u / 2) : 0,
+                     solid_angle = shines ? angle_to(centre_x + u / 2) - from : 0;
         return {.a = frame.to_local(d),
             .b = frame.to_local(b),
             .c = frame.to_local(c),
-            .number = {u / 2, v / 2, whole > 1e-4 ? whole : 0, from, b0, b0 + b1, shines ? 1.0 : 0.0}};
+            .number = {u / 2, v / 2, solid_angle > 1e-4 ? solid_angle : 0, from, b0, b0 + b1, shines ? 1.0 : 0.0}};
     }
     template <class F> static MaskOf<F> shines(const LocalLight<F>& l) { return l.number[6] > number<F>(0); }
     /// From the centre to the middle of an edge, along edge_u and edge_v.
@@ -74,11 +75,11 @@ struct Rectangle {
     template <class F> static MaskOf<F> meets(const LocalLight<F>& l, Vec3<F> w, F& t) {
         const Vec3<F> n = cross(l.b, l.c);
         const F height = dot(l.a, n), v = dot(w, n);
-        const auto ahead = height * v > number<F>(0);
-        t = height / select(ahead, v, number<F>(1));
+        const auto is_ahead = height * v > number<F>(0);
+        t = height / select(is_ahead, v, number<F>(1));
         const Vec3<F> offset = w * height - l.a * v;
         return (abs(dot(offset, l.b)) <= l.number[0] * abs(v)) & (abs(dot(offset, l.c)) <= l.number[1] * abs(v)) &
-            ahead & shines(l);
+            is_ahead & shines(l);
     }
     template <class F> static F radius2(const LocalLight<F>& l) { return sqr(l.number[0]) + sqr(l.number[1]); }
 
@@ -91,37 +92,38 @@ struct Rectangle {
     }
     template <class F> static F area_pdf(const LocalLight<F>& l, Vec3<F> w) {
         F t;
-        const auto met = meets(l, w, t);
+        const auto is_hit = meets(l, w, t);
         const F cos = abs(dot(w, cross(l.b, l.c)));
-        return select(met, area_density(l) * sqr(t) / larger(cos, number<F>(1e-30)), number<F>(0));
+        return select(is_hit, area_density(l) * sqr(t) / larger(cos, number<F>(1e-30)), number<F>(0));
     }
 
     template <class F> static Aimed<F> by_angle(const LocalLight<F>& l, Vec2<F> u) {
         const F zero = number<F>(0), one = number<F>(1), tiny = number<F>(1e-30);
         const Vec3<F> n = cross(l.b, l.c);
-        const F z = dot(l.a, n), z2 = sqr(z), across = dot(l.a, l.b), up = dot(l.a, l.c);
+        const F z = dot(l.a, n), z2 = sqr(z), centre_x = dot(l.a, l.b), centre_y = dot(l.a, l.c);
         const SinCos<F> d = sincos_turns((l.number[3] + u.x * l.number[2]) * number<F>(0.5 / pi));
         const F sin2 = sqr(d.sin), b0 = l.number[4];
         const F sum = l.number[5] - sin2 / (one + larger(d.cos, number<F>(-0.9999))) * b0;  // b0 cos D + b1
         const F x_there = abs(z) * d.sin / sqrt(larger(sqr(sum) - (one - sqr(b0)) * sin2, tiny));
-        const F x = smaller(larger(x_there, across - l.number[0]), across + l.number[0]);
-        const F far2 = sqr(x) + z2, low = up - l.number[1], high = up + l.number[1];
+        const F x = smaller(larger(x_there, centre_x - l.number[0]), centre_x + l.number[0]);
+        const F far2 = sqr(x) + z2, low = centre_y - l.number[1], high = centre_y + l.number[1];
         const F h0 = low / sqrt(far2 + sqr(low)), h1 = high / sqrt(far2 + sqr(high)), h = h0 + u.y * (h1 - h0);
         const F y_there = h * sqrt(far2 / larger((one - h) * (one + h), tiny));
         const F y = smaller(larger(y_there, low), high);
         const Vec3<F> to = l.b * x + l.c * y + n * z;
-        const Aimed<F> small = by_area(l, u);
-        const auto large = l.number[2] > zero;
+        const Aimed<F> area_draw = by_area(l, u);
+        const auto is_large = l.number[2] > zero;
         const Vec3<F> wi = to * (one / sqrt(larger(dot(to, to), tiny)));
-        return {{select(large, wi.x, small.wi.x), select(large, wi.y, small.wi.y), select(large, wi.z, small.wi.z)},
-            select(large, one / larger(l.number[2], tiny), small.pdf)};
+        return {{select(is_large, wi.x, area_draw.wi.x), select(is_large, wi.y, area_draw.wi.y),
+                    select(is_large, wi.z, area_draw.wi.z)},
+            select(is_large, one / larger(l.number[2], tiny), area_draw.pdf)};
     }
     template <class F> static F angle_pdf(const LocalLight<F>& l, Vec3<F> w) {
         F t;
         const F zero = number<F>(0);
-        const auto large = l.number[2] > zero;
-        const F even = select(meets(l, w, t), number<F>(1) / larger(l.number[2], number<F>(1e-30)), zero);
-        return select(large, even, area_pdf(l, w));
+        const auto is_large = l.number[2] > zero;
+        const F uniform_pdf = select(meets(l, w, t), number<F>(1) / larger(l.number[2], number<F>(1e-30)), zero);
+        return select(is_large, uniform_pdf, area_pdf(l, w));
     }
 
 private:

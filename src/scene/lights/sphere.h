@@ -28,8 +28,8 @@ struct Sphere {
     /// Returns the disk bounded by the tangents from x.
     Figure seen_from(Vec3d x) const {
         const Vec3d d = center - x;
-        const double d2 = dot(d, d), rest = 1 - sqr(radius) / d2;  // cos^2 of the cone
-        return shapes::Disk{x + rest * d, (-1 / std::sqrt(d2)) * d, radius * std::sqrt(rest)};
+        const double d2 = dot(d, d), cos2 = 1 - sqr(radius) / d2;  // cos^2 of the cone
+        return shapes::Disk{x + cos2 * d, (-1 / std::sqrt(d2)) * d, radius * std::sqrt(cos2)};
     }
     double disk_area() const { return sqr(radius); }
 
@@ -38,22 +38,23 @@ struct Sphere {
     /// precision).
     LightNumbers numbers(Vec3d x, const Frame<double>& frame) const {
         const Vec3d d = center - x;
-        const double far = std::sqrt(dot(d, d)), gap = std::max(far - radius, 0.0);
-        const double sin2 = std::min(1.0, sqr(radius) / dot(d, d)), cos = std::sqrt(gap * (far + radius)) / far;
+        const double distance = std::sqrt(dot(d, d)), gap = std::max(distance - radius, 0.0);
+        const double sin2 = std::min(1.0, sqr(radius) / dot(d, d)),
+                     cos = std::sqrt(gap * (distance + radius)) / distance;
         return {.a = frame.to_local(d),
             .b = {},
             .c = {},
-            .number = {radius, gap / far, sin2 / (1 + cos), shines_on(x) ? 1.0 : 0.0, far, gap}};
+            .number = {radius, gap / distance, sin2 / (1 + cos), shines_on(x) ? 1.0 : 0.0, distance, gap}};
     }
     template <class F> static MaskOf<F> shines(const LocalLight<F>& l) { return l.number[3] > number<F>(0); }
 
     /// Where w meets it: a distance; that of the nearest point if w misses.
     template <class F> static MaskOf<F> meets(const LocalLight<F>& l, Vec3<F> w, F& t) {
-        const F along = dot(l.a, w);
-        const Vec3<F> offset = l.a - w * along;
-        const F rest = sqr(l.number[0]) - dot(offset, offset);
-        t = l.number[5] * (l.number[4] + l.number[0]) / (along + sqrt(larger(rest, number<F>(0))));
-        return (rest >= number<F>(0)) & (along > number<F>(0)) & shines(l);
+        const F projection = dot(l.a, w);
+        const Vec3<F> offset = l.a - w * projection;
+        const F half2 = sqr(l.number[0]) - dot(offset, offset);
+        t = l.number[5] * (l.number[4] + l.number[0]) / (projection + sqrt(larger(half2, number<F>(0))));
+        return (half2 >= number<F>(0)) & (projection > number<F>(0)) & shines(l);
     }
     /// Returns the squared radius of a ball around a that contains it.
     template <class F> static F radius2(const LocalLight<F>& l) { return sqr(l.number[0]); }
@@ -85,9 +86,9 @@ struct Sphere {
     }
     template <class F> static F area_pdf(const LocalLight<F>& l, Vec3<F> w) {
         F t;
-        const auto met = meets(l, w, t);
-        const F along = dot(l.a, w), cos = larger((along - t) / l.number[0], number<F>(1e-7));
-        return select(met, area_density(l) * sqr(t) / cos, number<F>(0));
+        const auto is_hit = meets(l, w, t);
+        const F projection = dot(l.a, w), cos = larger((projection - t) / l.number[0], number<F>(1e-7));
+        return select(is_hit, area_density(l) * sqr(t) / cos, number<F>(0));
     }
 
 private:

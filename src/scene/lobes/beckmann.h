@@ -16,8 +16,8 @@ template <class F> struct Beckmann {
 
     F D(Vec3<F> m) const {  // (25), 1/sr: exp(-tan^2 / alpha^2) / (pi alpha^2 cos^4)
         const F cos2 = sqr(m.z), x = (m.x * m.x + m.y * m.y) / (cos2 * sqr(alpha));
-        const F below = number<F>(pi) * sqr(alpha) * larger(sqr(cos2), number<F>(1e-30));
-        return select(m.z > number<F>(0), exp2(x * number<F>(-1.4426950408889634)) / below, number<F>(0));
+        const F denominator = number<F>(pi) * sqr(alpha) * larger(sqr(cos2), number<F>(1e-30));
+        return select(m.z > number<F>(0), exp2(x * number<F>(-1.4426950408889634)) / denominator, number<F>(0));
     }
     /// (26): 2 / (1 + erf(a) + exp(-a^2) / (a sqrt(pi))), a = 1 / (alpha tan), to 1e-7, with
     /// erf(a) = 1 - P(1 / (1 + 0.3275911 a)) exp(-a^2): Abramowitz & Stegun 1964, 7.1.26.

@@ -45,10 +45,10 @@ template <class F> struct PhongLobe {
             }
             return math::pow(cos, s) * sin * band;
         };
-        const double horizon = math::asin(cos_o);                     // al where the lobe first crosses the horizon
-        const double wide = std::min(pi / 2, 12 / std::sqrt(s + 1));  // beyond, cos^s < exp(-70)
-        const double cut = std::min(horizon, wide);
-        return (s + 2) / (2 * pi) * (integrate(ring, 0.0, cut) + integrate(ring, cut, wide));
+        const double horizon = math::asin(cos_o);                      // al where the lobe first crosses the horizon
+        const double reach = std::min(pi / 2, 12 / std::sqrt(s + 1));  // beyond, cos^s < exp(-70)
+        const double cut = std::min(horizon, reach);
+        return (s + 2) / (2 * pi) * (integrate(ring, 0.0, cut) + integrate(ring, cut, reach));
     }
 };
 

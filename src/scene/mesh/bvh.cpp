@@ -36,20 +36,20 @@ struct TriangleRay {
         const float x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
         kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
         const std::array from = {o.x, o.y, o.z}, to = {d.x, d.y, d.z};
-        const float along = to[kz];
-        constexpr std::array<std::size_t, 4> after = {1, 2, 0, 1};
-        kx = after[along < 0 ? kz + 1 : kz];
-        ky = after[along < 0 ? kz : kz + 1];
+        const float component = to[kz];
+        constexpr std::array<std::size_t, 4> next_axis = {1, 2, 0, 1};
+        kx = next_axis[component < 0 ? kz + 1 : kz];
+        ky = next_axis[component < 0 ? kz : kz + 1];
         ox = from[kx];
         oy = from[ky];
         oz = from[kz];
-        sx = to[kx] / along;
-        sy = to[ky] / along;
-        sz = 1 / along;
+        sx = to[kx] / component;
+        sy = to[ky] / component;
+        sz = 1 / component;
     }
 
     struct Hits {
-        unsigned met;
+        unsigned bits;
         F4 t, u, v;
     };
     /// Returns which triangles of a block are met at 0 < t < t_max.
@@ -64,12 +64,12 @@ struct TriangleRay {
         const auto [bx, by, bz] = corner(1);
         const auto [cx, cy, cz] = corner(2);
         const F4 u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
-        const F4 low = least(u, least(v, w)), high = most(u, most(v, w)), det = (u + v) + w;
+        const F4 low = minimum(u, minimum(v, w)), high = maximum(u, maximum(v, w)), det = (u + v) + w;
         const F4 zero = all4(0);
-        const I4 inside = ((low >= zero) | (high <= zero)) & (det != zero);
-        if (bits_of(inside) == 0) return {.met = 0, .t = zero, .u = zero, .v = zero};
+        const I4 is_inside = ((low >= zero) | (high <= zero)) & (det != zero);
+        if (bits_of(is_inside) == 0) return {.bits = 0, .t = zero, .u = zero, .v = zero};
         const F4 t = ((u * az + v * bz) + w * cz) / det;
-        return {.met = bits_of(inside & (t > zero) & (t < all4(t_max))), .t = t, .u = v / det, .v = w / det};
+        return {.bits = bits_of(is_inside & (t > zero) & (t < all4(t_max))), .t = t, .u = v / det, .v = w / det};
     }
 };
 
@@ -93,8 +93,8 @@ struct TriangleRay {
 [[gnu::always_inline]] inline void take(
     const Block& block, const BoxRay& boxes, const TriangleRay& ray, float t_max, TriangleHit& best) {
     const auto hits = ray.hits(block, t_max);
-    for (unsigned met = hits.met; met; met &= met - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(met));
+    for (unsigned bits = hits.bits; bits; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
         const float t = t_in_box(block, lane, hits.t[lane], boxes, t_max);
         if (t < best.t || (t == best.t && t < infinity && block.triangle[lane] < best.triangle))
             best = {.t = t, .triangle = block.triangle[lane], .u = hits.u[lane], .v = hits.v[lane]};
@@ -114,12 +114,12 @@ struct Bvh::Made {
 };
 
 Bvh::Bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
-    Bounds whole;
+    Bounds bounds;
     for (const Triangle& t : triangles)
-        for (const std::uint32_t k : t) whole.add(positions[k]);
+        for (const std::uint32_t k : t) bounds.add(positions[k]);
     if (triangles.empty()) return;
-    center_ = 0.5f * whole.low + 0.5f * whole.high;
-    const float half = std::fmax(largest_of(whole.low - center_), largest_of(whole.high - center_));
+    center_ = 0.5f * bounds.low + 0.5f * bounds.high;
+    const float half = std::fmax(largest_of(bounds.low - center_), largest_of(bounds.high - center_));
     int exponent = 0;
     if (half > 0) {
         std::frexp(half, &exponent);
@@ -133,13 +133,13 @@ Bvh::Bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) 
     for (std::size_t i = 0; i < triangles.size(); ++i)
         for (const std::uint32_t k : triangles[i]) boxes[i].add(local(k));
     for (const Bounds& b : boxes) bounds_.add(b);
-    auto made = std::make_shared<Made>();
+    auto content = std::make_shared<Made>();
     BvhTree tree = build_tree(boxes);
-    made->nodes = std::move(tree.nodes);
-    made->blocks.resize(tree.leaves.size());
+    content->nodes = std::move(tree.nodes);
+    content->blocks.resize(tree.leaves.size());
     for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
         const Leaf& leaf = tree.leaves[i];
-        Block& block = made->blocks[i];
+        Block& block = content->blocks[i];
         block.triangle = leaf;
         for (std::size_t lane = 0; lane < group; ++lane)
             for (std::size_t k = 0; k < 3; ++k) {
@@ -148,65 +148,66 @@ Bvh::Bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) 
                 for (std::size_t axis = 0; axis < 3; ++axis) block.corner[axis][k][lane] = axis_of(p, axis);
             }
     }
-    made_ = std::move(made);
+    content_ = std::move(content);
 }
 
 /// The two traversals, compiled as the caller is (see bvh_tree.h).
 struct Bvh::Traversal {
-    [[gnu::always_inline]] static bool occluded(const Made& made, Vec3f o, Vec3f d, float t_max) {
+    [[gnu::always_inline]] static bool occluded(const Made& content, Vec3f o, Vec3f d, float t_max) {
         const BoxRay boxes(o, d, error(largest_of(o)));
         std::optional<TriangleRay> ray;  // many rays meet no leaf
         const auto hides = [&](std::size_t leaf) __attribute__((always_inline)) {
             if (!ray) ray.emplace(o, d);
-            const Block& block = made.blocks[leaf];
+            const Block& block = content.blocks[leaf];
             const auto hits = ray->hits(block, t_max);
-            for (unsigned met = hits.met; met; met &= met - 1) {
-                const auto lane = static_cast<std::size_t>(std::countr_zero(met));
+            for (unsigned bits = hits.bits; bits; bits &= bits - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
                 if (t_in_box(block, lane, hits.t[lane], boxes, t_max) < infinity) return true;
             }
             return false;
         };
-        const auto fetch = [&](std::size_t leaf) __attribute__((always_inline)) { made.fetch(leaf); };
-        return visit_leaves(made.nodes, boxes, t_max, hides, fetch);
+        const auto fetch = [&](std::size_t leaf) __attribute__((always_inline)) { content.fetch(leaf); };
+        return visit_leaves(content.nodes, boxes, t_max, hides, fetch);
     }
 
-    [[gnu::always_inline]] static void closest(const Made& made, Vec3f o, Vec3f d, float t_max, TriangleHit& best) {
+    [[gnu::always_inline]] static void closest(const Made& content, Vec3f o, Vec3f d, float t_max, TriangleHit& best) {
         const BoxRay boxes(o, d, error(largest_of(o)));
         const TriangleRay ray(o, d);
         float nearest = std::fmin(t_max, best.t);
         const auto test = [&](std::size_t leaf) __attribute__((always_inline)) {
-            take(made.blocks[leaf], boxes, ray, t_max, best);
+            take(content.blocks[leaf], boxes, ray, t_max, best);
             nearest = std::fmin(nearest, best.t);
             return false;
         };
-        const auto fetch = [&](std::size_t leaf) __attribute__((always_inline)) { made.fetch(leaf); };
-        visit_leaves(made.nodes, boxes, nearest, test, fetch);
+        const auto fetch = [&](std::size_t leaf) __attribute__((always_inline)) { content.fetch(leaf); };
+        visit_leaves(content.nodes, boxes, nearest, test, fetch);
     }
 
 #ifdef CRESCENT_EIGHT_LANES
-    CRESCENT_EIGHT_LANES static bool occluded_wide(const Made& made, Vec3f o, Vec3f d, float t_max) {
-        return occluded(made, o, d, t_max);
+    CRESCENT_EIGHT_LANES static bool occluded_wide(const Made& content, Vec3f o, Vec3f d, float t_max) {
+        return occluded(content, o, d, t_max);
     }
-    CRESCENT_EIGHT_LANES static void closest_wide(const Made& made, Vec3f o, Vec3f d, float t_max, TriangleHit& best) {
-        closest(made, o, d, t_max, best);
+    CRESCENT_EIGHT_LANES static void closest_wide(
+        const Made& content, Vec3f o, Vec3f d, float t_max, TriangleHit& best) {
+        closest(content, o, d, t_max, best);
     }
 #endif
 };
 
 bool Bvh::occluded(Vec3f o, Vec3f d, float t_max) const {
-    if (!made_) return false;
+    if (!content_) return false;
 #ifdef CRESCENT_EIGHT_LANES
-    if (has_eight_lanes) return Traversal::occluded_wide(*made_, o, d, t_max);
+    if (has_eight_lanes) return Traversal::occluded_wide(*content_, o, d, t_max);
 #endif
-    return Traversal::occluded(*made_, o, d, t_max);
+    return Traversal::occluded(*content_, o, d, t_max);
 }
 
 void Bvh::closest(Vec3f o, Vec3f d, float t_max, TriangleHit& best) const {
-    if (!made_) return;
+    if (!content_) return;
 #ifdef CRESCENT_EIGHT_LANES
-    if (has_eight_lanes) return Traversal::closest_wide(*made_, o, d, t_max, best);
+    if (has_eight_lanes) return Traversal::closest_wide(*content_, o, d, t_max, best);
 #endif
-    Traversal::closest(*made_, o, d, t_max, best);
+    Traversal::closest(*content_, o, d, t_max, best);
 }
 
 TriangleHit Bvh::closest(Vec3f o, Vec3f d, float t_max) const {
@@ -217,13 +218,13 @@ TriangleHit Bvh::closest(Vec3f o, Vec3f d, float t_max) const {
 
 TriangleHit Bvh::closest_of_all(Vec3f o, Vec3f d, float t_max) const {
     TriangleHit best;
-    for (std::size_t i = 0; made_ && i < made_->blocks.size(); ++i)
-        take(made_->blocks[i], BoxRay(o, d, error(largest_of(o))), TriangleRay(o, d), t_max, best);
+    for (std::size_t i = 0; content_ && i < content_->blocks.size(); ++i)
+        take(content_->blocks[i], BoxRay(o, d, error(largest_of(o))), TriangleRay(o, d), t_max, best);
     return best;
 }
 
 std::size_t Bvh::bytes() const {
-    return made_ ? made_->nodes.size() * sizeof(BvhNode) + made_->blocks.size() * sizeof(Block) : 0;
+    return content_ ? content_->nodes.size() * sizeof(BvhNode) + content_->blocks.size() * sizeof(Block) : 0;
 }
 
 }  // namespace crescent

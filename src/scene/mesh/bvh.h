@@ -33,9 +33,9 @@ struct Bounds {
     void add(Vec3f p) { add(Bounds{p, p}); }
     /// An empty box adds nothing.
     void add(const Bounds& b) {
-        const auto least = [](float x, float y) { return y < x ? y : x; };
+        const auto smaller = [](float x, float y) { return y < x ? y : x; };
         const auto larger = [](float x, float y) { return y > x ? y : x; };
-        low = {least(low.x, b.low.x), least(low.y, b.low.y), least(low.z, b.low.z)};
+        low = {smaller(low.x, b.low.x), smaller(low.y, b.low.y), smaller(low.z, b.low.z)};
         high = {larger(high.x, b.high.x), larger(high.y, b.high.y), larger(high.z, b.high.z)};
     }
 };
@@ -84,7 +84,7 @@ public:
 private:
     struct Made;
     struct Traversal;
-    std::shared_ptr<const Made> made_;
+    std::shared_ptr<const Made> content_;
     Vec3f center_{};
     float scale_ = 1;
     Bounds bounds_;

@@ -130,12 +130,12 @@ private:
                     sums[k][j].box.add(part[k][j].box);
                     sums[k][j].count += part[k][j].count;
                 }
-        const auto [along, below] = cheapest(sums);
-        if (below == 0) return (begin + end) / 2;
+        const auto [axis, bin] = cheapest(sums);
+        if (bin == 0) return (begin + end) / 2;
         std::size_t i = begin, j = end;
         for (;;) {
-            while (i < j && bin_of(order_[i], along) < below) ++i;
-            while (i < j && bin_of(order_[j - 1], along) >= below) --j;
+            while (i < j && bin_of(order_[i], axis) < bin) ++i;
+            while (i < j && bin_of(order_[j - 1], axis) >= bin) --j;
             if (i >= j) return i;
             std::swap(order_[i++], order_[--j]);
         }
@@ -147,24 +147,24 @@ private:
     };
     static Plane cheapest(const Bins& sums) {
         Plane best;
-        float least = infinity;
+        float lowest_cost = infinity;
         for (std::size_t k = 0; k < 3; ++k) {
-            std::array<Bin, bins> after;  // all bins from j on
+            std::array<Bin, bins> right;  // all bins from j on
             Bin sum;
             for (std::size_t j = bins; j-- > 1;) {
                 sum.box.add(sums[k][j].box);
                 sum.count += sums[k][j].count;
-                after[j] = sum;
+                right[j] = sum;
             }
-            Bin before;
+            Bin left;
             for (std::size_t j = 1; j < bins; ++j) {
-                before.box.add(sums[k][j - 1].box);
-                before.count += sums[k][j - 1].count;
-                if (before.count == 0 || after[j].count == 0) continue;
+                left.box.add(sums[k][j - 1].box);
+                left.count += sums[k][j - 1].count;
+                if (left.count == 0 || right[j].count == 0) continue;
                 const auto groups = [](const Bin& b) { return static_cast<float>((b.count + group - 1) / group); };
-                const float cost = area(before.box) * groups(before) + area(after[j].box) * groups(after[j]);
-                if (cost < least) {
-                    least = cost;
+                const float cost = area(left.box) * groups(left) + area(right[j].box) * groups(right[j]);
+                if (cost < lowest_cost) {
+                    lowest_cost = cost;
                     best = {k, j};
                 }
             }
@@ -176,17 +176,17 @@ private:
     /// the widest; then those whose leaves all have room in this node, the ones with the fewest, so that nodes are
     /// full.
     std::size_t to_open(const std::array<std::uint32_t, children>& opened, std::size_t count) const {
-        std::size_t widest = count, least = count;
+        std::size_t widest = count, smallest = count;
         for (std::size_t c = 0; c < count; ++c) {
             const Split& child = splits_[opened[c]];
             if (!child.left) continue;
             if (child.leaves > children) {
                 if (widest == count || area(child.box) > area(splits_[opened[widest]].box)) widest = c;
             } else if (count - 1 + child.leaves <= children) {
-                if (least == count || child.leaves < splits_[opened[least]].leaves) least = c;
+                if (smallest == count || child.leaves < splits_[opened[smallest]].leaves) smallest = c;
             }
         }
-        return widest < count ? widest : least;
+        return widest < count ? widest : smallest;
     }
 
     /// Writes splits_[at], and all below it, into nodes[to] and new nodes.

@@ -35,12 +35,12 @@ template <class T> struct HugePages {
     template <class U> HugePages(const HugePages<U>&) {}  // NOLINT(google-explicit-constructor): as allocators are
 
     T* allocate(std::size_t count) {
-        const bool large = count * sizeof(T) >= page;
-        const std::size_t unit = large ? page : line, bytes = (count * sizeof(T) + unit - 1) / unit * unit;
+        const bool is_large = count * sizeof(T) >= page;
+        const std::size_t unit = is_large ? page : line, bytes = (count * sizeof(T) + unit - 1) / unit * unit;
         void* memory = std::aligned_alloc(unit, bytes);
         if (!memory) throw std::bad_alloc();
 #ifdef __linux__
-        if (large) static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));  // a hint
+        if (is_large) static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));  // a hint
 #endif
         return static_cast<T*>(memory);
     }
@@ -69,8 +69,8 @@ inline const bool has_eight_lanes = __builtin_cpu_supports("avx2") != 0;
 #endif
 
 [[gnu::always_inline]] inline F4 all4(float x) { return F4{x, x, x, x}; }
-template <class F> [[gnu::always_inline]] inline F least(F a, F b) { return a < b ? a : b; }
-template <class F> [[gnu::always_inline]] inline F most(F a, F b) { return a > b ? a : b; }
+template <class F> [[gnu::always_inline]] inline F minimum(F a, F b) { return a < b ? a : b; }
+template <class F> [[gnu::always_inline]] inline F maximum(F a, F b) { return a > b ? a : b; }
 /// Returns a bit for each lane that is not 0.
 [[gnu::always_inline]] inline unsigned bits_of(I4 mask) {
 #ifdef __SSE2__
@@ -185,18 +185,18 @@ template <class Test, class Fetch> [[gnu::always_inline]] inline bool visit_leav
             const BvhNode& node = nodes[static_cast<std::size_t>(index)];
             std::array<float, children> entry;
             const std::size_t begin = size;
-            unsigned met = ray.meets(node, nearest, entry);
+            unsigned bits = ray.meets(node, nearest, entry);
             const auto child_of = [&]() __attribute__((always_inline)) {
-                const auto c = static_cast<std::size_t>(std::countr_zero(met));
-                met &= met - 1;
+                const auto c = static_cast<std::size_t>(std::countr_zero(bits));
+                bits &= bits - 1;
                 const std::int32_t child = node.child[c];
                 if (child < 0) fetch(static_cast<std::size_t>(~child));
                 else __builtin_prefetch(&nodes[static_cast<std::size_t>(child)]);
                 return Entry{std::bit_cast<std::uint32_t>(entry[c])} << 32 | static_cast<std::uint32_t>(child);
             };
-            if (met) {
+            if (bits) {
                 next = child_of();
-                while (met) {
+                while (bits) {
                     const Entry other = child_of(), farther = other > next ? other : next;
                     next = other > next ? next : other;
                     std::size_t i = size++;  // the nearest last

@@ -53,10 +53,11 @@ Header checked_header(std::string_view head, std::uint64_t size, const std::stri
         fail(fmt::format("byte 16: expected at least a triangle, found {} vertices and {} triangles", header.vertices,
             header.triangles));
     const std::uint64_t of_vertex = 12u + (header.flags & with_normals ? 12u : 0u) + (header.flags & with_uv ? 8u : 0u);
-    const std::uint64_t expected = sizeof header + header.vertices * of_vertex + std::uint64_t{12} * header.triangles;
-    if (expected != size)
-        fail(fmt::format("expected {} bytes for {} vertices and {} triangles, found {}{}", expected, header.vertices,
-            header.triangles, size, size < expected ? ": the file is truncated" : ""));
+    const std::uint64_t expected_size =
+        sizeof header + header.vertices * of_vertex + std::uint64_t{12} * header.triangles;
+    if (expected_size != size)
+        fail(fmt::format("expected {} bytes for {} vertices and {} triangles, found {}{}", expected_size,
+            header.vertices, header.triangles, size, size < expected_size ? ": the file is truncated" : ""));
     if (header.triangles >= std::uint32_t{1} << 30)
         fail(fmt::format("byte 20: expected fewer than 2^30 triangles, found {}", header.triangles));
     return header;
@@ -98,19 +99,19 @@ private:
             fail(fmt::format("byte 32: expected the hash of the content, {:016x}, found {:016x}: the file is damaged",
                 hash, header.hash));
         header.hash = hash;
-        at_ = sizeof header;
+        offset_ = sizeof header;
         return header;
     }
 
     template <class T> void take(std::vector<T>& to, std::size_t count) {
         to.resize(count);
-        std::memcpy(to.data(), bytes_.data() + at_, count * sizeof(T));
-        at_ += count * sizeof(T);
+        std::memcpy(to.data(), bytes_.data() + offset_, count * sizeof(T));
+        offset_ += count * sizeof(T);
     }
 
     void position(std::size_t i, Vec3f p) const {
-        const auto good = [](float x) { return std::fabs(x) <= farthest; };
-        if (!good(p.x) || !good(p.y) || !good(p.z))
+        const auto is_good = [](float x) { return std::fabs(x) <= farthest; };
+        if (!is_good(p.x) || !is_good(p.y) || !is_good(p.z))
             fail(fmt::format(
                 "vertex {}: expected coordinates from -1e30 to 1e30, found ({}, {}, {})", i, p.x, p.y, p.z));
     }
@@ -124,7 +125,7 @@ private:
 
     std::string_view bytes_;
     const std::string& name_;
-    std::size_t at_ = 0;
+    std::size_t offset_ = 0;
 };
 
 }  // namespace
@@ -226,42 +227,42 @@ Bounds Mesh::bounds() const {
 
 Removed remove_useless(Mesh& mesh) {
     const std::size_t count = mesh.triangles.size();
-    std::vector<bool> useless(count);
+    std::vector<bool> is_useless(count);
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
     order.reserve(count);
-    Removed removed;
+    Removed counts;
     for (std::size_t i = 0; i < count; ++i) {
         if (!has_area(mesh, i)) {
-            useless[i] = true;
-            ++removed.degenerate;
+            is_useless[i] = true;
+            ++counts.degenerate;
         } else order.emplace_back(hash_of(key_of(mesh, i)), static_cast<std::uint32_t>(i));
     }
     std::sort(order.begin(), order.end());
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
         while (end < order.size() && order[end].first == order[begin].first) ++end;
         for (std::size_t i = begin + 1; i < end; ++i) {
-            const bool listed = std::any_of(order.begin() + static_cast<std::ptrdiff_t>(begin),
+            const bool is_duplicate = std::any_of(order.begin() + static_cast<std::ptrdiff_t>(begin),
                 order.begin() + static_cast<std::ptrdiff_t>(i),
-                [&, own = key_of(mesh, order[i].second)](
-                    const auto& other) { return !useless[other.second] && key_of(mesh, other.second) == own; });
-            if (listed) {
-                useless[order[i].second] = true;
-                ++removed.duplicate;
+                [&, key = key_of(mesh, order[i].second)](
+                    const auto& other) { return !is_useless[other.second] && key_of(mesh, other.second) == key; });
+            if (is_duplicate) {
+                is_useless[order[i].second] = true;
+                ++counts.duplicate;
             }
         }
     }
-    std::size_t kept = 0;
+    std::size_t triangle_count = 0;
     for (std::size_t i = 0; i < count; ++i)
-        if (!useless[i]) mesh.triangles[kept++] = mesh.triangles[i];
-    mesh.triangles.resize(kept);
-    return removed;
+        if (!is_useless[i]) mesh.triangles[triangle_count++] = mesh.triangles[i];
+    mesh.triangles.resize(triangle_count);
+    return counts;
 }
 
 std::shared_ptr<MeshPack> make_pack(Mesh mesh) {
     auto pack = std::make_shared<MeshPack>();
-    const Removed removed = remove_useless(mesh);
-    pack->degenerate = removed.degenerate;
-    pack->duplicate = removed.duplicate;
+    const Removed counts = remove_useless(mesh);
+    pack->degenerate = counts.degenerate;
+    pack->duplicate = counts.duplicate;
     pack->bvh = Bvh(mesh.positions, mesh.triangles);
     pack->hash = hash_of(mesh);
     pack->mesh = std::move(mesh);

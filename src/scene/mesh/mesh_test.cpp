@@ -113,7 +113,7 @@ TEST(MeshFile, RefusesDamageWithThePlace) {
             ADD_FAILURE() << "read in spite of: " << c.says;
         } catch (const InputError& error) {
             EXPECT_THAT(error.what(), HasSubstr(c.says));
-            EXPECT_EQ(error.diagnostics().front().at.file, "bad.mesh");
+            EXPECT_EQ(error.diagnostics().front().location.file, "bad.mesh");
         }
     }
 }

@@ -52,29 +52,29 @@ struct Rays::Made {
 };
 
 Rays::Rays(std::vector<MeshInstance> instances, Vec3d origin) : instances_(std::move(instances)) {
-    auto made = std::make_shared<Made>();
+    auto content = std::make_shared<Made>();
     std::vector<Bounds> boxes;
     for (const MeshInstance& instance : instances_) {
         const Bvh& bvh = instance.pack->bvh;
-        const Affine whole = translation(-origin).after(instance.to_world.after(bvh.to_file()));
-        const Affine back = whole.inverse();
+        const Affine to_scene = translation(-origin).after(instance.to_world.after(bvh.to_file()));
+        const Affine to_mesh = to_scene.inverse();
         Bounds box;
         for (unsigned corner = 0; corner < 8; ++corner) {
             const auto side = [&](unsigned k, float low, float high) {
                 return static_cast<double>(corner >> k & 1 ? high : low);
             };
             const Bounds& bounds = bvh.bounds();
-            box.add(as<float>(whole.point({side(0, bounds.low.x, bounds.high.x), side(1, bounds.low.y, bounds.high.y),
-                side(2, bounds.low.z, bounds.high.z)})));
+            box.add(as<float>(to_scene.point({side(0, bounds.low.x, bounds.high.x),
+                side(1, bounds.low.y, bounds.high.y), side(2, bounds.low.z, bounds.high.z)})));
         }
-        made->reach = std::fmax(made->reach, std::fmax(largest(widen(box.low)), largest(widen(box.high))));
-        made->condition = std::fmax(made->condition, whole.stretch() * back.stretch());
-        made->placed.push_back({back, box, whole.stretch(), &bvh});
+        content->reach = std::fmax(content->reach, std::fmax(largest(widen(box.low)), largest(widen(box.high))));
+        content->condition = std::fmax(content->condition, to_scene.stretch() * to_mesh.stretch());
+        content->placed.push_back({to_mesh, box, to_scene.stretch(), &bvh});
         boxes.push_back(box);
     }
-    made->tree = build_tree(boxes);
-    for (const Leaf& leaf : made->tree.leaves) {
-        LeafBoxes& out = made->leaf_boxes.emplace_back();
+    content->tree = build_tree(boxes);
+    for (const Leaf& leaf : content->tree.leaves) {
+        LeafBoxes& out = content->leaf_boxes.emplace_back();
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t item = 0; item < group; ++item) {
                 const Bounds box = leaf[item] == no_item ? Bounds{} : boxes[leaf[item]];  // an empty one is never met
@@ -82,30 +82,31 @@ Rays::Rays(std::vector<MeshInstance> instances, Vec3d origin) : instances_(std::
                 out[1][k][item] = axis_of(box.high, k);
             }
     }
-    made_ = std::move(made);
+    content_ = std::move(content);
 }
 
 /// Compiled as the caller is (see bvh_tree.h).
 struct Rays::Traversal {
-    [[gnu::always_inline]] static bool occluded(const Made& made, Vec3f x, Vec3f d, float t_max) {
+    [[gnu::always_inline]] static bool occluded(const Made& content, Vec3f x, Vec3f d, float t_max) {
         const Vec3d wide_x = widen(x), wide_d = widen(d);
-        const BoxRay boxes = made.box_ray(wide_x, wide_d);
+        const BoxRay boxes = content.box_ray(wide_x, wide_d);
         const auto hides = [&](std::size_t leaf) __attribute__((always_inline)) {
-            for (unsigned met = boxes.meets(made.leaf_boxes[leaf], t_max); met; met &= met - 1) {
-                const auto item = static_cast<std::size_t>(std::countr_zero(met));
-                const Placed& placed = made.placed[made.tree.leaves[leaf][item]];
-                const Vec3f o = as<float>(placed.to_mesh.point(wide_x)), to = as<float>(placed.to_mesh.vector(wide_d));
-                if (placed.bvh->occluded(o, to, t_max)) return true;
+            for (unsigned bits = boxes.meets(content.leaf_boxes[leaf], t_max); bits; bits &= bits - 1) {
+                const auto item = static_cast<std::size_t>(std::countr_zero(bits));
+                const Placed& instance = content.placed[content.tree.leaves[leaf][item]];
+                const Vec3f o = as<float>(instance.to_mesh.point(wide_x)),
+                            to = as<float>(instance.to_mesh.vector(wide_d));
+                if (instance.bvh->occluded(o, to, t_max)) return true;
             }
             return false;
         };
-        if (made.tree.leaves.size() == 1) return hides(0);
-        return visit_leaves(made.tree.nodes, boxes, t_max, hides, [](std::size_t) {});
+        if (content.tree.leaves.size() == 1) return hides(0);
+        return visit_leaves(content.tree.nodes, boxes, t_max, hides, [](std::size_t) {});
     }
 
 #ifdef CRESCENT_EIGHT_LANES
-    CRESCENT_EIGHT_LANES static bool occluded_wide(const Made& made, Vec3f x, Vec3f d, float t_max) {
-        return occluded(made, x, d, t_max);
+    CRESCENT_EIGHT_LANES static bool occluded_wide(const Made& content, Vec3f x, Vec3f d, float t_max) {
+        return occluded(content, x, d, t_max);
     }
 #endif
 };
@@ -113,41 +114,41 @@ struct Rays::Traversal {
 bool Rays::occluded(Vec3f x, Vec3f d, float t_max) const {
     if (empty()) return false;
 #ifdef CRESCENT_EIGHT_LANES
-    if (has_eight_lanes) return Traversal::occluded_wide(*made_, x, d, t_max);
+    if (has_eight_lanes) return Traversal::occluded_wide(*content_, x, d, t_max);
 #endif
-    return Traversal::occluded(*made_, x, d, t_max);
+    return Traversal::occluded(*content_, x, d, t_max);
 }
 
 MeshHit Rays::closest(Vec3d x, Vec3d d, float t_max) const {
     MeshHit best;
     if (empty()) return best;
-    const BoxRay boxes = made_->box_ray(x, d);
+    const BoxRay boxes = content_->box_ray(x, d);
     float nearest = t_max;
     const auto test = [&](std::size_t leaf) {
-        for (const std::uint32_t i : made_->tree.leaves[leaf])
-            if (i != no_item) made_->take(*made_->placed[i].bvh, i, boxes, x, d, t_max, false, best);
+        for (const std::uint32_t i : content_->tree.leaves[leaf])
+            if (i != no_item) content_->take(*content_->placed[i].bvh, i, boxes, x, d, t_max, false, best);
         nearest = std::fmin(nearest, best.t);
         return false;
     };
-    if (made_->tree.leaves.size() == 1) test(0);
-    else visit_leaves(made_->tree.nodes, boxes, nearest, test, [](std::size_t) {});
+    if (content_->tree.leaves.size() == 1) test(0);
+    else visit_leaves(content_->tree.nodes, boxes, nearest, test, [](std::size_t) {});
     return best;
 }
 
 MeshHit Rays::closest_of_all(Vec3d x, Vec3d d, float t_max) const {
     MeshHit best;
     for (std::uint32_t i = 0; i < instances_.size(); ++i)
-        made_->take(instances_[i].pack->bvh, i, made_->box_ray(x, d), x, d, t_max, true, best);
+        content_->take(instances_[i].pack->bvh, i, content_->box_ray(x, d), x, d, t_max, true, best);
     return best;
 }
 
-float Rays::error(Vec3f x) const { return made_ ? made_->error(widen(x)) : 0; }
+float Rays::error(Vec3f x) const { return content_ ? content_->error(widen(x)) : 0; }
 
 double Rays::offset(std::uint32_t instance, Vec3d x) const {
     // In the mesh's space, from an origin on the surface (R = 2, see bvh.cpp): 12 u along each sheared axis, so 17 u
     // along the normal; 2 u along the ray; sqrt(3) u each for the rounding of the ray's origin and of the corners. In
     // the scene: sqrt(3) u |x| for the rounding of x.
-    return unit_roundoff * (24 * made_->placed[instance].stretch + 2 * largest(x));
+    return unit_roundoff * (24 * content_->placed[instance].stretch + 2 * largest(x));
 }
 
 }  // namespace crescent

@@ -54,7 +54,7 @@ private:
     struct Made;
     struct Traversal;
     std::vector<MeshInstance> instances_;
-    std::shared_ptr<const Made> made_;
+    std::shared_ptr<const Made> content_;
 };
 
 }  // namespace crescent

@@ -61,10 +61,10 @@ struct Box {
         return near > 0 ? crossing_at(near, near_n) : crossing_at(far, far_n);
     }
 
-    /// The strip between the ways' starts and ends, cut by the box: its points x + a d(0) + b d(1), a + b in `between`,
+    /// The strip between the ways' starts and ends, cut by the box: its points x + a d(0) + b d(1), a + b in `limits`,
     /// inside the six half-spaces form a convex polygon in (a, b); each of its corners is seen at v = b / (a + b).
     std::array<Interval, 2> hidden(const Sight& s) const {
-        Strip strip(s.between);
+        Strip strip(s.limits);
         const Vec3d x = s.x, d0 = s.d0, d1 = s.d0 + s.step;
         strip.cut(x.x - min.x, d0.x, d1.x);
         strip.cut(max.x - x.x, -d0.x, -d1.x);
@@ -112,23 +112,23 @@ private:
         std::size_t size = 4;
         Interval start{0, 1}, end{0, 1};
 
-        explicit Strip(Between between)
-            : from(between.from), to(between.to), polygon{{{from, 0}, {to, 0}, {0, to}, {0, from}}} {}
+        explicit Strip(Between limits)
+            : from(limits.from), to(limits.to), polygon{{{from, 0}, {to, 0}, {0, to}, {0, from}}} {}
         void cut(double h, double h0, double h1) {  // keep h + a h0 + b h1 >= 0
             start = both(start, where_positive(h + from * h0, h + from * h1));
             end = both(end, where_positive(h + to * h0, h + to * h1));
-            std::size_t kept = 0;
+            std::size_t corner_count = 0;
             for (std::size_t i = 0; i < size; ++i) {
                 const Corner p = polygon[i], q = polygon[i + 1 < size ? i + 1 : 0];
                 const double hp = h + p.a * h0 + p.b * h1, hq = h + q.a * h0 + q.b * h1;
-                if (hp >= 0) next[kept++] = p;
+                if (hp >= 0) next[corner_count++] = p;
                 if ((hp >= 0) != (hq >= 0)) {
                     const double t = hp / (hp - hq);
-                    next[kept++] = {p.a + t * (q.a - p.a), p.b + t * (q.b - p.b)};
+                    next[corner_count++] = {p.a + t * (q.a - p.a), p.b + t * (q.b - p.b)};
                 }
             }
             polygon = next;
-            size = kept;
+            size = corner_count;
         }
         Interval way() const {
             Interval out{never, -never};

@@ -50,8 +50,8 @@ struct Disk {
         const double offset = dot(normal, a);
         if (radius < large_body) return {.a = a, .b = normal, .c = {}, .radius = radius, .offset = offset};
         const Vec3d to = offset * normal - a;  // from the centre to the origin's foot
-        const double far = std::sqrt(dot(to, to));
-        const Vec3d out = far > 0 ? (1 / far) * to : frame_about(normal).t;
+        const double distance = std::sqrt(dot(to, to));
+        const Vec3d out = distance > 0 ? (1 / distance) * to : frame_about(normal).t;
         return {.a = a + radius * out, .b = normal, .c = out, .radius = -radius, .offset = offset};
     }
     template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {

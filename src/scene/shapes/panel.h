@@ -26,12 +26,12 @@ struct Panel {
         const Vec3d n = normalize(cross(edge_u, edge_v));
         const double opening = parallelogram_t(corner, edge_u, edge_v, x, d);
         if (opening == never || dot(n, d) >= 0) return {};
-        const Vec3d down = -depth * n;
-        Intersection best = crossing_at(parallelogram_t(corner + down, edge_u, edge_v, x, d), n);
+        const Vec3d depth_edge = -depth * n;
+        Intersection best = crossing_at(parallelogram_t(corner + depth_edge, edge_u, edge_v, x, d), n);
         const auto side = [&](Vec3d from, Vec3d edge) {
-            const double t = parallelogram_t(from, edge, down, x, d);
+            const double t = parallelogram_t(from, edge, depth_edge, x, d);
             if (t >= opening && t < best.t)
-                best = {.t = t, .order = t, .n = normalize(cross(edge, down)), .reveal = true};
+                best = {.t = t, .order = t, .n = normalize(cross(edge, depth_edge)), .reveal = true};
         };
         side(corner, edge_u);
         side(corner, edge_v);
@@ -43,9 +43,9 @@ struct Panel {
 
     /// Returns the bodies that hide a light: the back and the four sides.
     std::array<Quad, 5> bodies() const {
-        const Vec3d down = -depth * normalize(cross(edge_u, edge_v));
-        return {Quad{corner + down, edge_u, edge_v}, {corner, edge_u, down}, {corner, edge_v, down},
-            {corner + edge_v, edge_u, down}, {corner + edge_u, edge_v, down}};
+        const Vec3d depth_edge = -depth * normalize(cross(edge_u, edge_v));
+        return {Quad{corner + depth_edge, edge_u, edge_v}, {corner, edge_u, depth_edge}, {corner, edge_v, depth_edge},
+            {corner + edge_v, edge_u, depth_edge}, {corner + edge_u, edge_v, depth_edge}};
     }
 };
 

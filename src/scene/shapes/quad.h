@@ -39,12 +39,14 @@ struct Quad {
     std::array<Interval, 2> hidden(const Sight& s) const {
         const Vec3d n = cross(edge_u, edge_v);
         const OnPlane m = project(corner, n, s);
-        const auto inside = [&](Vec3d axis) {  // 0 <= axis . g <= w
+        const auto where_inside = [&](Vec3d axis) {  // 0 <= axis . g <= w
             const double a0 = dot(axis, m.at0), a1 = dot(axis, m.at0 + m.step);
             return both(where_positive(a0, a1), where_positive(m.w0 - a0, m.w0 + m.w1 - a1));
         };
         const double nn = dot(n, n);
-        return {both(m.sides, both(inside(cross(edge_v, n) * (1 / nn)), inside(cross(n, edge_u) * (1 / nn)))), {}};
+        return {
+            both(m.sides, both(where_inside(cross(edge_v, n) * (1 / nn)), where_inside(cross(n, edge_u) * (1 / nn)))),
+            {}};
     }
     bool holds(Vec3d) const { return false; }
 
@@ -81,8 +83,8 @@ struct Quad {
         const F t = plane_at(n, body.offset, o, d);
         if (any(body.radius > zero)) {
             const Vec3<F> point = o + d * t;
-            const F across = body.a.x + dot(body.b, point), along = body.a.y + dot(body.c, point), one = number<F>(1);
-            return (t > lo) & (t < hi) & (across >= zero) & (across <= one) & (along >= zero) & (along <= one);
+            const F u = body.a.x + dot(body.b, point), v = body.a.y + dot(body.c, point), one = number<F>(1);
+            return (t > lo) & (t < hi) & (u >= zero) & (u <= one) & (v >= zero) & (v <= one);
         }
         const Vec3<F> p = o + d * t - body.a;
         const F nn = dot(n, n), x = dot(cross(p, body.c), n), y = dot(cross(body.b, p), n);

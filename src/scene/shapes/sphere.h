@@ -38,16 +38,16 @@ struct Sphere {
         const double q = dot(c, c) - radius * radius;
         const double ee = dot(s.step, s.step), de = dot(s.d0, s.step), dd = dot(s.d0, s.d0), ec = dot(s.step, c),
                      dc = dot(s.d0, c);
-        const auto inside = [&](double f) {
+        const auto where_inside = [&](double f) {
             return where_negative(f * f * ee, f * (f * de - ec), f * (f * dd - 2 * dc) + q, {0, 1});
         };
-        const Interval start = inside(s.between.from), end = inside(s.between.to);
+        const Interval start = where_inside(s.limits.from), end = where_inside(s.limits.to);
         if (q <= 0) return Met{start, start, end}.crossed();
-        const auto past = [&](double f, double sign) {
+        const auto where_beyond = [&](double f, double sign) {
             return where_positive(sign * (f * dc - q), sign * (f * (dc + ec) - q));
         };
         const Interval cone = where_negative(q * ee - ec * ec, q * de - dc * ec, q * dd - dc * dc,
-            both(past(s.between.to, 1), past(s.between.from, -1)));
+            both(where_beyond(s.limits.to, 1), where_beyond(s.limits.from, -1)));
         return Met{hull(cone, hull(start, end)), start, end}.crossed();
     }
     bool holds(Vec3d x) const { return dot(x - center, x - center) <= sqr(radius); }
@@ -61,20 +61,20 @@ struct Sphere {
     /// the centre, and the curvature is unused.
     BodyNumbers numbers(Vec3d origin) const {
         const Vec3d c = center - origin;
-        const double far = std::sqrt(dot(c, c));
-        if (sqr(far) < large_body * radius && radius < large_body)
+        const double distance = std::sqrt(dot(c, c));
+        if (sqr(distance) < large_body * radius && radius < large_body)
             return {.a = c, .b = {}, .c = {}, .radius = radius, .offset = 0};
-        const Vec3d n = far > 0 ? (-1 / far) * c : Vec3d{0, 1, 0};
+        const Vec3d n = distance > 0 ? (-1 / distance) * c : Vec3d{0, 1, 0};
         return {.a = c + radius * n, .b = n, .c = {}, .radius = radius, .offset = 1 / radius};
     }
     template <class F> static MaskOf<F> blocks(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
         const F zero = number<F>(0);
         if (any(body.offset > zero)) return blocks_far(body, o, d, lo, hi);
         const Vec3<F> c = body.a - o;
-        const F along = dot(c, d);
-        const F disc = sqr(along) - (dot(c, c) - sqr(body.radius));
+        const F projection = dot(c, d);
+        const F disc = sqr(projection) - (dot(c, c) - sqr(body.radius));
         const F root = sqrt(larger(disc, zero));
-        return (disc > zero) & (within(along - root, lo, hi) | within(along + root, lo, hi));
+        return (disc > zero) & (within(projection - root, lo, hi) | within(projection + root, lo, hi));
     }
 
 private:
@@ -84,13 +84,13 @@ private:
     /// chapter 7.
     template <class F> static MaskOf<F> blocks_far(const PackedBody<F>& body, Vec3<F> o, Vec3<F> d, F lo, F hi) {
         const F zero = number<F>(0), two = number<F>(2), k = body.offset;
-        const Vec3<F> v = o - body.a, across = v - d * dot(v, d);
+        const Vec3<F> v = o - body.a, offset = v - d * dot(v, d);
         const F nd = dot(body.b, d), b = nd + k * dot(v, d);
-        const F disc = sqr(nd) - k * (two * dot(body.b, across) + k * dot(across, across));
+        const F disc = sqr(nd) - k * (two * dot(body.b, offset) + k * dot(offset, offset));
         const F root = sqrt(larger(disc, zero));
         const F sum = select(b > zero, -(b + root), root - b);  // avoids cancellation
-        const F near = (k * dot(v, v) + two * dot(body.b, v)) / select(sum == zero, number<F>(1e-30), sum);
-        return (disc > zero) & (within(near, lo, hi) | within(sum * body.radius, lo, hi));
+        const F nearest = (k * dot(v, v) + two * dot(body.b, v)) / select(sum == zero, number<F>(1e-30), sum);
+        return (disc > zero) & (within(nearest, lo, hi) | within(sum * body.radius, lo, hi));
     }
 };
 

@@ -64,7 +64,8 @@ public:
         std::array<std::size_t, kinds.size()> made{};
         const Renderer render = [&](const std::vector<RenderJob>& jobs) {
             std::vector<RenderEnd> out(jobs.size());
-            for (std::size_t k = 0; k < jobs.size(); ++k) out[k].made = made[std::stoul(jobs[k].view)]++ < most_renders;
+            for (std::size_t k = 0; k < jobs.size(); ++k)
+                out[k].is_made = made[std::stoul(jobs[k].view)]++ < most_renders;
             return out;
         };
         ProgressMonitor monitor;
