@@ -11,6 +11,7 @@
 #include <map>
 
 #include "base/errors.h"
+#include "base/whole_file.h"
 
 namespace crescent {
 namespace files_test {

@@ -1,7 +1,8 @@
 // The file without a name is one of O_TMPFILE, which linkat() gives a name.
-#include "base/files.h"
+#include "base/whole_file.h"
 
 #include <cerrno>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>

@@ -1,7 +1,7 @@
 // At each w_o: unusable draws are left out, one tree is grown for both samplers, the first stage looks at the draws
 // twice, and each difference that it finds is tested again with fresh draws of both. A and B draw from different
 // streams.
-#include "check/check.h"
+#include "check/against.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,11 +12,14 @@
 
 #include "base/parallel.h"
 #include "check/against_draws.h"
+#include "check/against_f.h"
+#include "check/check.h"
 #include "check/constants.h"
+#include "check/decide/sizes.h"
+#include "check/report/places.h"
 #include "check/report/print.h"
 #include "check/sources/check_case.h"
 #include "check/sources/decorators.h"
-#include "check/report/verdicts.h"
 #include "check/verdicts/statistics.h"
 #include "output/format.h"
 

@@ -6,6 +6,7 @@
 
 #include "check/constants.h"
 #include "check/estimate/observations.h"
+#include "check/verdicts/density.h"
 #include "check/verdicts/questions.h"
 
 namespace crescent::check {

@@ -5,6 +5,8 @@
 
 #include <map>
 
+#include "check/decide/sizes.h"
+#include "check/verdicts/density.h"
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {

@@ -1,13 +1,15 @@
 // f is compared within the change that a few roundings of the directions cause. Variances are ranked if the test of
 // their difference fails at both stages. If f is known only at A's draws, B's variance follows from them by p_A / p_B.
-#include "check/against_draws.h"
+#include "check/against_f.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "check/against_draws.h"
 #include "check/constants.h"
 #include "check/decide/check_at.h"
+#include "check/decide/tail.h"
 #include "check/estimate/source.h"
 #include "math/statistics.h"
 #include "output/format.h"

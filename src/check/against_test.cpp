@@ -1,8 +1,9 @@
 // Two samplers with known densities compared: distribution, f, and the ratio of their variances in closed form.
-#include "check/check.h"
+#include "check/against.h"
 
 #include <gtest/gtest.h>
 
+#include "check/check.h"
 #include "tests/support/checked.h"
 #include "tests/support/function_sampler.h"
 

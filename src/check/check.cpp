@@ -7,7 +7,10 @@
 
 #include "check/constants.h"
 #include "check/decide/check_sampler.h"
+#include "check/decide/efficiency.h"
+#include "check/decide/tail.h"
 #include "check/explain/causes.h"
+#include "check/report/pictures.h"
 #include "check/report/verdicts.h"
 #include "check/sources/check_case.h"
 #include "check/sources/decorators.h"

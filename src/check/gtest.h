@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "check/check.h"
+#include "check/report/summary.h"
 #include "check/user.h"
 
 namespace crescent {

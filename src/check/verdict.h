@@ -1,12 +1,10 @@
-// Verdicts: their list with the question that each answers, their messages with the numbers behind them, and the ones
-// that a caller expects.
+// Verdicts: their list with the question that each answers, and their messages with the numbers behind them.
 #pragma once
 
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -173,25 +171,5 @@ void note_first_failure(const std::string& what, Verdict& v);
 
 /// Sets the state of the result: verdicts that the caller does not expect, and expectations that no verdict meets.
 void next_step(CheckResult& result);
-
-// ---- Verdicts other than "right" that a caller expects: "phong support=wrong: it never reaches the horizon". An
-// expected verdict does not count; an expectation that no verdict meets any more does.
-//
-//   [ARM ]VERDICT=STATE: REASON      STATE is wrong or inconclusive; without ARM, or with *, of every arm
-
-/// One expectation, and its place in the input.
-struct Waiver {
-    std::string arm, verdict, reason;  // arm "": any
-    State state = State::wrong;
-    std::string place;  // "--expect" or "waivers.txt:3"
-};
-
-/// Each text is a waiver, or a file of waivers, one on each line, with comments from # on. Throws InputError with the
-/// place and the nearest known word.
-std::vector<Waiver> read_waivers(std::span<const std::string> texts);
-/// Throws InputError if a waiver names none of these arms.
-void check_waivers(std::span<const Waiver> waivers, std::span<const std::string> arms);
-/// Excludes waived verdicts from the state of the result, and lists waivers that no verdict meets.
-void waive(CheckResult& result, std::span<const Waiver> waivers);
 
 }  // namespace crescent

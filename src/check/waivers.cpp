@@ -1,6 +1,6 @@
 // A line is split at its first '=' and at the next ':'. Words are compared with the known verdicts, and arms with those
 // that are checked.
-#include "check/verdict.h"
+#include "check/waivers.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "base/input.h"
 #include "base/text.h"
+#include "check/verdict.h"
 
 namespace crescent {
 

@@ -1,5 +1,7 @@
 // Expectations of the caller: a waived verdict does not count, an unmatched expectation does, and an unknown word is
 // reported with its place and the nearest known one.
+#include "check/waivers.h"
+
 #include <fstream>
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 // The level is split: half for the regions (Holm), a quarter each for tiles and pixels (false discovery rate); within
 // each, half for Y and a sixth for each channel (Bonferroni). If some values are not finite, half of the whole level is
 // for them.
-#include "compare/noise.h"
+#include "compare/bias.h"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +13,10 @@
 
 #include "base/parallel.h"
 #include "compare/anytime.h"
-#include "compare/compare.h"
+#include "compare/noise.h"
 #include "compare/renders.h"
-#include "compare/outputs.h"
+#include "compare/shared_seeds.h"
+#include "compare/wording.h"
 #include "output/format.h"
 
 namespace crescent {

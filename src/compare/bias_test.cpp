@@ -1,5 +1,7 @@
 // Tests which differences are found, and by which test: values that are not finite, channels, equal seeds, identical
 // files.
+#include "compare/bias.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +9,7 @@
 #include <limits>
 
 #include "compare/plan.h"
+#include "compare/shared_seeds.h"
 #include "tests/support/memory_renders.h"
 
 namespace crescent {

@@ -6,8 +6,13 @@
 #include <fmt/format.h>
 
 #include "base/files.h"
-#include "compare/plan.h"
+#include "compare/bias.h"
+#include "compare/metrics.h"
 #include "compare/outputs.h"
+#include "compare/page.h"
+#include "compare/plan.h"
+#include "compare/plates.h"
+#include "compare/wording.h"
 #include "output/format.h"
 #include "report/plates/canvas.h"
 

@@ -3,58 +3,16 @@
 #pragma once
 
 #include "base/progress.h"
-#include "compare/outputs.h"
 #include "compare/plan.h"
 #include "compare/results.h"
+#include "report/report.h"
 
 namespace crescent {
 
 // ---- From RenderStats to results: the steps of compare_renders(), each usable alone.
 
-/// The cost of one render of an arm, if known.
-struct Cost {
-    std::optional<double> seconds, spp;
-};
-/// Mean FLIP over a region's pixels, if there is a reference: of radiance, and of the photographs.
-struct Flips {
-    std::optional<double> hdr, ldr;
-};
-
-/// Returns FLIP of the arm's first render, one per region; empty values without a reference.
-std::vector<Flips> measure_flip(
-    const ComparePlan& plan, const RenderStats& stats, std::size_t arm, ProgressMonitor& monitor);
-
-/// Returns every metric of one arm in one region.
-RegionResult measure_region(
-    const RenderStats& stats, const ArmStats& arm, std::size_t region, const Cost& cost, const Flips& flips);
-
 /// Returns the metrics of one arm in all regions.
 ArmResult measure_arm(const ComparePlan& plan, const RenderStats& stats, std::size_t arm, ProgressMonitor& monitor);
-
-/// Returns the mean over a region of the squared error of the reference's Y: over its files, else as its file states
-/// it, else estimated by roughness() from its differences from the arms.
-double reference_variance(const RenderStats& stats, std::size_t region);
-/// Returns the source of that error, in words.
-std::string reference_error_from(const ArmStats& reference);
-
-/// The level of a test of two arms, which all its tests share. `power_level`: of the stated power and of the
-/// differences that cannot be detected. `report_level`: of the reported regions, tiles and pixels; larger if several
-/// such tests share a level.
-struct BiasLevel {
-    double power_level, report_level;
-};
-/// Tests whether two arms (b = arms.size(): the reference) have the same expectation.
-BiasResult test_bias(const ComparePlan& plan, const RenderStats& stats, const CompareResult& result, std::size_t a,
-    std::size_t b, const BiasLevel& level, ProgressMonitor& monitor);
-
-/// Returns the result as one sentence; `alpha` is the level of its regions.
-std::string sentence_of(const RenderStats& stats, const BiasResult& bias, double alpha);
-/// Describes the pixels of a pair that differ because they are not finite; "" if there are none.
-std::string failing_pixels(const RenderStats& stats, const BiasResult& bias);
-
-/// Returns the sentences of all pairs, or of all but that of the result; of many pairs, those without a difference
-/// share one sentence.
-std::vector<std::string> found_about_means(const CompareResult& result, bool with_stated_pair = true);
 
 /// Finds where the variance of arm a differs from that of b.
 NoiseResult compare_noise(
@@ -82,9 +40,5 @@ struct CompareOptions {
 /// the text for the terminal. Throws InputError, OutputError, Interrupted.
 CompareResult compare_renders(const ComparePlan& plan, const CompareOptions& options, const Provenance& provenance,
     ProgressMonitor& monitor, std::string& summary);
-
-/// The assertions and the expectation that fail, as SARIF 2.1.0, at the compare file; file: "" without one.
-std::string compare_sarif(
-    const ComparePlan& plan, const CompareResult& result, const std::string& file, const Provenance& provenance);
 
 }  // namespace crescent

@@ -1,5 +1,7 @@
 // OpenEXR as renderers write it: scanlines or tiles, half or float, one part or many, layers with dotted names,
 // luminance and chroma, XYZ. Deep parts and data other than radiance (Cryptomatte, normals, depth, ...) are skipped.
+#include "compare/exr_render.h"
+
 #include "compare/exr_extra.h"
 #include "compare/renders.h"
 #include "images/exr_file.h"

@@ -1,5 +1,7 @@
 // Tests OpenEXR files of every kind: pixels as OpenEXR itself reads them, names of channels, primaries, and rejected
 // files.
+#include "compare/exr_render.h"
+
 #include <OpenEXR/ImfDeepFrameBuffer.h>
 #include <OpenEXR/ImfDeepScanLineOutputFile.h>
 #include <OpenEXR/ImfDoubleAttribute.h>

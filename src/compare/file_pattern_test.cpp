@@ -9,6 +9,7 @@
 
 #include "compare/plan.h"
 #include "compare/suite/suite.h"
+#include "compare/suite/suite_file.h"
 #include "tests/support/scratch_folder.h"
 
 namespace crescent {

@@ -1,6 +1,7 @@
 // Metrics with confidence intervals from RenderStats. Intervals are t intervals over renders, 95 %, cut at 0 if the
 // metric cannot be negative; for the squared bias by the jackknife, for counts by count_interval().
 // tests/calibration/results/compare.md has their measured coverage.
+#include "compare/metrics.h"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +9,9 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
-#include "compare/compare.h"
 #include "compare/plan.h"
 #include "compare/renders.h"
-#include "compare/outputs.h"
+#include "compare/wording.h"
 #include "math/functions.h"
 #include "math/statistics.h"
 #include "metrics/flip.h"

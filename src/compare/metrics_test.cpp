@@ -1,4 +1,6 @@
 // Metrics of renders with two pixels and means over renders, computed by hand.
+#include "compare/metrics.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

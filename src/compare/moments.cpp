@@ -1,5 +1,6 @@
 // Writes moments. Single renders are not stored. The tests receive values with the mean and the variance of the renders
 // instead: tests of means depend on nothing else. Which renders share random numbers is unknown.
+#include "compare/moments.h"
 
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -15,7 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
-#include "compare/moments.h"
+#include "compare/moments_reading.h"
 #include "compare/renders.h"
 #include "compare/results.h"
 #include "math/statistics.h"

@@ -1,4 +1,8 @@
-// The form of a file of moments, see renders.h: its attributes and the limits of what is read.
+// A baseline as moments: one OpenEXR file with the mean and the variance of each pixel over the renders of a view. Its
+// header has what the tests read from single renders (means of regions, spreads of tiles, largest deviations). R G B or
+// Y mean radiance, float; so the file is also a picture variance.Y variance of Y of one render, float deviation.R
+// deviation.G .B standard deviation of a channel of one render over "baseline.scale", half failed.N renders in which
+// the pixel is not finite, float; only if there are any 22 bytes per pixel in colour; a float render has 12.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +10,10 @@
 #include <vector>
 
 #include "compare/image_file.h"
+#include "compare/renders.h"
 #include "experiment/experiment.h"
 #include "images/open_file.h"
+#include "scene/scene_data.h"
 
 namespace crescent {
 
@@ -17,9 +23,6 @@ inline constexpr const char* moments_scale = "baseline.scale";
 
 /// The tests keep 100 bytes per render and tile: 400 MB for 512 tiles.
 inline constexpr std::size_t moments_renders_most = 8192;
-
-/// Returns the name of the header attribute with numbers of one kind.
-std::string moments_attribute(const char* kind, std::size_t region, std::size_t quantity);
 
 /// A region whose statistics the file has.
 struct MomentsRegion {
@@ -36,7 +39,10 @@ struct MomentsText {
     std::vector<MomentsRegion> regions;
 };
 
-/// Reads the text: types and ranges are checked for an image of this size. Throws InputError with the file and the key.
-MomentsText parse_moments_text(const std::string& text, const std::string& file, int width, int height);
+/// Returns whether the file contains moments.
+bool has_moments(const std::string& path);
+
+/// Writes one arm of `stats`. `constant`: all renders had the same pixels. Throws OutputError.
+void write_moments(const std::string& path, const RenderStats& stats, std::size_t arm, bool constant);
 
 }  // namespace crescent

@@ -1,6 +1,8 @@
 // Reads moments as if a stranger had written them: sizes before memory, types before use, finite numbers. The tests
 // receive values with the mean and the variance of the renders: tests of means depend on nothing else. Which renders
 // share random numbers is unknown.
+#include "compare/moments_reading.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

@@ -1,9 +1,11 @@
 // Moments of renders written to a file and read again.
+#include "compare/moments.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "compare/moments.h"
+#include "compare/moments_reading.h"
 #include "math/statistics.h"
 #include "tests/support/memory_renders.h"
 #include "tests/support/scratch_folder.h"

@@ -14,6 +14,7 @@
 
 #include "compare/compare.h"
 #include "compare/passes.h"
+#include "compare/shared_seeds.h"
 #include "math/functions.h"
 #include "math/statistics.h"
 #include "output/format.h"
@@ -90,7 +91,7 @@ NoiseResult compare_noise(
 }
 
 // ---- Finds renders of two arms with the same random numbers: those with the same number in their names, or with
-// correlated residuals (noise.h); and computes the images of their differences.
+// correlated residuals (shared_seeds.h); and computes the images of their differences.
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compare/compare.h"
+#include "compare/shared_seeds.h"
 #include "tests/support/synthetic_renders.h"
 
 namespace crescent {

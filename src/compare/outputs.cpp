@@ -7,9 +7,10 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "compare/compare.h"
-#include "compare/renders.h"
 #include "compare/plan.h"
+#include "compare/renders.h"
+#include "compare/shared_seeds.h"
+#include "compare/wording.h"
 #include "output/format.h"
 
 namespace crescent {

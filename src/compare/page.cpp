@@ -1,5 +1,7 @@
 // The page of a comparison, from its JSON alone; compare.html lays it out: the findings, the metrics with their
 // intervals, the pictures, the spectra, the files.
+#include "compare/page.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

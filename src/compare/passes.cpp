@@ -11,8 +11,10 @@
 #include "base/parallel.h"
 #include "compare/file_pattern.h"
 #include "compare/file_warnings.h"
-#include "compare/renders.h"
+#include "compare/moments_reading.h"
 #include "compare/noise.h"
+#include "compare/renders.h"
+#include "compare/shared_seeds.h"
 #include "math/statistics.h"
 #include "output/format.h"
 

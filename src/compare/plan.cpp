@@ -9,8 +9,11 @@
 #include <set>
 
 #include "experiment/experiment.h"
+#include "experiment/json_schema.h"
 #include "experiment/parser.h"
 #include "experiment/schema.h"
+#include "experiment/tree.h"
+#include "experiment/value.h"
 
 namespace crescent {
 

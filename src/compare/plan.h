@@ -11,8 +11,8 @@
 #include "compare/image_file.h"
 #include "experiment/assertion.h"
 #include "experiment/experiment.h"
-#include "experiment/parser.h"
 #include "experiment/schema.h"
+#include "experiment/tree.h"
 #include "output/tone_map.h"
 
 namespace crescent {
@@ -22,7 +22,7 @@ struct RenderArm {
     std::string name;
     SourceLocation location;
     std::vector<std::string> files;
-    bool moments = false;           // one file with the moments of the renders, see renders.h
+    bool moments = false;           // one file with the moments of the renders, see moments.h
     std::string layer;              // part or layer to read; "": the beauty
     std::optional<double> spp;      // samples per pixel of one render
     std::optional<double> seconds;  // the render time of one render

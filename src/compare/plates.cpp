@@ -1,19 +1,20 @@
 // The plates of a comparison, 1280x720: photographs of one render per arm, their errors on one scale, where arms differ
 // and where the noise differs. Instrument plates show radiance; photographs have passed the display chain.
-#include "compare/outputs.h"
+#include "compare/plates.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "compare/compare.h"
-#include "compare/renders.h"
 #include "compare/plan.h"
+#include "compare/renders.h"
+#include "compare/wording.h"
 #include "math/functions.h"
 #include "math/statistics.h"
 #include "metrics/metrics.h"
-#include "output/tone_map.h"
 #include "output/format.h"
+#include "output/tone_map.h"
 #include "report/plates/charts.h"
 #include "report/plates/sheet.h"
 

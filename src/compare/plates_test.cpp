@@ -1,10 +1,14 @@
 // Plates and the page of a comparison: which there are, colours of signed differences, and names that need escapes.
+#include "compare/plates.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "compare/compare.h"
+#include "compare/outputs.h"
+#include "compare/page.h"
 #include "output/stored_json.h"
 #include "tests/support/memory_renders.h"
 #include "tests/support/wellformed.h"

@@ -14,9 +14,12 @@
 
 #include "base/errors.h"
 #include "base/npy.h"
-#include "images/open_file.h"
+#include "compare/exr_render.h"
+#include "compare/moments_reading.h"
 #include "compare/passes.h"
 #include "compare/plan.h"
+#include "compare/view.h"
+#include "images/open_file.h"
 #include "output/tone_map.h"
 
 namespace crescent {

@@ -85,8 +85,7 @@ void convert(Render& render, const Matrix3& m);
 /// Converts r, g and b from X, Y and Z to linear Rec.709.
 void from_xyz(Render& render);
 
-// Readers of each format; read_render() selects one by the first bytes.
-Render read_exr(const OpenFile& file, const std::string& layer_name, const ReadingOptions& options);
+// Readers of the other formats; read_render() selects one by the first bytes.
 Render read_pfm(const OpenFile& file);
 Render read_npy(const OpenFile& file);
 
@@ -162,7 +161,7 @@ struct ArmStats {
     std::vector<std::uint32_t> not_finite;          // [pixel]: number of renders; empty: none
     std::vector<std::vector<std::uint32_t>>
         failed_groups;                        // [render][region]: groups of pixels that are not finite; empty: none
-    std::vector<std::vector<float>> sampled;  // [render]: residuals of some pixels, see noise.h
+    std::vector<std::vector<float>> sampled;  // [render]: residuals of some pixels, see shared_seeds.h
 };
 
 /// Two renders, by their indices in their arms.
@@ -263,30 +262,5 @@ inline JointP joint_p(std::span<const double> values) {
     }
     return out;
 }
-
-// ---- A baseline as moments: one OpenEXR file with the mean and the variance of each pixel over the renders of a view.
-// Its header has what the tests read from single renders (means of regions, spreads of tiles, largest deviations). R G
-// B or Y mean radiance, float; so the file is also a picture variance.Y variance of Y of one render, float deviation.R
-// deviation.G .B standard deviation of a channel of one render over "baseline.scale", half failed.N renders in which
-// the pixel is not finite, float; only if there are any 22 bytes per pixel in colour; a float render has 12.
-
-/// Returns whether the file contains moments.
-bool has_moments(const std::string& path);
-
-/// Writes one arm of `stats`. `constant`: all renders had the same pixels. Throws OutputError.
-void write_moments(const std::string& path, const RenderStats& stats, std::size_t arm, bool constant);
-
-/// The contents of the header, read without the pixels.
-struct MomentsHeader {
-    std::size_t renders = 0;
-    bool constant = false;
-};
-/// Reads the header of a file of moments. Throws InputError.
-MomentsHeader read_moments_header(const std::string& path);
-
-/// Reads the mean and the variance of each pixel, for the first pass; `weights` of R, G and B in Y. Throws InputError.
-void read_moments_film(const std::string& path, const Rgb& weights, RenderStats& stats, ArmStats& to);
-/// Reads the results of the second pass; the regions of `stats` must be among those of the file. Throws InputError.
-void read_moments_regions(const std::string& path, const ComparePlan& plan, const RenderStats& stats, ArmStats& to);
 
 }  // namespace crescent

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "compare/file_warnings.h"
-#include "compare/renders.h"
 #include "compare/noise.h"
+#include "compare/shared_seeds.h"
 #include "math/statistics.h"
 #include "metrics/metrics.h"
 

@@ -4,14 +4,15 @@
 // deviations, so bright events cannot decide the test. If K and L renders share m seeds, subtracting the means changes
 // the covariance of the residuals of renders with a shared seed to 1 - 1/K - 1/L + m/(K L) of that of their noise, and
 // that of other pairs to m/(K L) of it: less than half from K = L = 3 on.
-#include "compare/noise.h"
+#include "compare/shared_seeds.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "base/errors.h"
-#include "compare/outputs.h"
+#include "compare/noise.h"
+#include "compare/wording.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
 

@@ -1,5 +1,5 @@
 // All renders must have the windows, size and primaries of the first, or are converted to them.
-#include "compare/passes.h"
+#include "compare/view.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,4 +1,6 @@
 // Renders that do not fit each other, and files that change, as arms, pairs and reference.
+#include "compare/view.h"
+
 #include <cstring>
 #include <gmock/gmock.h>
 #include <sys/socket.h>

@@ -1,7 +1,7 @@
 // The variance of a mean over k renders is that of a pixel over k. If one file states no variance, it is estimated as
 // half the mean squared difference of neighbours, minus the other side's noise, times the ratio of noise at low to that
 // at high frequencies.
-#include "compare/outputs.h"
+#include "compare/wording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@
 
 #include "base/vec.h"
 #include "compare/anytime.h"
-#include "compare/compare.h"
-#include "compare/renders.h"
 #include "compare/plan.h"
+#include "compare/renders.h"
+#include "compare/shared_seeds.h"
 #include "math/functions.h"
 #include "math/statistics.h"
 #include "output/format.h"

@@ -1,9 +1,10 @@
 // The two sides of a test of means: noise of sets of pixels, and differences that the tests cannot detect.
+#include "compare/wording.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "compare/outputs.h"
 #include "tests/support/memory_renders.h"
 
 namespace crescent {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "experiment/parser.h"
+#include "experiment/value.h"
 #include "render/film_metrics.h"
 
 namespace crescent {

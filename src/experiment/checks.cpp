@@ -1,5 +1,7 @@
 // Checks that involve several values: names that must exist, boxes on the image, the camera's direction, shapes with an
 // extent, light.
+#include "experiment/checks.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,9 +11,11 @@
 #include <map>
 #include <set>
 
-#include "experiment/parser.h"
+#include "experiment/combinations.h"
 #include "experiment/experiment.h"
 #include "experiment/input_files.h"
+#include "experiment/parser.h"
+#include "experiment/value.h"
 #include "samplers/info.h"
 
 namespace crescent {

@@ -1,5 +1,5 @@
 // A combination and its parts are each made once, also if several combinations share a part.
-#include "experiment/experiment.h"
+#include "experiment/combinations.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,9 @@
 
 #include "base/errors.h"
 #include "base/vec.h"
+#include "experiment/experiment.h"
 #include "experiment/parser.h"
+#include "experiment/value.h"
 #include "math/simd/random.h"
 #include "render/combination.h"
 #include "render/kernel.h"

@@ -9,43 +9,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 #include "base/errors.h"
 #include "base/vec.h"
 #include "experiment/assertion.h"
+#include "experiment/published.h"
 #include "output/tone_map.h"
 #include "samplers/combination_plan.h"
 #include "samplers/sampler_adapter.h"
 #include "scene/scene_data.h"
 
 namespace crescent {
-
-// ---- Published values for an experiment, shown next to the measured ones. JSON:
-//   {"source": "...", "seed": 7, "runs": [{"arm": "cosine", "n": 64, "s": 32, "rmse.H": 7.66, ...}], "furnaces":
-//   {"NAME": 0.29}}
-// Metrics are named as in metrics.h: rmse.REGION, var.REGION, fireflies, horizon_frac, y_mean.
-
-/// Values that were published for an experiment, by arm, sample count, exponent and metric.
-class Published {
-public:
-    std::string source;
-    std::optional<std::uint32_t> seed;  // of the published run, if known
-
-    /// Returns empty if none was published.
-    std::optional<double> find(const std::string& arm, std::uint64_t n, double s, const std::string& metric) const;
-    /// Returns the value of the furnace of this name; empty if none was published.
-    std::optional<double> furnace(const std::string& name) const;
-
-    std::map<std::tuple<std::string, std::uint64_t, double, std::string>, double> runs;  // arm, n, s, metric
-    std::map<std::string, double> furnaces;
-};
-
-/// Returns nothing if `path` is empty; throws InputError if the file cannot be read or does not have the form above.
-std::optional<Published> load_published(const std::string& path);
-/// The same from text; `name` is the file's name in messages.
-Published parse_published(std::string_view text, const std::string& name);
 
 /// Reads a whole text file of at most 4 MiB; `what` names it in the InputError if it cannot be read.
 std::string read_text(const std::string& path, std::string_view what);
@@ -227,30 +202,13 @@ struct Experiment : SceneData {
 Experiment load(const std::string& path, const std::vector<std::string>& overrides = {});
 /// The same from text; `name` is the file's name in messages.
 Experiment parse(std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
-/// Returns the text of a file with these overrides as a file of its own. A value that is not given stays so: another
-/// key may decide it.
-std::string text_with_overrides(
-    std::string_view text, const std::string& name, const std::vector<std::string>& overrides);
 
 /// Returns the experiment with its files read: published values, meshes and its sky, where it names some and has none
 /// yet. Throws InputError.
 Experiment with_files(Experiment experiment);
 
-/// Returns a text as a string of TOML, in quotes.
-std::string toml_text(std::string_view text);
-
-/// Returns the experiment as a file that is read as the same experiment: every key with its effective value, in one
-/// layout.
-std::string canonical_text(const Experiment& experiment);
-/// Returns the identity of an experiment: XXH3 of every value but the number of seeds and, in place of their paths, of
-/// the published figures, the meshes with their textures and the sky, and of the contents of the files of samplers
-/// (input_files.h).
-/// Computed at each call, so that it is right for an experiment that was made or changed in code.
-std::uint64_t hash(const Experiment& experiment);
-
 /// Returns the keys with types, units, ranges and defaults, made from the table that parses them.
 std::string schema_text();
-std::string schema_json();
 
 // ---- Values derived from an experiment: names of its films, warnings, properties of its samplers, tables of its
 // lights.
@@ -305,24 +263,5 @@ struct LightTable {
 };
 /// Returns all lights of a scene except the fill, in its order: disks first.
 std::vector<LightTable> all_lights(const SceneData& scene);
-
-// ---- The combinations that an experiment declares, as samplers.
-
-/// Adds the combinations of an experiment to its external samplers, which must be there already. Throws InputError.
-void add_combinations(const Experiment& experiment, ExternalSamplers& samplers);
-
-// ---- The two parts of "path=value", as --set accepts it.
-
-/// Returns where the path ends: at the first '=' outside quotes; npos if there is none.
-inline std::size_t end_of_path(std::string_view override_text) {
-    char quote = 0;
-    for (std::size_t i = 0; i < override_text.size(); ++i) {
-        const char c = override_text[i];
-        if (quote) quote = c == quote ? '\0' : quote;
-        else if (c == '"' || c == '\'') quote = c;
-        else if (c == '=') return i;
-    }
-    return std::string_view::npos;
-}
 
 }  // namespace crescent

@@ -6,8 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "experiment/experiment.h"
-#include "experiment/parser.h"
+#include "experiment/identity.h"
+#include "experiment/json_schema.h"
+#include "experiment/overrides.h"
+#include "experiment/published.h"
 #include "experiment/schema.h"
+#include "experiment/schema_table.h"
 #include "tests/support/scene_text.h"
 
 namespace crescent {

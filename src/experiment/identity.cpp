@@ -1,5 +1,7 @@
 // The identity of an experiment, computed from its values: the text that contains all of them, and the hash of that
 // text.
+#include "experiment/identity.h"
+
 #include <fmt/format.h>
 #include <xxhash.h>
 
@@ -7,7 +9,9 @@
 #include <cmath>
 
 #include "experiment/input_files.h"
+#include "experiment/published.h"
 #include "experiment/schema.h"
+#include "experiment/schema_table.h"
 
 namespace crescent {
 

@@ -1,5 +1,7 @@
 // An experiment's identity is computed from its values: every value that changes an output changes it, and nothing else
 // does.
+#include "experiment/identity.h"
+
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +11,7 @@
 
 #include "experiment/experiment.h"
 #include "experiment/schema.h"
+#include "experiment/schema_table.h"
 #include "tests/support/scene_text.h"
 
 namespace crescent {

@@ -11,6 +11,7 @@
 #include "base/counted.h"
 #include "base/errors.h"
 #include "base/files.h"
+#include "experiment/identity.h"
 #include "experiment/parser.h"
 #include "scene/texture.h"
 

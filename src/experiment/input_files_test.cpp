@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "experiment/experiment.h"
+#include "experiment/identity.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scene_text.h"
 

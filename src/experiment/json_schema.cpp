@@ -1,11 +1,14 @@
 // `crescent schema --json`: the table as a JSON Schema of draft 7, the draft that TOML editors read (Taplo, Even Better
 // TOML). It contains the constraints on single values: type, range, words, the keys that a kind of shape needs. The
 // parser checks constraints on several values (names that must exist, unit vectors, boxes inside the image).
+#include "experiment/json_schema.h"
+
 #include <nlohmann/json.hpp>
 
 #include "experiment/assertion.h"
-#include "experiment/parser.h"
+#include "experiment/combinations.h"
 #include "experiment/schema.h"
+#include "experiment/schema_table.h"
 #include "samplers/info.h"
 
 namespace crescent {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 
-#include "experiment/experiment.h"
+#include "experiment/identity.h"
 #include "math/simd/math.h"
 #include "math/simd/scalar.h"
 

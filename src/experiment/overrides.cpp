@@ -1,12 +1,17 @@
 // --set path=value: the tree is changed before it is read, so that an override passes the same checks as the file. A
 // path is a full one (shapes.sphere.s) or starts at a name (sphere.s); list items are .0 or [0].
+#include "experiment/overrides.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 
-#include "experiment/experiment.h"
+#include "experiment/identity.h"
 #include "experiment/parser.h"
+#include "experiment/schema_table.h"
+#include "experiment/tree.h"
+#include "experiment/value.h"
 
 namespace crescent {
 

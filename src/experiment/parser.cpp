@@ -8,8 +8,15 @@
 #include <tuple>
 
 #include "base/input.h"
+#include "experiment/checks.h"
+#include "experiment/combinations.h"
 #include "experiment/experiment.h"
 #include "experiment/input_files.h"
+#include "experiment/overrides.h"
+#include "experiment/published.h"
+#include "experiment/schema_table.h"
+#include "experiment/tree.h"
+#include "experiment/value.h"
 #include "samplers/info.h"
 
 namespace crescent {

@@ -1,6 +1,6 @@
 // Published values from JSON. For wrong syntax the place in the file is known; for other errors a JSON pointer is
 // given.
-#include "experiment/experiment.h"
+#include "experiment/published.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
+#include "experiment/experiment.h"
 #include "output/stored_json.h"
 
 namespace crescent {

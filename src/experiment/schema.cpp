@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "experiment/assertion.h"
-#include "experiment/parser.h"
+#include "experiment/combinations.h"
+#include "experiment/schema_table.h"
 #include "samplers/info.h"
 
 namespace crescent {

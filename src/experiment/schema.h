@@ -113,13 +113,8 @@ struct Section {
     const Section* find_section(std::string_view section) const;
 };
 
-/// The whole file of an experiment.
-const Section& schema();
-
 /// Returns the manual of a table: a line or two per key, at most 80 columns.
 std::string manual_of(const Section& root);
-/// Returns the table as a JSON Schema, draft 7, under this title.
-std::string json_schema_of(const Section& root, const char* title);
 
 /// Returns whether a key belongs to this kind of shape; an empty kind (not known yet) has every key.
 bool has_kind(const Key& key, std::string_view kind);

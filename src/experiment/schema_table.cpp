@@ -1,4 +1,6 @@
 // The table itself. Lengths in scene units (m), y up; radiance in W/(sr m^2) as linear Rec.709; angles in degrees.
+#include "experiment/schema_table.h"
+
 #include "experiment/input_files.h"
 #include "experiment/schema.h"
 

@@ -1,5 +1,5 @@
 // TOML text -> Node, by toml++. TOML v1.0.0; lines and columns counted from 1.
-#include "experiment/parser.h"
+#include "experiment/tree.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

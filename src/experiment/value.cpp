@@ -1,4 +1,6 @@
 // Checks one TOML value against one key of the table: type, count, range, finite numbers, unit vectors, order.
+#include "experiment/value.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +9,7 @@
 
 #include "base/text.h"
 #include "experiment/parser.h"
+#include "experiment/tree.h"
 #include "math/functions.h"
 
 namespace crescent {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "backend.h"
+#include "egl_context.h"
 #include "pass.h"
 #include "program.h"
 

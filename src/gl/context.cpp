@@ -5,6 +5,8 @@
 
 #include "context.h"
 #include "crescent/crescent.h"
+#include "egl_context.h"
+#include "osmesa_context.h"
 
 namespace crescent::gl {
 

@@ -118,9 +118,4 @@ private:
 /// Returns it current. Throws InputError for an unknown device, OutputError if none is available.
 std::unique_ptr<Context> open_context(const BackendChoice& choice);
 
-std::unique_ptr<Context> open_egl(int device);
-std::unique_ptr<Context> open_osmesa();
-/// Returns none if EGL is missing.
-std::vector<BackendDevice> egl_devices();
-
 }  // namespace crescent::gl

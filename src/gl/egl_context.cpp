@@ -1,5 +1,7 @@
 // EGL without a surface: the devices of EGL_EXT_device_enumeration, a GPU's driver first, llvmpipe otherwise. Core 4.5
 // is requested, then 3.3.
+#include "egl_context.h"
+
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

@@ -1,6 +1,6 @@
 // OSMesa: Mesa's renderer on the CPU, without EGL or a driver. Core 3.3 is requested; Mesa returns the highest version
 // that is compatible with it.
-#include "context.h"
+#include "osmesa_context.h"
 
 // Mesa removed it in 25.1.
 #if __has_include(<GL/osmesa.h>)

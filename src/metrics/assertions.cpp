@@ -1,5 +1,6 @@
 // Both sides of an assertion are looked up in the measurements. What was not measured is NaN, and no comparison with
 // NaN holds. An RMSE dominated by the reference's own error cannot prove an assertion.
+#include "metrics/assertions.h"
 
 #include <algorithm>
 #include <cmath>

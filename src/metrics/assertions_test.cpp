@@ -1,4 +1,6 @@
 // Assertions on synthetic measurements with known answers.
+#include "metrics/assertions.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>

@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "base/vec.h"
+#include "experiment/published.h"
 #include "math/statistics.h"
 #include "render/estimator.h"
 #include "render/reference/lobe_albedo.h"

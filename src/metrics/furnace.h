@@ -8,6 +8,7 @@
 
 #include "base/progress.h"
 #include "experiment/experiment.h"
+#include "experiment/published.h"
 #include "math/statistics.h"
 #include "metrics/metrics.h"
 #include "render/shading_points.h"

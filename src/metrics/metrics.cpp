@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "base/errors.h"
+#include "experiment/published.h"
 #include "math/functions.h"
 #include "math/statistics.h"
 

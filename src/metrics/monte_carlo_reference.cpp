@@ -10,6 +10,7 @@
 #include "math/functions.h"
 #include "math/simd/random.h"
 #include "render/estimator.h"
+#include "render/reference/paired.h"
 #include "render/reference/reference.h"
 
 namespace crescent {

@@ -10,7 +10,7 @@
 #include "base/progress.h"
 #include "experiment/experiment.h"
 #include "render/film.h"
-#include "render/reference/reference.h"
+#include "render/reference/paired.h"
 #include "render/tiles.h"
 
 namespace crescent {

@@ -8,6 +8,7 @@
 
 #include "math/simd/random.h"
 #include "render/estimator.h"
+#include "render/reference/paired.h"
 #include "render/reference/reference.h"
 #include "samplers/all.h"
 #include "scene/lobes/all.h"

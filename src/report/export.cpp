@@ -7,6 +7,8 @@
 #include <string_view>
 
 #include "experiment/experiment.h"
+#include "experiment/overrides.h"
+#include "experiment/published.h"
 #include "output/format.h"
 #include "report/report.h"
 

@@ -8,6 +8,8 @@
 
 #include "base/errors.h"
 #include "experiment/experiment.h"
+#include "experiment/identity.h"
+#include "experiment/published.h"
 #include "output/stored_json.h"
 #include "report/report.h"
 

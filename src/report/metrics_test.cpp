@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
+#include "experiment/identity.h"
 #include "output/format.h"
 #include "tests/support/sample_report.h"
 #include "tests/support/scene_text.h"

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/errors.h"
+#include "experiment/combinations.h"
 #include "tests/support/test_scene.h"
 
 namespace crescent {

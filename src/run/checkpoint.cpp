@@ -20,6 +20,7 @@
 #include <xxhash.h>
 
 #include "base/machine.h"
+#include "experiment/identity.h"
 #include "run/checkpoint_items.h"
 #include "run/version.h"
 

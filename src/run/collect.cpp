@@ -10,7 +10,10 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "experiment/identity.h"
+#include "experiment/published.h"
 #include "metrics/article_checks.h"
+#include "metrics/assertions.h"
 #include "metrics/furnace.h"
 #include "metrics/metrics.h"
 #include "render/estimator.h"

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "experiment/identity.h"
 #include "render/estimator.h"
 #include "run/version.h"
 #include "tests/support/small_run.h"

@@ -14,8 +14,10 @@
 #include "metrics/monte_carlo_reference.h"
 #include "render/estimator.h"
 #include "render/kernel.h"
+#include "render/reference/paired.h"
 #include "render/reference/reference.h"
 #include "run/checkpoint.h"
+#include "run/external_samplers.h"
 #include "run/mis_warnings.h"
 #include "run/plan.h"
 

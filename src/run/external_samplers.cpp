@@ -1,6 +1,6 @@
-// A program (check/sources/external.h) has no limit to the whole; a library is opened there too. A wrapper
+// A program (check/sources/pipe.h) has no limit to the whole; a library is opened there too. A wrapper
 // around either puts the arm's name into what it throws.
-#include "run/execute.h"
+#include "run/external_samplers.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -10,6 +10,9 @@
 #include "base/errors.h"
 #include "check/sources/copies.h"
 #include "check/sources/external.h"
+#include "check/sources/pipe.h"
+#include "check/sources/plugin.h"
+#include "experiment/combinations.h"
 #include "experiment/experiment.h"
 
 namespace crescent {

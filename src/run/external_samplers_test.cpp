@@ -1,9 +1,10 @@
 // Samplers of arms that are not built in: which are opened, and the mistakes that name their arm.
+#include "run/external_samplers.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
-#include "run/execute.h"
 #include "tests/support/test_scene.h"
 
 namespace crescent {

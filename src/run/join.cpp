@@ -1,7 +1,7 @@
 // What does not depend on the seed must agree in all parts, and rows of one seed wherever two parts have it. Film
 // hashes, and values that compare references by films, are of a run's first seed: they come from the part that begins
 // with it. Tails are of the experiment's own seed in every part and are stored with the first seed.
-#include "run/collect.h"
+#include "run/join.h"
 
 #include <fmt/format.h>
 
@@ -17,6 +17,7 @@
 #include "base/input.h"
 #include "experiment/experiment.h"
 #include "output/format.h"
+#include "run/collect.h"
 #include "run/plan.h"
 
 namespace crescent {

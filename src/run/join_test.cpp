@@ -1,4 +1,6 @@
 // Parts of one experiment joined: the numbers of the whole; parts that do not belong together are refused.
+#include "run/join.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "check/decide/check_sampler.h"
+#include "check/decide/whole_sampler.h"
 #include "run/arm_cases.h"
 
 namespace crescent {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "run/execute.h"
+#include "run/external_samplers.h"
 #include "tests/support/test_scene.h"
 
 namespace crescent {

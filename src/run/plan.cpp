@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "base/machine.h"
+#include "experiment/identity.h"
 #include "math/simd/random.h"
 #include "render/film.h"
 #include "render/tiles.h"

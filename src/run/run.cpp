@@ -15,6 +15,7 @@
 #include "base/progress.h"
 #include "run/checkpoint.h"
 #include "run/execute.h"
+#include "run/external_samplers.h"
 #include "run/plan.h"
 
 namespace crescent {

@@ -13,6 +13,7 @@
 #include <filesystem>
 
 #include "base/progress.h"
+#include "experiment/identity.h"
 
 namespace crescent {
 namespace run_test {

@@ -13,6 +13,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "experiment/experiment.h"
+#include "metrics/assertions.h"
 #include "metrics/metrics.h"
 #include "report/plates/canvas.h"
 #include "report/plates/plates.h"

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/errors.h"
+#include "scene/mesh/bvh_build.h"
 #include "scene/mesh/bvh_tree.h"
 
 namespace crescent {

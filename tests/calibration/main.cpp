@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "base/errors.h"
-#include "check/sources/external.h"
 #include "check/sources/check_case.h"
+#include "check/sources/pipe.h"
 #include "math/statistics.h"
 #include "tests/calibration/records.h"
 #include "tests/calibration/serve.h"

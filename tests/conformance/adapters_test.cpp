@@ -2,6 +2,7 @@
 // off is found through each.
 #include <gtest/gtest.h>
 
+#include "check/report/summary.h"
 #include "crescent/adapters/nori.h"
 #include "crescent/adapters/openpbr.h"
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "check/against.h"
 #include "check/check.h"
 #include "check/sources/sample_file.h"
 #include "tests/known_samplers/correct/right.h"

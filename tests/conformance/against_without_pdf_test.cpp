@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "check/against.h"
 #include "check/check.h"
 #include "math/functions.h"
 #include "tests/known_samplers/correct/right.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compare/plan.h"
+#include "compare/results.h"
 #include "tests/support/synthetic_renders.h"
 
 namespace crescent {

@@ -12,6 +12,7 @@
 #include "render/reference/reference.h"
 #include "run/arm_cases.h"
 #include "run/execute.h"
+#include "run/external_samplers.h"
 #include "tests/support/scene_text.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_scene.h"

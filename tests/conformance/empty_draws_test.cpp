@@ -2,6 +2,7 @@
 // without.
 #include <gtest/gtest.h>
 
+#include "check/report/summary.h"
 #include "tests/known_samplers/correct/right.h"
 #include "tests/support/checked.h"
 

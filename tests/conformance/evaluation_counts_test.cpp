@@ -7,8 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
+#include "check/against.h"
 #include "check/check.h"
-#include "check/report/print.h"
+#include "check/report/summary.h"
 #include "check/sources/cases.h"
 #include "check/sources/decorators.h"
 #include "check/sources/check_case.h"

@@ -2,6 +2,7 @@
 // expected verdict, and correct ones pass. tests/calibration measures many more.
 #include <gtest/gtest.h>
 
+#include "check/report/summary.h"
 #include "tests/known_samplers/study/false_alarms.h"
 #include "tests/known_samplers/faulty/planted.h"
 #include "tests/known_samplers/reported/known.h"

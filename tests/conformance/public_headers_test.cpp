@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "check/gtest.h"
-#include "check/report/print.h"
+#include "check/report/summary.h"
 #include "check/verdict.h"
 
 namespace crescent {

@@ -8,6 +8,7 @@
 #include "check/report/print.h"
 #include "check/sources/cases.h"
 #include "check/sources/external.h"
+#include "check/sources/pipe.h"
 #include "tests/support/checked.h"
 #include "tests/support/sanitized.h"
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "check/report/print.h"
+#include "check/report/summary.h"
 #include "check/sources/sample_file.h"
 #include "check/user.h"
 #include "math/simd/frame.h"

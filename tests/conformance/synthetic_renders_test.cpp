@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "compare/renders.h"
+
 namespace crescent {
 namespace synthetic_test {
 

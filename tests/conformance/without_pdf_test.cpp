@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "check/check.h"
+#include "check/report/html.h"
 #include "check/report/print.h"
+#include "check/report/summary.h"
 #include "check/sources/cases.h"
 #include "math/functions.h"
 #include "tests/known_samplers/correct/right.h"

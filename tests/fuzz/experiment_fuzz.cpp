@@ -7,6 +7,8 @@
 
 #include "experiment/assertion.h"
 #include "experiment/experiment.h"
+#include "experiment/identity.h"
+#include "experiment/published.h"
 
 namespace {
 

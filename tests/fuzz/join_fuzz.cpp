@@ -6,8 +6,10 @@
 
 #include "base/errors.h"
 #include "experiment/experiment.h"
+#include "experiment/identity.h"
 #include "output/format.h"
 #include "run/collect.h"
+#include "run/join.h"
 
 namespace {
 

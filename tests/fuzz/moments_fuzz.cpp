@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "compare/compare.h"
-#include "compare/moments.h"
+#include "compare/moments_reading.h"
 #include "compare/plan.h"
 #include "compare/renders.h"
 #include "memory_file.h"

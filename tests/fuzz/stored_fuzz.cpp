@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "check/report/print.h"
+#include "check/report/html.h"
 #include "check/report/result_json.h"
-#include "compare/outputs.h"
+#include "compare/page.h"
 #include "memory_file.h"
 #include "output/stored_json.h"
 #include "run/stored_run.h"

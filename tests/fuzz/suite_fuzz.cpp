@@ -5,6 +5,7 @@
 
 #include "compare/plan.h"
 #include "compare/suite/suite.h"
+#include "compare/suite/suite_file.h"
 #include "memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -19,6 +19,7 @@
 #include "metrics/flip.h"
 #include "metrics/monte_carlo_reference.h"
 #include "render/estimator.h"
+#include "render/reference/paired.h"
 #include "render/reference/reference.h"
 #include "tests/portability/plain.h"
 

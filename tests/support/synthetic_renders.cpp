@@ -14,7 +14,9 @@
 #include <numbers>
 
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "base/vec.h"
+#include "compare/compare.h"
 #include "compare/plan.h"
 #include "math/functions.h"
 #include "math/simd/random.h"

@@ -1,9 +1,13 @@
 // Synthetic renders with known true values: for the tests, and for docs/error-rates.md.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
-#include "compare/compare.h"
+#include "compare/plan.h"
+#include "compare/renders.h"
+#include "compare/results.h"
 
 namespace crescent {
 

@@ -37,7 +37,7 @@ for name in OpenEXR Imath Boost tomlplusplus hwy PNG PkgConfig; do none+=("-DCMA
 cat >plugin.cpp <<'END'
 #include <cstdio>
 
-#include <crescent/check/sources/external.h>
+#include <crescent/check/sources/plugin.h>
 
 int main(int, char** words) {
     std::puts("main");

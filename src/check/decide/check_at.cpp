@@ -9,9 +9,14 @@
 
 #include "base/progress.h"
 #include "check/constants.h"
+#include "check/decide/delta_directions.h"
+#include "check/decide/resolution.h"
+#include "check/decide/sizes.h"
 #include "check/decide/small_tests.h"
 #include "check/decide/two_stages.h"
 #include "check/estimate/source.h"
+#include "check/verdicts/counts.h"
+#include "check/verdicts/light.h"
 #include "check/verdicts/statistics.h"
 
 namespace crescent::check {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "check/constants.h"
+#include "check/decide/sizes.h"
 #include "math/functions.h"
 #include "math/simd/frame.h"
 #include "tests/support/function_sampler.h"

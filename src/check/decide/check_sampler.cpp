@@ -15,6 +15,8 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "check/constants.h"
+#include "check/decide/tail.h"
+#include "check/decide/whole_sampler.h"
 #include "check/sources/check_case.h"
 
 namespace crescent::check {

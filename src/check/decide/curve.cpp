@@ -1,5 +1,7 @@
 // Draws on a curve: the derivatives of sample(u) with respect to all of its numbers are parallel. A density over solid
 // angle then cannot be right, for any value that it has.
+#include "check/decide/curve.h"
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,11 +1,12 @@
 // A boundary is flat if it reflects to the mirror direction or, if it reflects nothing, if its refracted direction
 // rotates with w_o about n.
-#include "check/decide/small_tests.h"
+#include "check/decide/delta_directions.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "check/constants.h"
+#include "check/decide/small_tests.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 

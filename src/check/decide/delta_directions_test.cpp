@@ -1,10 +1,11 @@
 // Samplers with delta parts: right samplers have right verdicts, and each fault of a part makes the expected verdict
 // wrong.
-#include "check/decide/small_tests.h"
+#include "check/decide/delta_directions.h"
 
 #include <gtest/gtest.h>
 
 #include "check/decide/check_at.h"
+#include "check/decide/small_tests.h"
 
 namespace crescent::check {
 namespace delta_directions_test {

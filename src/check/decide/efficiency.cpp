@@ -1,5 +1,5 @@
 // Intervals are two standard errors of the logarithm. Times vary between runs and are stored separately.
-#include "check/decide/check_sampler.h"
+#include "check/decide/efficiency.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,8 @@
 
 #include "base/parallel.h"
 #include "check/constants.h"
-#include "check/decide/check_at.h"
+#include "check/decide/check_sampler.h"
+#include "check/decide/tail.h"
 #include "check/estimate/observations.h"
 #include "check/sources/check_case.h"
 #include "math/functions.h"

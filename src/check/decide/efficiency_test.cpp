@@ -1,8 +1,9 @@
 // Known variances, and ranks by them.
-#include "check/decide/check_sampler.h"
+#include "check/decide/efficiency.h"
 
 #include <gtest/gtest.h>
 
+#include "check/decide/check_sampler.h"
 #include "check/sources/cases.h"
 
 namespace crescent::check {

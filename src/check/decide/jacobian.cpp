@@ -3,6 +3,8 @@
 // one of which only selects a branch, p |dw/du| is at least the measure of the values of that number that select this
 // branch. They may be several intervals, such as those of an alias table. The test detects parameters that differ
 // between sample and pdf by less than the draws of a quick check can show.
+#include "check/decide/jacobian.h"
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,11 +1,12 @@
 // The effect of the resolution of random numbers. A threshold within a sampler, such as that between two entries of an
 // alias table, lies between two multiples of 2^-24, and a draw on that step belongs to one side only. The chance of a
 // draw to be on such a step bounds the share of the draws that the resolution can move.
+#include "check/decide/resolution.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "check/constants.h"
-#include "check/decide/small_tests.h"
 #include "math/functions.h"
 
 namespace crescent::check {

@@ -1,15 +1,18 @@
 // A fault of size e shifts the difference of a test by e times its effect, and adds e times the variance of its draws.
 // It is found if the difference passes both stages. The second stage has as many draws and points as the first and a
 // less extreme level for one member, so nearly all differences that pass the first stage pass it too.
-#include "check/decide/check_at.h"
+#include "check/decide/sizes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 
 #include "check/constants.h"
+#include "check/verdicts/density.h"
 #include "check/verdicts/statistics.h"
+#include "check/verdicts/sums.h"
 #include "math/functions.h"
 #include "math/simd/frame.h"
 #include "math/statistics.h"
@@ -640,8 +643,10 @@ Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t dr
 DifferenceSizes sizes_between(const Evidence& e, double level, std::span<const Vec3d> centres) {
     DifferenceSizes out;
     const double h = e.plan.largest_h();
+    std::array<std::optional<double>, 3> along;  // each axis
     for (const SumTest& t : whole_sums(e, level))
-        if (t.sum >= centre_x) take_less(out.distance, t.requirement.difference() / (t.visible * h));
+        if (t.sum >= centre_x) take_less(along[t.sum - centre_x], t.requirement.difference() / (t.visible * h));
+    out.distance = *std::ranges::max_element(along);
     const std::vector<NodeSums> sums = node_sums(e);
     Sample sample;
     for (Vec3d w : centres) {

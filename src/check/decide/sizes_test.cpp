@@ -1,5 +1,5 @@
 // Sizes that a right verdict may hide, and how they compare with their targets.
-#include "check/decide/check_at.h"
+#include "check/decide/sizes.h"
 
 #include <gtest/gtest.h>
 

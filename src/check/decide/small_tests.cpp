@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "check/constants.h"
+#include "check/decide/curve.h"
+#include "check/decide/jacobian.h"
 #include "samplers/domains/sphere_chart.h"
 
 namespace crescent::check {

@@ -7,6 +7,9 @@
 #include <vector>
 
 #include "check/constants.h"
+#include "check/decide/curve.h"
+#include "check/decide/jacobian.h"
+#include "check/decide/resolution.h"
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {

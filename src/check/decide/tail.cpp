@@ -1,10 +1,11 @@
 // A tail is heavy if the interval of its index is at or above 1/2, and open if the interval contains 1/2.
-#include "check/decide/check_at.h"
+#include "check/decide/tail.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "check/decide/check_at.h"
 #include "math/functions.h"
 
 namespace crescent::check {

@@ -1,10 +1,10 @@
 // Cosine powers on Lambert have a known Pareto index; lobes that leave Lambert's light to directions they rarely draw
 // have an unseen tail.
-#include "check/decide/check_at.h"
+#include "check/decide/tail.h"
 
 #include <gtest/gtest.h>
 
-#include "check/report/verdicts.h"
+#include "check/decide/check_at.h"
 
 namespace crescent::check {
 namespace tail_test {

@@ -1,6 +1,6 @@
 // Directions exactly on axes, planes and the horizon, and one ulp next to them, as w_o and as w_i: a few calls at each,
 // which must return usable numbers.
-#include "check/decide/check_sampler.h"
+#include "check/decide/whole_sampler.h"
 
 #include <algorithm>
 #include <cmath>

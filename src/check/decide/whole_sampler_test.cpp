@@ -1,10 +1,11 @@
 // Tests of a sampler that belong to no w_o: directions on axes, reciprocity, weights of techniques.
+#include "check/decide/whole_sampler.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "check/constants.h"
-#include "check/decide/check_sampler.h"
 #include "tests/support/function_sampler.h"
 
 namespace crescent::check {

@@ -7,8 +7,19 @@
 #include <fmt/format.h>
 #include <functional>
 
+#include "check/decide/jacobian.h"
 #include "check/explain/constants.h"
-#include "check/decide/small_tests.h"
+#include "check/explain/domain_causes.h"
+#include "check/explain/factors.h"
+#include "check/explain/frames.h"
+#include "check/explain/hypothesis.h"
+#include "check/explain/known_forms.h"
+#include "check/explain/lobes.h"
+#include "check/explain/reciprocal_weights.h"
+#include "check/explain/regression.h"
+#include "check/explain/spread.h"
+#include "check/explain/warps.h"
+#include "check/explain/weights.h"
 #include "output/format.h"
 
 namespace crescent::check {

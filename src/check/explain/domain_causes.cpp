@@ -1,11 +1,13 @@
 // Candidate causes over domains other than directions. A move of the points, such as an exchange of two coordinates,
 // gives the supposed density p(move(x)) times the change of measure.
+#include "check/explain/domain_causes.h"
+
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
 
-#include "check/explain/causes.h"
 #include "check/explain/constants.h"
+#include "check/explain/factors.h"
 #include "math/functions.h"
 
 namespace crescent::check {

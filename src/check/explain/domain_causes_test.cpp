@@ -1,4 +1,6 @@
 // Samplers of points with one fault each: the cause that the verdict of the density names.
+#include "check/explain/domain_causes.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>

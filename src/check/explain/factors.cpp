@@ -1,14 +1,15 @@
 // Equations of refraction: Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces".
-#include "check/explain/causes.h"
+#include "check/explain/factors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "check/explain/constants.h"
-#include "samplers/domains/sphere_chart.h"
+#include "check/explain/domain_causes.h"
 #include "math/functions.h"
 #include "math/simd/frame.h"
+#include "samplers/domains/sphere_chart.h"
 
 namespace crescent::check {
 

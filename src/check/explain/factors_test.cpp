@@ -1,11 +1,12 @@
 // Factors of a density, the numbers with a name, and ratios that have a simple cause.
-#include "check/explain/causes.h"
+#include "check/explain/factors.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "check/estimate/stream.h"
+#include "check/explain/regression.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

@@ -1,11 +1,12 @@
 // Named frames are tested with a few hundred draws. Rotations are searched first with the densities of the tree, which
 // costs no evaluations, and then with p itself.
-#include "check/explain/causes.h"
+#include "check/explain/frames.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "check/explain/constants.h"
+#include "check/explain/domain_causes.h"
 #include "math/simd/frame.h"
 
 namespace crescent::check {

@@ -1,7 +1,8 @@
 // Draws in another frame than p: mirrored, and turned by an angle that is measured.
+#include "check/explain/frames.h"
+
 #include <gtest/gtest.h>
 
-#include "check/explain/causes.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/decide/jacobian.h"
 #include "check/explain/constants.h"
 #include "check/sources/check_case.h"
 

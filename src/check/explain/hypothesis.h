@@ -11,38 +11,10 @@
 #include <vector>
 
 #include "check/decide/check_sampler.h"
-#include "check/decide/small_tests.h"
+#include "check/decide/jacobian.h"
 #include "check/estimate/source.h"
 
 namespace crescent::check {
-
-// ---- Poisson regression of counts on the logarithms of factors: observed ~ expected exp(a_group + sum of b_k x_k),
-// with a constant for each group (a w_o). McCullagh and Nelder 1989, "Generalized Linear Models", chapter 6.
-
-/// One cell: observed and expected draws, the variance of the expectation, and the logarithms of the factors.
-struct Row {
-    std::size_t group = 0;
-    double observed = 0, expected = 0, variance = 0;
-    double unit = 1;  // variance of one count over its mean
-    std::vector<double> x;
-};
-
-/// Exponents of the selected factors with standard errors, and the remaining misfit.
-struct Fit {
-    std::vector<std::size_t> factors;
-    std::vector<double> exponents, errors;
-    std::vector<double> constants;  // exp(a) by group
-    double likelihood = 0;
-    double misfit = 0;  // mean squared standardised residual; 1 if the fit explains everything
-};
-
-/// Fits the exponents by Newton's method; the constants follow from them.
-Fit fit(std::span<const Row> rows, std::size_t groups, std::vector<std::size_t> factors);
-/// Mean squared standardised residual of the unchanged expectation.
-double misfit_of(std::span<const Row> rows);
-/// Forward selection: adds the factor with the largest gain in likelihood if that gain exceeds what chance gives to one
-/// of many (BIC and `least_gain`).
-Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, std::size_t largest_count);
 
 /// For a sampler whose density alone is tested.
 inline void without_f(SamplerDeclaration& declaration) {

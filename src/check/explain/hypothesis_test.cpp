@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "check/explain/causes.h"
+#include "check/explain/factors.h"
+#include "check/explain/regression.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

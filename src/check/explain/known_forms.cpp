@@ -1,14 +1,17 @@
 // Ratios of draws to p with a parameter that is not stated, from the derivatives of the map, which have no noise: the
 // shadowing of the other direction, whose roughness is fitted; and the distance and cosine at a light in a plane.
-#include "check/explain/causes.h"
+#include "check/explain/known_forms.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <numeric>
 
+#include "check/explain/causes.h"
 #include "check/explain/constants.h"
+#include "check/explain/factors.h"
 #include "check/explain/hypothesis.h"
+#include "check/explain/regression.h"
 #include "math/statistics.h"
 #include "output/format.h"
 

@@ -1,9 +1,10 @@
 // Distance and cosine at a light in a plane, and the shadowing of the other direction.
+#include "check/explain/known_forms.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "check/explain/causes.h"
 #include "math/simd/frame.h"
 #include "tests/support/explained.h"
 

@@ -1,13 +1,14 @@
 // The ends of the lobes are jumps of the direction along one number, at the same position for all values of the others.
 // By (1), the integral of h p over a cell is the sum over lobes of x times the mean of h over draws of that lobe, with
 // x = 1 if p has the lobe as it is drawn. Weighted least squares over cells gives x.
-#include "check/explain/causes.h"
+#include "check/explain/lobes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "check/explain/causes.h"
 #include "check/explain/constants.h"
 #include "math/statistics.h"
 #include "output/format.h"

@@ -1,7 +1,8 @@
 // Lobes that one random number selects: their intervals, and the probabilities with which they are drawn.
+#include "check/explain/lobes.h"
+
 #include <gtest/gtest.h>
 
-#include "check/explain/causes.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

@@ -1,15 +1,18 @@
 // Causes for random weights W that estimate 1/p. With W times a candidate factor the draws must give the integral of h
 // in every region: then the factor is the cause. The draws and their points are fresh.
+#include "check/explain/reciprocal_weights.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <vector>
 
-#include "check/explain/constants.h"
 #include "check/decide/check_sampler.h"
 #include "check/estimate/source.h"
 #include "check/explain/causes.h"
+#include "check/explain/constants.h"
+#include "check/explain/factors.h"
 #include "check/sources/neighbours.h"
 #include "math/statistics.h"
 #include "output/format.h"

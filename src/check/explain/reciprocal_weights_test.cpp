@@ -1,4 +1,6 @@
 // Causes of random weights W: a reservoir of two candidates, one of which may have no target.
+#include "check/explain/reciprocal_weights.h"
+
 #include <gtest/gtest.h>
 
 #include "check/explain/causes.h"

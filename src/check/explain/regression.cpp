@@ -1,12 +1,13 @@
 // Poisson regression by Newton's method: the ratio of observed to expected draws of a leaf, explained by the logarithms
 // of candidate factors. Factors are added one at a time, the one with the largest gain in likelihood first.
-#include "check/explain/hypothesis.h"
+#include "check/explain/regression.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "check/explain/constants.h"
-#include "check/explain/causes.h"
+#include "check/explain/factors.h"
+#include "check/explain/hypothesis.h"
 #include "math/functions.h"
 #include "math/statistics.h"
 

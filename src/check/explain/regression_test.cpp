@@ -1,5 +1,5 @@
 // Synthetic counts with known exponents.
-#include "check/explain/hypothesis.h"
+#include "check/explain/regression.h"
 
 #include <gtest/gtest.h>
 

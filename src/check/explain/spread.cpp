@@ -1,13 +1,14 @@
 // Uses the counts and densities of the leaves.
-#include "check/explain/causes.h"
+#include "check/explain/spread.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <tuple>
 
-#include "check/explain/constants.h"
 #include "check/decide/small_tests.h"
+#include "check/explain/causes.h"
+#include "check/explain/constants.h"
 #include "output/format.h"
 
 namespace crescent::check {

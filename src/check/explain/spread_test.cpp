@@ -1,7 +1,8 @@
 // The place of the draws: a uniform share, a curve, a part of where p is positive.
+#include "check/explain/spread.h"
+
 #include <gtest/gtest.h>
 
-#include "check/explain/causes.h"
 #include "math/functions.h"
 #include "tests/support/explained.h"
 

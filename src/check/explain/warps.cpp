@@ -2,12 +2,14 @@
 // sqrt(u1) for the radius in a disk. With v = u^a in place of a uniform u, the density of the map at v is that of p
 // times du/dv = a v^((a - 1) / a), which the derivatives of the map show without noise. The corrected sampler is then
 // checked.
-#include "check/explain/causes.h"
+#include "check/explain/warps.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "check/decide/jacobian.h"
+#include "check/explain/causes.h"
 #include "check/explain/constants.h"
 #include "check/explain/hypothesis.h"
 

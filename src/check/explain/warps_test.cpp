@@ -1,9 +1,10 @@
 // A root that is missing in sample, or taken once too often, is named with its number.
+#include "check/explain/warps.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "check/explain/causes.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

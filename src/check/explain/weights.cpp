@@ -1,14 +1,16 @@
 // Uses fresh draws at up to three w_o where a test of them failed.
-#include "check/explain/causes.h"
+#include "check/explain/weights.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
 
-#include "check/explain/constants.h"
 #include "check/decide/check_sampler.h"
-#include "check/explain/hypothesis.h"
+#include "check/decide/whole_sampler.h"
+#include "check/explain/causes.h"
+#include "check/explain/constants.h"
+#include "check/explain/factors.h"
 
 namespace crescent::check {
 

@@ -1,7 +1,8 @@
 // Causes for weights and f, whose ratio to the expected value is known at every draw.
+#include "check/explain/weights.h"
+
 #include <gtest/gtest.h>
 
-#include "check/explain/causes.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

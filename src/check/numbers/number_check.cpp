@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "check/constants.h"
-#include "check/decide/check_at.h"
+#include "check/decide/tail.h"
 #include "check/estimate/stream.h"
 #include "math/statistics.h"
 #include "output/format.h"

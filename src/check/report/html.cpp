@@ -1,9 +1,11 @@
 // The model of the HTML page of a result: check.html and the templates that it includes lay it out.
+#include "check/report/html.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
-#include "check/report/print.h"
+#include "check/report/summary.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 #include "output/charts.h"

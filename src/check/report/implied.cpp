@@ -1,12 +1,12 @@
 // The cells are nodes of the tree, cut while their halves have enough draws. A bin of a map takes its share of each
 // leaf, since both are rectangles of the same chart. Counts have binomial standard errors.
-#include "check/constants.h"
-#include "check/report/verdicts.h"
+#include "check/report/implied.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
+#include "check/constants.h"
 #include "output/format.h"
 
 namespace crescent::check {

@@ -1,5 +1,5 @@
 // Bins need not align with leaves: a leaf is divided by area, and leaves are small where mass is.
-#include "check/report/verdicts.h"
+#include "check/report/pictures.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <functional>
 
+#include "check/decide/tail.h"
 #include "math/functions.h"
 #include "math/simd/scalar.h"
 

@@ -1,9 +1,10 @@
 // Maps sum to the draws, follow the lobe, and show differences.
-#include "check/report/verdicts.h"
+#include "check/report/pictures.h"
 
 #include <gtest/gtest.h>
 #include <numeric>
 
+#include "check/decide/tail.h"
 #include "check/sources/cases.h"
 
 namespace crescent::check {

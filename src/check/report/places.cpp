@@ -1,11 +1,12 @@
 // Where draws and p differ, as shares: of the draws that fall in a region, and of p that it has there. The regions are
 // nodes of the tree, which are rectangles of the chart. Draws are counted; p is integrated by the points of the leaves.
+#include "check/report/places.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "check/constants.h"
-#include "check/report/verdicts.h"
 #include "output/format.h"
 
 namespace crescent::check {

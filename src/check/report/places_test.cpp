@@ -1,8 +1,9 @@
 // The shares of draws and p in the named region, and their concentration.
+#include "check/report/places.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "check/report/verdicts.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

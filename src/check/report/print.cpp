@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/text.h"
+#include "check/report/summary.h"
 #include "check/verdict.h"
 #include "output/format.h"
 

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "check/report/html.h"
+
 namespace crescent {
 namespace print_test {
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/errors.h"
+#include "check/report/html.h"
 #include "check/report/print.h"
 
 namespace crescent {

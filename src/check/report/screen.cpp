@@ -1,7 +1,7 @@
 // The first view of one sampler on a terminal, in at most 12 lines. Wrong verdicts come first, each with its place and
 // size, the first also with its cause and the next step; then right ones, and what they could hide. The layout is the
 // fullest of several that has room.
-#include "check/report/print.h"
+#include "check/report/screen.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -9,6 +9,8 @@
 #include <optional>
 #include <set>
 
+#include "check/report/print.h"
+#include "check/report/summary.h"
 #include "check/verdict.h"
 
 namespace crescent {

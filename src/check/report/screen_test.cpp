@@ -1,5 +1,5 @@
 // The first view of one sampler: its order, its limit of rows, and rows that fit a terminal.
-#include "check/report/print.h"
+#include "check/report/screen.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

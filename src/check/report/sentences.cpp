@@ -1,11 +1,14 @@
 // Each sentence is computed only from the numbers of the finding. The verdict that contains it names w_o.
-#include "check/report/verdicts.h"
+#include "check/report/sentences.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "check/constants.h"
+#include "check/decide/sizes.h"
+#include "check/report/implied.h"
+#include "check/report/places.h"
 #include "output/format.h"
 
 namespace crescent::check {

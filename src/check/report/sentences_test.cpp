@@ -1,9 +1,10 @@
 // What a verdict states without a fault: its limits, and the density that draws without pdf(w) imply.
-#include "check/report/verdicts.h"
+#include "check/report/sentences.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "check/report/implied.h"
 #include "tests/support/explained.h"
 
 namespace crescent::check {

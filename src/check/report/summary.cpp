@@ -1,6 +1,6 @@
 // Verdicts of one arm with equal name and state form one finding, described by the one with the largest deviation.
 // Other sentences follow with their w_o.
-#include "check/report/print.h"
+#include "check/report/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "check/report/print.h"
 #include "check/sources/check_case.h"
 #include "check/verdict.h"
 #include "math/functions.h"

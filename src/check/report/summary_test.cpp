@@ -1,9 +1,11 @@
 // The text of a failing test for a result: few lines, in a fixed order, in calls of C++.
-#include "check/report/print.h"
+#include "check/report/summary.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
+
+#include "check/report/print.h"
 
 namespace crescent {
 namespace summary_test {

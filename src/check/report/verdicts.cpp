@@ -8,6 +8,10 @@
 
 #include "check/constants.h"
 #include "check/decide/check_at.h"
+#include "check/decide/sizes.h"
+#include "check/decide/tail.h"
+#include "check/report/places.h"
+#include "check/report/sentences.h"
 #include "check/verdict.h"
 #include "check/verdicts/kinds.h"
 #include "output/format.h"

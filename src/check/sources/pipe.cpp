@@ -1,7 +1,7 @@
 // Rows of a request are sent as lines or blocks, and the answers are rows of doubles in both formats. Directions below
 // the horizon are not sent to a sampler of the hemisphere. One request along the normal determines whether the program
 // has an f.
-#include "check/sources/external.h"
+#include "check/sources/pipe.h"
 
 #include <algorithm>
 #include <array>
@@ -20,6 +20,7 @@
 #include "base/text.h"
 #include "check/sources/check_case.h"
 #include "check/sources/copies.h"
+#include "check/sources/external.h"
 #include "check/sources/neighbours.h"
 #include "check/sources/pipe_io.h"
 #include "check/sources/random_numbers.h"

@@ -1,5 +1,5 @@
 // The handshake of programs, and the errors for those that break the protocol.
-#include "check/sources/external.h"
+#include "check/sources/pipe.h"
 
 #include <cmath>
 #include <csignal>
@@ -7,8 +7,9 @@
 #include <limits>
 #include <numeric>
 
-#include "check/sources/pipe_io.h"
 #include "check/sources/check_case.h"
+#include "check/sources/external.h"
+#include "check/sources/pipe_io.h"
 #include "samplers/surface_context.h"
 
 namespace crescent {

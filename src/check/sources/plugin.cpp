@@ -1,6 +1,6 @@
 // A host process is started if a thread calls and none is free, and then kept. A request has the surface once for each
 // run of rows.
-#include "check/sources/external.h"
+#include "check/sources/plugin.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -20,6 +20,7 @@
 #include "base/progress.h"
 #include "base/shared_memory.h"
 #include "base/text.h"
+#include "check/sources/external.h"
 #include "check/sources/plugin_host.h"
 #include "samplers/batch_sampler.h"
 

@@ -1,5 +1,5 @@
 // The plugin is compiled from tests/system/odd_plugin.c; this program, executed again, is its host.
-#include "check/sources/external.h"
+#include "check/sources/plugin.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,6 +14,7 @@
 #include "base/errors.h"
 #include "base/progress.h"
 #include "check/sources/check_case.h"
+#include "check/sources/external.h"
 
 namespace crescent {
 namespace plugin_test {

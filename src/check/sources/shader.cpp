@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "check/sources/pipe.h"
 #include "output/format.h"
 
 namespace crescent {

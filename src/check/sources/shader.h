@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "check/sources/external.h"
+#include "samplers/sampler_adapter.h"
 
 namespace crescent {
 

@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "check/gtest.h"
+#include "check/sources/pipe.h"
 #include "tests/support/scratch_folder.h"
 
 namespace crescent {

@@ -1,10 +1,12 @@
 // identity and valid, from counts of single draws: values, pointwise, zero, weight, and repeated directions.
+#include "check/verdicts/counts.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
-#include "check/estimate/sort.h"
 #include "check/constants.h"
+#include "check/estimate/sort.h"
 #include "check/verdicts/questions.h"
 #include "check/verdicts/statistics.h"
 

@@ -1,4 +1,6 @@
 // Tests of counts: faults of single draws above what is tolerated, repeated directions, shares of delta parts.
+#include "check/verdicts/counts.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

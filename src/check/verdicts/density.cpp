@@ -1,4 +1,5 @@
 // density, at every scale: nodes of the tree, all nodes of one depth together, and bands of theta and of phi.
+#include "check/verdicts/density.h"
 
 #include <array>
 #include <cmath>

@@ -1,10 +1,12 @@
 // mean: bridged weights compared with the integral of f cos. support: light where p is 0. physics: the albedo is at
 // most 1. All by channel.
+#include "check/verdicts/light.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "check/constants.h"
-#include "check/decide/check_at.h"
+#include "check/decide/tail.h"
 #include "check/verdicts/questions.h"
 #include "check/verdicts/statistics.h"
 #include "math/statistics.h"

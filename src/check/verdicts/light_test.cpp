@@ -1,4 +1,6 @@
 // Tests of the mean, the support and the albedo of known samplers, and of the tail of weights.
+#include "check/verdicts/light.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -3,7 +3,9 @@
 
 #include <array>
 
+#include "check/verdicts/density.h"
 #include "check/verdicts/kinds.h"
+#include "check/verdicts/sums.h"
 
 namespace crescent::check {
 

@@ -3,10 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <string_view>
 
 #include "check/estimate/observations.h"
@@ -89,37 +87,9 @@ struct Evidence {
     }
 };
 
-// Each calls `visit` for every member of its families.
-/// Whole sums, nodes and bands: all that compares how the draws are distributed.
+/// Calls `visit` for every member of the families of whole sums, nodes and bands: all that compares how the draws are
+/// distributed.
 void test_distribution(const Evidence& e, const Visit& visit);
-void test_sums(const Evidence& e, const Visit& visit);
-void test_nodes(const Evidence& e, const Visit& visit);
-void test_bands(const Evidence& e, const Visit& visit);
-void test_light(const Evidence& e, const Visit& visit);
-void test_counts(const Evidence& e, const Visit& visit);
-void test_deltas(const Evidence& e, const Visit& visit);
-
-/// Whether the weights may have an infinite variance, by their Pareto index and its standard error.
-bool tail_may_be_heavy(std::span<const double> weights);
-/// Whether their mean can be compared with the integral of f cos.
-bool mean_can_be_tested(const Evidence& e);
-
-/// A whole sum on both sides, by independent draws or by replicates.
-struct SumComparison {
-    double difference = 0, floor = 0;
-    double drawn_variance = 0, claim_variance = 0;
-    double freedom = 0;  // degrees of freedom of the sum of both
-    double largest = 0;  // largest single term, for Bennett's inequality; 0: Student's t
-    double visible = 1;  // part of a difference between two samplers that the right side, the mean of both, shows
-    double variance() const { return drawn_variance + claim_variance; }
-    double p() const;
-};
-/// A whole sum by both kinds of draws.
-struct WholeSum {
-    SumComparison by_draws;
-    std::optional<SumComparison> by_sets;  // none without replicates, and for the mass if every draw is a direction
-};
-std::array<WholeSum, integrands> compare_sums(const Evidence& e);
 
 /// How well h p of a leaf is known: as well as a tabulated p, and as the arithmetic of the sampler allows. Where
 /// rounding makes p 0 or too small, the draws show how much it may be.
@@ -128,29 +98,5 @@ inline double uncertainty_of(const Evidence& e, std::size_t leaf) {
     return x.tabulation_error +
         x.rounding * std::max(x.bridge.value, e.observations.leaves[leaf] / e.observations.independent);
 }
-
-/// O and C of every node, from its leaves, and the division of its h between its halves.
-struct NodeSums {
-    double draw_mean = 0, claim = 0, second = 0, solid_angle = 0, variance = 0, doubt = 0, largest = 0, uncertainty = 0;
-};
-std::vector<NodeSums> node_sums(const Evidence& e);
-NodeSums& operator+=(NodeSums& to, const NodeSums& other);
-/// The test of a part given the whole.
-struct NodeSplit {
-    double share = 0;       // of h p in the part
-    double difference = 0;  // of the part, given the whole
-    double floor = 0, variance = 0, doubt = 0, claim_variance = 0;
-    double smaller_half = 0;  // expected draws
-    double one_draw = 0;      // weight of one draw: E[h^2] / E[h]
-    double visible = 1;       // as for a whole sum
-};
-/// The tolerance of a cut, in shares of the node's draws: the detection floor of its smaller half, and the draws that
-/// rounding by the node's step moves across the cut and across the other edges of the node.
-double floor_of_cut(const TreeNode& node, double share);
-/// Divides a whole into a part `a` and the rest `b`. n: number of draws. floor: tolerance in shares of the draws of the
-/// whole. pooled: as in `Evidence`.
-NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double floor,
-    double pooled = std::numeric_limits<double>::infinity());
-NodeSplit split_of(const Evidence& e, const std::vector<NodeSums>& sums, std::size_t node);
 
 }  // namespace crescent::check

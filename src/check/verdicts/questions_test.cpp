@@ -5,6 +5,8 @@
 
 #include <set>
 
+#include "check/verdicts/density.h"
+#include "check/verdicts/sums.h"
 #include "tests/support/sampled_evidence.h"
 
 namespace crescent::check {

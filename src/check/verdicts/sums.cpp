@@ -1,5 +1,7 @@
 // normalised and density, by sums over all draws: mass (h = 1), bridge, slope, centre. A deviation is compared with its
 // standard error and a floor.
+#include "check/verdicts/sums.h"
+
 #include <cmath>
 
 #include "check/constants.h"

@@ -1,6 +1,6 @@
 // The new folder of the baseline is written next to the old one and exchanged with it (base/files.h). Files of views
 // that are not accepted are linked into it. Candidates are copied first, and the copies are measured.
-#include "compare/suite/suite.h"
+#include "compare/suite/accept.h"
 
 #include <algorithm>
 #include <chrono>
@@ -13,8 +13,13 @@
 
 #include "base/files.h"
 #include "base/text.h"
+#include "compare/moments.h"
 #include "compare/renders.h"
 #include "compare/suite/manifest.h"
+#include "compare/suite/measure.h"
+#include "compare/suite/suite.h"
+#include "compare/suite/suite_file.h"
+#include "experiment/parser.h"
 #include "math/statistics.h"
 #include "output/format.h"
 

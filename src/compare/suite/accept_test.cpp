@@ -1,5 +1,7 @@
 // --accept: the candidate's files become the baseline's, with a manifest; a baseline stored as moments gives the same
 // numbers as its renders.
+#include "compare/suite/accept.h"
+
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -16,9 +18,13 @@
 #include <set>
 
 #include "base/files.h"
+#include "compare/suite/decide.h"
+#include "compare/suite/measure.h"
+#include "compare/suite/render_plan.h"
 #include "compare/suite/suite.h"
-#include "tests/support/synthetic_renders.h"
+#include "compare/suite/suite_file.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/synthetic_renders.h"
 
 namespace crescent {
 namespace accept_test {

@@ -1,4 +1,6 @@
 // All views together: Holm's method over the p-values of the views, then one state and one sentence for each.
+#include "compare/suite/decide.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 

@@ -1,4 +1,6 @@
 // Views decided together: levels by Holm's method, states and exit codes, from p-values that are given.
+#include "compare/suite/decide.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,7 @@
 // One view: its renders are read once into memory if they fit, copies are left out, and the tests of `crescent compare`
 // compare the candidate with the baseline; then the variances of both sides are compared.
+#include "compare/suite/measure.h"
+
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
@@ -8,9 +10,18 @@
 
 #include "base/parallel.h"
 #include "compare/anytime.h"
+#include "compare/bias.h"
+#include "compare/compare.h"
+#include "compare/moments.h"
+#include "compare/moments_reading.h"
 #include "compare/other_channels.h"
 #include "compare/renders.h"
+#include "compare/suite/decide.h"
+#include "compare/suite/pictures.h"
+#include "compare/suite/render_plan.h"
 #include "compare/suite/suite.h"
+#include "compare/wording.h"
+#include "experiment/parser.h"
 #include "output/format.h"
 
 namespace crescent {

@@ -1,12 +1,13 @@
 // Means over renders as photographs; the difference of the means over their mean brightness, blue if the candidate is
 // darker and orange if it is brighter; and where noise does not explain it. All pictures of a report together take at
 // most 36 MB.
-#include "compare/suite/suite.h"
+#include "compare/suite/pictures.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "compare/outputs.h"
+#include "compare/plates.h"
+#include "compare/suite/suite.h"
 #include "math/functions.h"
 #include "math/statistics.h"
 #include "report/plates/raster.h"

@@ -1,4 +1,6 @@
 // The pictures of a view: which there are, their size, and the scale of their differences.
+#include "compare/suite/pictures.h"
+
 #include <gtest/gtest.h>
 #include <png.h>
 

@@ -1,13 +1,16 @@
 // Both sides are assumed to have the variance of the baseline, which falls as 1/N with N samples.
-#include "compare/anytime.h"
-#include "compare/suite/suite.h"
+#include "compare/suite/render_plan.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 
+#include "compare/anytime.h"
+#include "compare/moments.h"
 #include "compare/renders.h"
+#include "compare/suite/measure.h"
+#include "compare/suite/suite.h"
 #include "math/statistics.h"
 #include "output/format.h"
 

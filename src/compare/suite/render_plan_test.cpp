@@ -1,9 +1,9 @@
 // The difference that a repetition of a test finds, and the renders that it needs, in closed form.
+#include "compare/suite/render_plan.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "compare/suite/suite.h"
 
 namespace crescent {
 namespace render_plan_test {

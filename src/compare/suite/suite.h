@@ -5,20 +5,15 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "compare/compare.h"
 #include "compare/file_pattern.h"
-#include "compare/plan.h"
 #include "compare/results.h"
 #include "compare/suite/exact.h"
 #include "compare/suite/manifest.h"
 #include "math/statistics.h"
-#include "report/report.h"
 
 namespace crescent {
 
@@ -97,24 +92,6 @@ struct Suite {
         return view.tolerance ? view.tolerance : options.tolerance;
     }
 };
-
-/// Flags that replace or complete the keys of a suite file.
-struct SuiteFlags {
-    std::vector<CompareFlag> keys;    // of [suite]
-    std::string baseline, candidate;  // folders with VIEW/*.exr, VIEW-SEED.exr or VIEW.exr; "": the file's patterns
-    bool baseline_only = false;       // no renders of the candidate are needed
-};
-
-/// Returns whether the file is a suite: it has a table [suite].
-bool is_suite(const std::string& file);
-/// Reads a suite file ("": none, the folders of the flags) and finds the renders of each view. Throws InputError.
-Suite read_suite(const std::string& file, const SuiteFlags& flags);
-/// Returns the files of each pattern; a file that several match belongs to the first of them.
-std::vector<std::vector<MatchedFile>> files_of_patterns(const std::vector<FilePattern>& patterns);
-/// Returns the tables [suite] and [view.NAME] that flags alone make, without renders. Throws InputError.
-Suite read_suite_flags(const std::vector<CompareFlag>& keys);
-/// Returns the manual of a suite file.
-std::string suite_schema_text();
 
 /// The results for a view, the most severe first.
 enum class ViewState { unreadable, changed, noisier, missing, added, too_few, improved, same };
@@ -208,134 +185,6 @@ struct SuiteResult {
     std::string sentence;
 };
 
-/// Returns the exit code: 2 for unreadable views, 1 for changed, noisier or missing views and, unless `new_baseline`
-/// allows them, new ones, 4 for too few renders, else 0.
-int exit_code(const SuiteResult& result, bool new_baseline);
-
 inline constexpr std::size_t longest_headline = 160;  // characters
-
-/// Returns a hash of the pixels of a render, to find copies.
-std::uint64_t pixel_hash(const Render& render);
-
-/// Reads and tests one view. `compared`: the number of views that share alpha.
-ViewResult measure_view(const Suite& suite, const SuiteView& view, std::size_t compared, ProgressMonitor& monitor,
-    const RenderSource& source);
-
-/// Decides all views together: Holm's method over their p-values.
-void decide(const Suite& suite, SuiteResult& result);
-
-/// Measures and decides every view, one view in memory at a time. A view whose files cannot be compared, or differ from
-/// the manifest, is unreadable; the others are compared all the same.
-SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor, const RenderSource& source);
-/// The same of files, read as the suite states.
-SuiteResult compare_suite(const Suite& suite, ProgressMonitor& monitor);
-
-// ---- --accept: the candidate of some views becomes the baseline, of all of them at once.
-
-/// Which views of a candidate become the baseline, and the statements of the manifest about it.
-struct Acceptance {
-    std::vector<std::string> views;      // names; empty: all that have a candidate
-    std::string because, date, program;  // for the manifest
-};
-
-/// Replaces the baseline's files of these views, stored as the suite states, and writes baseline.json next to them: the
-/// files with their hashes, mean and variance of each region, program, date and reason of each view. A named view
-/// without renders of the candidate is removed from the baseline. `read` returns the suite; it is called again with the
-/// baseline locked against others that accept. What is stored is what was measured, also if candidates are rewritten
-/// meanwhile. A kill leaves the old baseline or the new one. Returns a line for each view. Throws InputError,
-/// OutputError, Interrupted.
-std::vector<std::string> accept_views(
-    const std::function<Suite()>& read, const Acceptance& acceptance, ProgressMonitor& monitor);
-
-/// Returns the folder of the baseline: the part before the first wildcard of its first pattern. Throws InputError if
-/// another pattern is not in it.
-std::string baseline_folder(const Suite& suite);
-
-// ---- The result of a suite as text: for machines, build servers, the summary page of a pull request and the terminal.
-
-/// docs/suite.schema.json describes it; equal inputs give equal bytes.
-std::string suite_json(const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& provenance);
-/// Results that are not "same" or "improved" in the Static Analysis Results Interchange Format 2.1.0, with the place of
-/// the view in the suite file, for code hosts.
-std::string suite_sarif(const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& provenance);
-/// One case for each view: changed, noisier, missing and new fail, unreadable and too few renders are errors; new is
-/// skipped if `new_baseline` allows it.
-std::string suite_junit(const Suite& suite, const SuiteResult& result, bool new_baseline);
-/// One case: the call failed before there was a result.
-std::string failure_junit(const std::string& file, const std::string& message);
-/// The same in SARIF, with the places of an InputError that are in `file`. `version`: of crescent.
-std::string failure_sarif(const std::string& version, const std::string& file, const std::exception& error);
-/// A table of all views that are not the same, at most 60 kB.
-std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance);
-std::string suite_summary(const Suite& suite, const SuiteResult& result);
-/// One page that works offline.
-std::string suite_html(const Suite& suite, const SuiteResult& result, const Provenance& provenance);
-
-/// The pictures of the views that are not the same or improved, as "plates/1-VIEW-difference.png", worst views first.
-std::vector<std::pair<std::string, std::vector<unsigned char>>> suite_plates(const SuiteResult& result);
-
-/// Views in the order of their states, changed first, then by the size of what changed, then by name.
-std::vector<const ViewResult*> by_state(const SuiteResult& result);
-
-// ---- The pictures of a view in the report: photographs of the means of both sides and a map of their relative
-// difference.
-
-/// For a view with renders of one side only.
-void picture_one_side(const Suite& suite, const SuiteView& view, const RenderSource& source, ViewResult& out);
-/// For a view with both. The size follows from the number of views, larger if the view may have changed.
-void picture_both_sides(const Suite& suite, const RenderStats& stats, const BiasResult& means, ViewResult& out);
-/// Adds the tiles in which the variance of the candidate differs from that of the baseline, if there are any. After the
-/// other pictures, whose size it has.
-void picture_noise(const RenderStats& stats, const NoiseResult& noise, ViewResult& out);
-
-// ---- --plan: how many renders of each side, with how many samples, a view needs, from the variance of the baseline
-// only.
-
-// ---- The difference of means that a test finds with a probability of 90 %, and the renders that it needs.
-
-/// Returns the difference that a repetition of the test finds with a probability of 90 % at this level, if the error of
-/// a mean is known only from an estimate with `estimate_df` degrees of freedom. The estimate may be too small by
-/// chance, and so may that of the repetition: the difference is larger than that of detectable() (by a fifth for 8
-/// renders of each side), and infinite for too few degrees of freedom.
-/// With `information`, of a test that holds at any time, see anytime.h.
-double found_difference(const Welch& test, double estimate_df, double level, double information = 0);
-
-/// The noise of the mean of a region, known before more renders exist.
-struct RegionPower {
-    double mean = 0;                        // of Y
-    double variance_a = 0, variance_b = 0;  // of the mean of one render of each side; in pairs a: of a difference
-    double estimate_df = 0;                 // degrees of freedom with which they are known
-    bool paired = false;
-    bool anytime = false;          // of a test that holds at any time
-    double hidden_difference = 0;  // difference that rare events could hide, times the renders of a side
-};
-
-/// Returns the difference that a test with `renders` renders of each side finds with a probability of 90 %.
-double detectable_with(const RegionPower& power, std::size_t renders, double level);
-
-/// The smallest number of renders of each side with which a relative difference `smallest` is found; nothing above
-/// 100 000.
-std::optional<std::size_t> renders_needed(const RegionPower& power, double smallest, double level);
-
-/// The samples of a render over those of a render of the baseline for which the plan states renders.
-inline constexpr std::array<double, 3> plan_samples = {0.25, 1, 4};
-
-/// The renders that a view needs to find its smallest difference, from the variance of its baseline.
-struct ViewPlan {
-    std::string name, region;  // the region that needs the most renders
-    std::size_t renders = 0;   // of the baseline
-    std::optional<double> spp;
-    double smallest = 0, mean = 0;
-    double deviation = 0;                                       // of the mean of one render
-    std::array<std::optional<std::size_t>, 3> render_counts{};  // of each side, at plan_samples
-    std::string why;                                            // why nothing can be stated; "" if it can
-};
-
-/// Returns the plan of each view, by name. Reads every baseline; throws InputError if a file cannot be compared.
-std::vector<ViewPlan> plan_renders(const Suite& suite, ProgressMonitor& monitor);
-/// Returns the plans as a table for the terminal.
-std::string render_plan_text(const Suite& suite, const std::vector<ViewPlan>& plans);
-/// Returns the plans as JSON.
-std::string render_plan_json(const Suite& suite, const std::vector<ViewPlan>& plans);
 
 }  // namespace crescent

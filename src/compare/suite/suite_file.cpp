@@ -1,4 +1,6 @@
 // Reads a suite file: the table of its keys, and the files of each view.
+#include "compare/suite/suite_file.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -12,6 +14,8 @@
 #include "compare/suite/suite.h"
 #include "experiment/parser.h"
 #include "experiment/schema.h"
+#include "experiment/tree.h"
+#include "experiment/value.h"
 
 namespace crescent {
 

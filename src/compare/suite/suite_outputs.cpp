@@ -1,10 +1,13 @@
 // A suite's result as JSON, JUnit, Markdown and a summary for the terminal.
+#include "compare/suite/suite_outputs.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "base/text.h"
 #include "compare/renders.h"
+#include "compare/suite/decide.h"
 #include "compare/suite/suite.h"
 #include "output/format.h"
 #include "output/templates.h"

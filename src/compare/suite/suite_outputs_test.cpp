@@ -1,4 +1,6 @@
 // A suite's result as JSON, JUnit and Markdown: states, numbers and limits.
+#include "compare/suite/suite_outputs.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

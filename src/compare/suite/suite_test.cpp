@@ -8,10 +8,14 @@
 #include <fmt/format.h>
 #include <fstream>
 
+#include "compare/suite/decide.h"
+#include "compare/suite/measure.h"
 #include "compare/suite/suite.h"
-#include "tests/support/synthetic_renders.h"
+#include "compare/suite/suite_file.h"
+#include "compare/suite/suite_outputs.h"
 #include "math/statistics.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/synthetic_renders.h"
 
 namespace crescent {
 namespace suite_test {

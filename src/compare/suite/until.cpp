@@ -12,6 +12,8 @@
 
 #include "base/errors.h"
 #include "base/text.h"
+#include "compare/suite/decide.h"
+#include "compare/suite/measure.h"
 #include "output/format.h"
 
 namespace crescent {

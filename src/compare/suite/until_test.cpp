@@ -10,6 +10,7 @@
 #include <random>
 
 #include "compare/anytime.h"
+#include "compare/suite/decide.h"
 #include "compare/suite/until.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"

@@ -1,11 +1,12 @@
 // The estimates are those of a declared combination with other random numbers.
-#include "render/reference/reference.h"
+#include "render/reference/paired.h"
 
 #include <cmath>
 
 #include "math/sobol.h"
 #include "render/combination.h"
 #include "render/estimator.h"
+#include "render/reference/reference.h"
 #include "scene/lobes/all.h"
 
 namespace crescent {

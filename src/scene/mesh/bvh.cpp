@@ -15,6 +15,7 @@
 
 #include <optional>
 
+#include "scene/mesh/bvh_build.h"
 #include "scene/mesh/bvh_tree.h"
 
 namespace crescent {

@@ -2,12 +2,13 @@
 // it has eight: the one of the largest area first, but subtrees that fill one node last, and only whole. The cost of a
 // leaf counts groups of four, because four triangles are tested at once. Each subtree has a range of the array of its
 // own, so that threads do not change the result.
-#include "scene/mesh/bvh_tree.h"
+#include "scene/mesh/bvh_build.h"
 
 #include <algorithm>
 
 #include "base/errors.h"
 #include "base/parallel.h"
+#include "scene/mesh/bvh_tree.h"
 
 namespace crescent {
 

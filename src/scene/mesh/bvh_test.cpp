@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "math/simd/frame.h"
+#include "scene/mesh/bvh_build.h"
 #include "scene/mesh/bvh_tree.h"
 #include "scene/mesh/rays.h"
 #include "tests/support/meshes.h"

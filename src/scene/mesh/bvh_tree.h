@@ -104,7 +104,6 @@ struct BvhTree {
     HugeVector<BvhNode> nodes;
     std::vector<Leaf> leaves;
 };
-BvhTree build_tree(std::span<const Bounds> items);
 
 /// The most levels of a tree, see bvh_build.cpp, and the most entries of a stack: seven siblings on each level.
 inline constexpr std::size_t most_levels = 80;

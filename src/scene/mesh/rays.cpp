@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "scene/mesh/bvh_build.h"
 #include "scene/mesh/bvh_tree.h"
 
 namespace crescent {

@@ -16,6 +16,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "compare/results.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
 #include "rate_cell.h"

@@ -10,11 +10,13 @@
 
 #include "base/errors.h"
 #include "base/parallel.h"
+#include "compare/suite/decide.h"
+#include "compare/suite/measure.h"
 #include "compare/suite/suite.h"
-#include "tests/support/synthetic_renders.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
 #include "rate_cell.h"
+#include "tests/support/synthetic_renders.h"
 
 namespace {
 

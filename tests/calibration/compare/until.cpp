@@ -17,11 +17,13 @@
 
 #include "base/parallel.h"
 #include "compare/anytime.h"
+#include "compare/suite/decide.h"
+#include "compare/suite/measure.h"
 #include "compare/suite/until.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
-#include "rate_cell.h"
 #include "output/tone_map.h"
+#include "rate_cell.h"
 #include "tests/support/synthetic_renders.h"
 
 namespace {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include "check/report/summary.h"
 #include "math/simd/random.h"
 #include "math/statistics.h"
 

@@ -14,6 +14,7 @@
 #include "check/report/print.h"
 #include "check/sources/cases.h"
 #include "check/verdict.h"
+#include "metrics/assertions.h"
 #include "metrics/metrics.h"
 #include "output/formula.h"
 #include "render/estimator.h"
