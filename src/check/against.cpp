@@ -195,6 +195,14 @@ private:
                 if (traits().domain) return "The means of their draws differ.";
                 return fmt::format("The mean direction of A is off that of B in {} by {:+.3g} +- {:.1g}.",
                     "xyz"[a.member], difference / h, half / h);
+            case Family::node:
+            case Family::node_sets: {
+                const TreeNode& node = common_->plan.tree.nodes()[static_cast<std::size_t>(a.member)];
+                return fmt::format("Draws of A and B divide differently {}.", region_text(node.rect, traits()));
+            }
+            case Family::band:
+                return fmt::format(
+                    "A has another share of its draws than B {}.", region_text(rect_of_band(a.member), traits()));
             default: return "Their draws differ in many small places.";
         }
     }
