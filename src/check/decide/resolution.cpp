@@ -23,6 +23,13 @@ Values values_at(Source& source, const Plan& plan, Vec3d w) {
     return plan.values(plan.tree.leaves()[plan.tree.find(to_chart(w))], w, p);
 }
 
+/// Whether the two are directions that are not next to each other.
+bool jumps(const Draw& a, const Draw& b) {
+    if (!(a.pdf > 0) || !(b.pdf > 0)) return false;
+    const Vec3d jump = a.wi - b.wi;
+    return dot(jump, jump) > least_jump * least_jump;
+}
+
 }  // namespace
 
 ResolutionEffect resolution_effect(Source& source, const Plan& plan, StreamKey key) {
@@ -31,18 +38,25 @@ ResolutionEffect resolution_effect(Source& source, const Plan& plan, StreamKey k
     key.purpose = Purpose::corners;
     key.part = 24;
     const std::vector<PrimarySample> u = first_numbers(key, moved_draws, source.traits);
-    std::vector<Draw> draws(u.size()), shifted_draws(u.size());
+    std::vector<Draw> draws(u.size()), next_draws(u.size()), second_draws(u.size()), previous_draws(u.size());
     source.draw(u, draws);
     for (int k = 0; k < source.traits.numbers; ++k) {
-        std::vector<PrimarySample> v = u;
-        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? ulp : -ulp;
-        source.draw(v, shifted_draws);
+        std::vector<PrimarySample> next = u, second = u, previous = u;
         for (std::size_t i = 0; i < u.size(); ++i) {
-            if (!(draws[i].pdf > 0) || !(shifted_draws[i].pdf > 0)) continue;
-            const Vec3d jump = draws[i].wi - shifted_draws[i].wi;
-            if (!(dot(jump, jump) > least_jump * least_jump)) continue;
+            const double step = u[i][k] < 0.5 ? ulp : -ulp;
+            next[i][k] += step;
+            second[i][k] += 2 * step;
+            previous[i][k] = std::clamp(u[i][k] - step, 0.0, 1 - ulp);
+        }
+        source.draw(next, next_draws);
+        source.draw(second, second_draws);
+        source.draw(previous, previous_draws);
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            // A threshold has a branch on either side: before the jump and after it, nothing jumps. A hash of u does.
+            if (!jumps(draws[i], next_draws[i])) continue;
+            if (jumps(previous_draws[i], draws[i]) || jumps(next_draws[i], second_draws[i])) continue;
             out.share += 1.0 / moved_draws;
-            const Values a = values_at(source, plan, draws[i].wi), b = values_at(source, plan, shifted_draws[i].wi);
+            const Values a = values_at(source, plan, draws[i].wi), b = values_at(source, plan, next_draws[i].wi);
             for (std::size_t q = 0; q < integrands; ++q) out.sums[q] += std::fabs(a[q] - b[q]) / moved_draws;
         }
     }
