@@ -53,17 +53,10 @@ Pilots draw_pilots(const AgainstSide& side, const CheckBudget& budget) {
             u.resize(std::min(batch_size, count - first));
             draws.assign(u.size(), {});
             source.draw(key, first, u, draws);
-            for (const Draw& d : draws) {
-                const double weight = d.weight.value_or(0);
-                if (has_direction(d)) {
-                    const Vec3d w = normalize(d.wi);
-                    double p = d.pdf;
-                    evaluate_below(technique.lower_source(), {&w, 1}, {&p, 1});
-                    if (is_direction(source.traits, d, p)) out.directions.push_back(w);
-                } else if (d.delta > 0 && d.delta <= 1) {
-                    deltas.add(d, source.channels() == 3 ? d.weights : Vec3d{weight, weight, weight});
-                }
-            }
+            for (Vec3d w : usable_draws(source, draws, &technique.lower_source()).w)
+                out.directions.push_back(normalize(w));
+            for (const Draw& d : draws)
+                if (d.delta > 0 && d.delta <= 1) deltas.add(d, weight_by_channel(d, source.channels()));
         }
         out.draws += count;
     }
@@ -198,13 +191,7 @@ void AgainstEvidence::test_delta_shares(const Visit& visit) const {
         const NodeSums part{.draw_mean = draw_share, .claim = share, .second = share},
             remainder{.draw_mean = 1 - draw_share, .claim = 1 - share, .second = 1 - share};
         const NodeSplit s = split_between(part, remainder, n, detection_floor * std::min(share, 1 - share), pooled);
-        visit({.family = Family::delta_share,
-            .member = static_cast<int>(k),
-            .difference = s.difference,
-            .sd = std::sqrt(s.variance),
-            .floor = s.floor,
-            .p = bennett_p(bennett_z2(std::fabs(s.difference) - s.floor, s.variance, 1 / n, 1e12)),
-            .expected = share});
+        visit(answer_of(Family::delta_share, static_cast<int>(k), s, s.z2(1 / n), 1));
     }
 }
 

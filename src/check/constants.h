@@ -176,9 +176,6 @@ inline constexpr double missed_by_chance = 1e-4;
 
 inline constexpr double target_constant = 1e-3, target_leak = 5e-3, target_cap = 3e-3, target_rotation = 5e-3,
                         target_parameter = 2e-2;
-/// A supposed cause explains a ratio of densities within this relative difference, besides the ratio's own error: ten
-/// times the rounding of a sampler in single precision. It has to explain this share of the ratios.
-inline constexpr double agreement = 2e-3, share_in_agreement = 0.9;
 /// Ten times as much, 0.7 %, is a dead neighbour that one reservoir in twenty counts.
 inline constexpr double target_bias_of_weights = 7e-4;
 inline constexpr double inconclusive_at = 10;  // times the target

@@ -105,10 +105,7 @@ std::optional<SmallFault> refraction(const Source& source, const std::vector<Del
 namespace {
 
 /// q times the weight by channel; a single channel is used three times.
-Vec3d power_of(const Source& source, const Draw& d) {
-    const double w = d.weight.value_or(0);
-    return d.delta * (source.channels() == 3 ? d.weights : Vec3d{w, w, w});
-}
+Vec3d power_of(const Source& source, const Draw& d) { return d.delta * weight_by_channel(d, source.channels()); }
 
 bool alike_power(double a, double b) {
     return std::fabs(a - b) <= delta_power_tolerance * std::max(std::fabs(a), std::fabs(b)) + 1e-6;

@@ -38,25 +38,33 @@ ResolutionEffect resolution_effect(Source& source, const Plan& plan, StreamKey k
     key.purpose = Purpose::corners;
     key.part = 24;
     const std::vector<PrimarySample> u = first_numbers(key, moved_draws, source.traits);
-    std::vector<Draw> draws(u.size()), next_draws(u.size()), second_draws(u.size()), previous_draws(u.size());
+    std::vector<Draw> draws(u.size()), next_draws(u.size());
     source.draw(u, draws);
     for (int k = 0; k < source.traits.numbers; ++k) {
-        std::vector<PrimarySample> next = u, second = u, previous = u;
-        for (std::size_t i = 0; i < u.size(); ++i) {
-            const double step = u[i][k] < 0.5 ? ulp : -ulp;
-            next[i][k] += step;
-            second[i][k] += 2 * step;
-            previous[i][k] = std::clamp(u[i][k] - step, 0.0, 1 - ulp);
-        }
+        const auto step_of = [k](const PrimarySample& x) { return x[k] < 0.5 ? ulp : -ulp; };
+        std::vector<PrimarySample> next = u;
+        for (std::size_t i = 0; i < u.size(); ++i) next[i][k] += step_of(u[i]);
         source.draw(next, next_draws);
-        source.draw(second, second_draws);
-        source.draw(previous, previous_draws);
+        std::vector<std::size_t> rows;     // of the draws that jump
+        std::vector<PrimarySample> outer;  // for each of them the number before it, and the one after the next
         for (std::size_t i = 0; i < u.size(); ++i) {
-            // A threshold has a branch on either side: before the jump and after it, nothing jumps. A hash of u does.
             if (!jumps(draws[i], next_draws[i])) continue;
-            if (jumps(previous_draws[i], draws[i]) || jumps(next_draws[i], second_draws[i])) continue;
+            rows.push_back(i);
+            PrimarySample previous = u[i], second = next[i];
+            previous[k] = std::clamp(u[i][k] - step_of(u[i]), 0.0, 1 - ulp);
+            second[k] += step_of(u[i]);
+            outer.push_back(previous);
+            outer.push_back(second);
+        }
+        if (rows.empty()) continue;
+        std::vector<Draw> outer_draws(outer.size());
+        source.draw(outer, outer_draws);
+        for (std::size_t j = 0; j < rows.size(); ++j) {
+            const Draw &draw = draws[rows[j]], &next_draw = next_draws[rows[j]];
+            // A threshold has a branch on either side: before the jump and after it, nothing jumps. A hash of u does.
+            if (jumps(outer_draws[2 * j], draw) || jumps(next_draw, outer_draws[2 * j + 1])) continue;
             out.share += 1.0 / moved_draws;
-            const Values a = values_at(source, plan, draws[i].wi), b = values_at(source, plan, next_draws[i].wi);
+            const Values a = values_at(source, plan, draw.wi), b = values_at(source, plan, next_draw.wi);
             for (std::size_t q = 0; q < integrands; ++q) out.sums[q] += std::fabs(a[q] - b[q]) / moved_draws;
         }
     }

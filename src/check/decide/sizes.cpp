@@ -483,14 +483,14 @@ private:
 std::vector<double> ratios_about(const std::vector<Turn::Effect>& first_effects,
     const std::vector<Turn::Effect>& second_effects, double c, double s, const std::vector<double>& requirements,
     std::size_t sum_count) {
-    // One-sided 90 %; the largest error among hundreds of nodes is three standard errors.
-    constexpr double single_errors = 1.2816, largest_errors = 3.0;
+    // The largest error among hundreds of nodes; that of a sum is one-sided 90 %.
+    constexpr double largest_errors = 3.0;
     const auto low_end = [&](const Estimated& a, const Estimated& b, double errors) {
         return std::fabs(c * a.mean + s * b.mean) - errors * std::sqrt(c * c * a.variance + s * s * b.variance);
     };
     std::vector<double> out;
     for (std::size_t t = 0; t < first_effects.size(); ++t) {
-        const double errors = t < sum_count ? single_errors : largest_errors;
+        const double errors = t < sum_count ? power_quantile : largest_errors;
         const double largest = std::max(low_end(first_effects[t].moved_mean, second_effects[t].moved_mean, errors),
             low_end(first_effects[t].weighted_mean, second_effects[t].weighted_mean, errors));
         out.push_back(std::max(largest, 0.0) / requirements[t]);

@@ -216,8 +216,7 @@ private:
     }
 
     void take_delta(const Draw& d) {
-        const double weight = d.weight.value_or(0);
-        if (d.delta > 0) to_.deltas.add(d, source_.channels() == 3 ? d.weights : Vec3d{weight, weight, weight});
+        if (d.delta > 0) to_.deltas.add(d, weight_by_channel(d, source_.channels()));
     }
 
     /// Tests that the pdf of a draw is within the range of p over a few roundings of w, and that p is not 0 at all of
@@ -377,23 +376,6 @@ private:
     }
 };
 
-}  // namespace
-
-void evaluate_below(Source& source, std::span<const Vec3d> w, std::span<double> p) {
-    std::vector<std::size_t> rows;
-    std::vector<Vec3d> directions;
-    for (std::size_t k = 0; k < w.size(); ++k)
-        if (!(w[k].z > 0)) {
-            rows.push_back(k);
-            directions.push_back(w[k]);
-        }
-    std::vector<double> density(rows.size());
-    source.density(directions, density);
-    for (std::size_t k = 0; k < rows.size(); ++k) p[rows[k]] = density[k];
-}
-
-namespace {
-
 void observe(Source& source, const Plan& plan, const Look& target, std::uint32_t f_draws, const StreamKey& key,
     Integrals* integrals, Source* lower_source, Observations& to) {
     if (to.leaves.empty()) {
@@ -445,11 +427,12 @@ void observe_draws(Source& source, Source& lower_source, const Plan& plan, const
 
 void add_technique(const Observations& technique, Observations& to) {
     const auto add = [](auto& sums, const auto& terms) {
-        if (sums.size() < terms.size()) {
-            if constexpr (requires { sums.resize(0); }) sums.resize(terms.size());
-        }
         for (std::size_t i = 0; i < terms.size(); ++i) sums[i] += terms[i];
     };
+    to.leaves.resize(technique.leaves.size());
+    to.counts.resize(technique.counts.size());
+    to.node_by_set.resize(technique.node_by_set.size());
+    to.weights.resize(std::max(to.weights.size(), technique.weights.size()));
     to.independent += technique.independent;
     to.scrambled += technique.scrambled;
     for (std::size_t q = 0; q < integrands; ++q) {
@@ -461,7 +444,6 @@ void add_technique(const Observations& technique, Observations& to) {
     add(to.counts, technique.counts);
     add(to.bands, technique.bands);
     add(to.weights, technique.weights);
-    to.node_by_set.resize(technique.node_by_set.size());
     for (std::size_t row = 0; row < technique.node_by_set.size(); ++row)
         add(to.node_by_set[row], technique.node_by_set[row]);
     to.checks.unusable += technique.checks.unusable;
@@ -528,8 +510,7 @@ Vec3d through_holes(Source& source) {
     oblique_source.draw(u, draws);
     for (const Draw& d : draws) {
         if (!(d.delta > 0) || !(length(d.wi + oblique_source.wo) < straight_on)) continue;
-        const double w = d.weight.value_or(0);
-        return (source.channels() == 3 ? d.weights : Vec3d{w, w, w}) * d.delta;
+        return weight_by_channel(d, source.channels()) * d.delta;
     }
     return {};
 }

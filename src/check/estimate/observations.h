@@ -161,8 +161,6 @@ void observe(Source& source, const Plan& plan, const Look& target, std::uint32_t
 /// the surface, by `lower_source`, to decide which draws count.
 void observe_draws(Source& source, Source& lower_source, const Plan& plan, const Look& target, std::uint32_t f_draws,
     const StreamKey& key, Observations& to);
-/// Replaces p by that of `source` at directions below the surface.
-void evaluate_below(Source& source, std::span<const Vec3d> w, std::span<double> p);
 /// Adds the draws of another technique of the sampler: all that two samplers are compared by, apart from delta parts.
 void add_technique(const Observations& technique, Observations& to);
 

@@ -483,7 +483,7 @@ Pilot draw_pilot(Source& source, const CheckBudget& budget, const StreamKey& key
                 }
                 continue;
             }
-            const Vec3d x = source.channels() == 3 ? d.weights : Vec3d{*d.weight, *d.weight, *d.weight};
+            const Vec3d x = weight_by_channel(d, source.channels());
             for (int c = 0; c < 3; ++c)
                 if (std::isfinite(channel_of(x, c)))
                     out.weight[static_cast<std::size_t>(c)] += channel_of(x, c) / out.draw_count;

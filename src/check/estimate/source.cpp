@@ -94,7 +94,20 @@ void Source::density_from(Vec3d other_wo, std::span<const Vec3d> wi, std::span<d
     adapter.exact_pdf(technique, pairs_of(other_wo, wi), out);
 }
 
-UsableDraws usable_draws(Source& source, std::span<const Draw> draws) {
+void evaluate_below(Source& source, std::span<const Vec3d> w, std::span<double> p) {
+    std::vector<std::size_t> rows;
+    std::vector<Vec3d> directions;
+    for (std::size_t k = 0; k < w.size(); ++k)
+        if (!(w[k].z > 0)) {
+            rows.push_back(k);
+            directions.push_back(w[k]);
+        }
+    std::vector<double> density(rows.size());
+    source.density(directions, density);
+    for (std::size_t k = 0; k < rows.size(); ++k) p[rows[k]] = density[k];
+}
+
+UsableDraws usable_draws(Source& source, std::span<const Draw> draws, Source* lower_source) {
     UsableDraws out;
     for (std::size_t i = 0; i < draws.size(); ++i)
         if (has_direction(draws[i])) {
@@ -102,7 +115,12 @@ UsableDraws usable_draws(Source& source, std::span<const Draw> draws) {
             out.w.push_back(draws[i].wi);
         }
     out.p.resize(out.w.size());
-    source.density(out.w, out.p);
+    if (lower_source) {
+        for (std::size_t k = 0; k < out.w.size(); ++k) out.p[k] = draws[out.row[k]].pdf;
+        evaluate_below(*lower_source, out.w, out.p);
+    } else {
+        source.density(out.w, out.p);
+    }
     std::size_t count = 0;
     for (std::size_t k = 0; k < out.w.size(); ++k) {
         if (!is_direction(source.traits, draws[out.row[k]], out.p[k])) continue;

@@ -113,14 +113,23 @@ inline bool is_direction(const Traits& traits, const Draw& d, double p) {
     return has_direction(d) && (d.wi.z > 0 || p > 0 || !traits.has_surface());
 }
 
+/// The weight of a draw by channel; 0 for a draw without one.
+inline Vec3d weight_by_channel(const Draw& d, int channels) {
+    const double weight = d.weight.value_or(0);
+    return channels == 3 ? d.weights : Vec3d{weight, weight, weight};
+}
+
 /// Draws that are directions of the tested density: their rows, their directions, and p there.
 struct UsableDraws {
     std::vector<std::size_t> row;
     std::vector<Vec3d> w;
     std::vector<double> p;
 };
-/// Evaluates p at these draws.
-UsableDraws usable_draws(Source& source, std::span<const Draw> draws);
+/// Evaluates p at these draws. lower_source: if given, p is evaluated only below the surface and by it, to decide which
+/// draws count; elsewhere it is the pdf of the draw.
+UsableDraws usable_draws(Source& source, std::span<const Draw> draws, Source* lower_source = nullptr);
+/// Replaces p by that of `source` at directions below the surface.
+void evaluate_below(Source& source, std::span<const Vec3d> w, std::span<double> p);
 
 // ---- Whether pdf(w) and f(w) are random estimates that are right only in the mean, such as those of layered surfaces.
 // Then two answers for one direction differ or, if their random numbers are a hash of the direction, answers for

@@ -51,6 +51,9 @@ inline constexpr double same_density = 1e-3, same_share = 0.9;
 
 // ---- factors: draws over p as a product of powers
 
+/// A supposed cause explains a ratio of densities within this relative difference, besides the ratio's own error: ten
+/// times the rounding of a sampler in single precision. It has to explain this share of the ratios.
+inline constexpr double agreement = 2e-3, share_in_agreement = 0.9;
 /// A ratio agrees with a factor if its error, besides its own uncertainty, is below `agreement` and below this part of
 /// the typical distance of the ratios from 1: many factors fit ratios that are nearly constant.
 inline constexpr double part_that_agrees = 0.1;
@@ -73,8 +76,6 @@ inline constexpr double largest_power = 0.5, least_power = 1e-3;
 inline constexpr double least_warp = 0.1;
 /// Two normals are one within 0.8 degrees (1 - cos): fitted normals are known to a tenth of that.
 inline constexpr double same_normal = 1e-4;
-/// Tolerance of a constant between two weights: as `agreement`.
-inline constexpr double same_weight = agreement;
 
 // ---- rotations
 

@@ -166,7 +166,7 @@ std::optional<Cause> reciprocity_cause(const CheckCase& check_case) {
                                return o.z * i.z >= 0 ? 1.0 : o.z > 0 ? eta2 : 1 / eta2;
                            }});
     const std::optional<RatioCause> c = explain_ratios(ratios, factors);
-    if (!c || c->exponent == 0 || std::fabs(c->constant - 1) > same_weight) return {};
+    if (!c || c->exponent == 0 || std::fabs(c->constant - 1) > agreement) return {};
     return Cause{.factor = c->name,
         .exponent = c->exponent,
         .error = 0,
@@ -184,12 +184,12 @@ bool has_finding(const CheckAt& c, Family family) {
 }  // namespace
 
 std::string ratio_sentence(const char* subject, const char* expected, const RatioCause& c, const Traits& traits) {
-    const std::string number = number_name(c.constant, same_weight, traits);
+    const std::string number = number_name(c.constant, agreement, traits);
     const std::string constant = fmt::format("a constant {:.4g}{}", c.constant, number.empty() ? "" : " = " + number);
     if (c.exponent == 0) return fmt::format("{} {} times {}.", subject, expected, constant);
     const std::string power = std::fabs(c.exponent) == 1 ? "" : fmt::format("^{:g}", std::fabs(c.exponent));
     return fmt::format("{} {} {} {}{}{}.", subject, expected, c.exponent > 0 ? "times" : "over", c.name, power,
-        std::fabs(c.constant - 1) < same_weight ? "" : " and " + constant);
+        std::fabs(c.constant - 1) < agreement ? "" : " and " + constant);
 }
 
 std::optional<Cause> weight_cause(std::span<const CheckCase> check_cases, const CheckOutcome& outcome) {

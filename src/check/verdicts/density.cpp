@@ -86,6 +86,21 @@ NodeSplit split_between(const NodeSums& a, const NodeSums& b, double n, double f
     return out;
 }
 
+double NodeSplit::z2(double largest) const {
+    return bennett_z2(std::fabs(difference) - floor, variance, largest, freedom(variance, doubt));
+}
+
+Answer answer_of(Family family, int member, const NodeSplit& split, double z2, double whole) {
+    return {.family = family,
+        .member = member,
+        .difference = split.difference,
+        .sd = std::sqrt(split.variance),
+        .floor = split.floor,
+        .p = bennett_p(z2),
+        .expected = split.share * whole,
+        .claim_share = split.claim_variance / (split.variance + 1e-300)};
+}
+
 namespace {
 
 /// Sums over replicates below each node down to the replicated depth, from those of its lowest rows.
@@ -174,16 +189,8 @@ void test_nodes(const Evidence& e, const Visit& visit) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (nodes[i].child < 0 || least_draws(e, sums[i].draw_mean, sums[i].claim) < e.fewest_draws) continue;
         const NodeSplit s = split_of(e, sums, i);
-        const double z2 =
-            bennett_z2(std::fabs(s.difference) - s.floor, s.variance, sums[i].largest, freedom(s.variance, s.doubt));
-        visit({.family = Family::node,
-            .member = static_cast<int>(i),
-            .difference = s.difference,
-            .sd = std::sqrt(s.variance),
-            .floor = s.floor,
-            .p = bennett_p(z2),
-            .expected = s.share * sums[i].draw_mean,
-            .claim_share = s.claim_variance / (s.variance + 1e-300)});
+        const double z2 = s.z2(sums[i].largest);
+        visit(answer_of(Family::node, static_cast<int>(i), s, z2, sums[i].draw_mean));
         if (s.smaller_half < e.fewest_draws) continue;
         const auto depth = static_cast<std::size_t>(nodes[i].depth);
         chi[depth] += std::min(z2, 1e6);
@@ -277,16 +284,8 @@ void test_bands(const Evidence& e, const Visit& visit) {
                 const double share = a.claim / (a.claim + b.claim);
                 const NodeSplit s = split_between(a, b, e.observations.independent,
                     detection_floor * std::min(share, 1 - share) + band.moved_share, e.pooled_draws());
-                const double z2 = bennett_z2(std::fabs(s.difference) - s.floor, s.variance,
-                    std::max(a.largest, b.largest), freedom(s.variance, s.doubt));
-                visit({.family = Family::band,
-                    .member = band_member(axis, first, width),
-                    .difference = s.difference,
-                    .sd = std::sqrt(s.variance),
-                    .floor = s.floor,
-                    .p = bennett_p(z2),
-                    .expected = s.share * (a.draw_mean + b.draw_mean),
-                    .claim_share = s.claim_variance / (s.variance + 1e-300)});
+                visit(answer_of(Family::band, band_member(axis, first, width), s, s.z2(std::max(a.largest, b.largest)),
+                    a.draw_mean + b.draw_mean));
             }
 }
 

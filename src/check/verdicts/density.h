@@ -28,7 +28,11 @@ struct NodeSplit {
     double smaller_half = 0;  // expected draws
     double one_draw = 0;      // weight of one draw: E[h^2] / E[h]
     double visible = 1;       // as for a whole sum
+    /// Twice Bennett's exponent of the difference beyond its floor. largest: largest single term.
+    double z2(double largest) const;
 };
+/// The answer of a part. whole: what was drawn of the whole.
+Answer answer_of(Family family, int member, const NodeSplit& split, double z2, double whole);
 /// The tolerance of a cut, in shares of the node's draws: the detection floor of its smaller half, and the draws that
 /// rounding by the node's step moves across the cut and across the other edges of the node.
 double floor_of_cut(const TreeNode& node, double share);
