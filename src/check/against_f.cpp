@@ -10,6 +10,7 @@
 #include "check/constants.h"
 #include "check/decide/check_at.h"
 #include "check/decide/tail.h"
+#include "check/estimate/evaluation_noise.h"
 #include "check/estimate/source.h"
 #include "math/statistics.h"
 #include "output/format.h"

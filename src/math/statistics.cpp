@@ -151,11 +151,6 @@ template <class Function> double passes(Function f, double value, double low, do
 
 }  // namespace
 
-double gamma_p(double a, double x) {
-    if (!(x > 0)) return 0;
-    return x < a + 1 ? gamma_series(a, x) : 1 - gamma_q(a, x);
-}
-
 double gamma_q(double a, double x) {
     if (!(x > 0)) return 1;
     if (x == std::numeric_limits<double>::infinity()) return 0;

@@ -52,9 +52,7 @@ std::string rate_text(std::uint64_t hits, std::uint64_t trials);
 // the same on every machine; relative error below 1e-12 for counts and degrees up to 1e6 (statistics_test.cpp, against
 // Boost).
 
-/// Regularised incomplete gamma functions, a > 0, x >= 0: P(a, x) and Q(a, x) = 1 - P(a, x); the smaller one is never
-/// computed by subtraction.
-double gamma_p(double a, double x);
+/// Regularised upper incomplete gamma function Q(a, x), a > 0, x >= 0; a small one is not computed by subtraction.
 double gamma_q(double a, double x);
 /// Regularised incomplete beta function I_x(a, b), a, b > 0, for x in [0, 1] and y = 1 - x.
 double beta_i(double a, double b, double x, double y);

@@ -27,7 +27,6 @@ TEST(Distributions, TailsAreThoseOfBoost) {
         for (double off : {-12.0, -6.0, -3.0, -1.0, -0.1, 0.0, 0.2, 1.0, 3.0, 6.0, 15.0, 30.0}) {
             const double x = a + off * std::sqrt(a);
             if (!(x > 0)) continue;
-            near(gamma_p(a, x), boost::math::gamma_p(a, x), "gamma_p", a, x);
             near(gamma_q(a, x), boost::math::gamma_q(a, x), "gamma_q", a, x);
         }
         for (double b : {0.5, 2.0, 11.0, 900.0, 1e5})

@@ -160,10 +160,6 @@ double read_number(const Json& json) {
     throw Json::type_error::create(302, "expected a number, \"nan\", \"inf\" or \"-inf\"", &json);
 }
 
-std::optional<double> read_optional(const Json& json) {
-    return json.is_null() ? std::nullopt : std::optional(read_number(json));
-}
-
 Json parse_json(const std::string& text) {
     constexpr int deepest = 64;
     return Json::parse(text, [](int depth, Json::parse_event_t, const Json& value) {

@@ -74,8 +74,6 @@ Json number(double x);
 Json numbers(const std::vector<double>& values);
 /// Reads what number() made. Throws Json::exception.
 double read_number(const Json& json);
-/// The same, or none for null.
-std::optional<double> read_optional(const Json& json);
 /// The objects of a list that reads "a, b and c": each with the `separator` after it.
 Json separated(std::vector<Json> objects);
 

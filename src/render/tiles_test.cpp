@@ -11,7 +11,7 @@ namespace tiles_test {
 /// Returns a scene with a recessed panel, whose sides have no lobe and whose back follows the exponent of the scene.
 Scene scene_of_three_surfaces() {
     Experiment e = test::small_scene();
-    Shape panel = *e.shape_of_s();
+    Shape panel = e.shapes.at(e.surface_of_s().value());
     panel.form = shapes::Panel{{-1.5, 0.8, -1}, {3, 0, 0}, {0, 1.2, 0}, 0.3, {}};
     panel.material.inherits_s = true;
     e.shapes.push_back(panel);

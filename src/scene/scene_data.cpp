@@ -111,11 +111,6 @@ std::optional<std::size_t> SceneData::surface_of_s() const {
     return first([](std::size_t) { return true; });
 }
 
-const Shape* SceneData::shape_of_s() const {
-    const std::optional<std::size_t> surface = surface_of_s();
-    return surface && *surface < shapes.size() ? &shapes[*surface] : nullptr;
-}
-
 double SceneData::s() const {
     const std::optional<std::size_t> surface = surface_of_s();
     return surface ? *material(*surface).s : 0;

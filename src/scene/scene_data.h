@@ -293,8 +293,6 @@ struct SceneData {
     double s() const;
     /// Returns the surface whose exponent that is; empty if no surface has an exponent of its own.
     std::optional<std::size_t> surface_of_s() const;
-    /// The same if it is a shape.
-    const Shape* shape_of_s() const;
     const Shape* find_shape(std::string_view name) const;
 };
 

@@ -14,6 +14,7 @@
 #include "check/decide/sizes.h"
 #include "check/decide/small_tests.h"
 #include "check/decide/two_stages.h"
+#include "check/estimate/both_ways.h"
 #include "check/estimate/source.h"
 #include "check/verdicts/counts.h"
 #include "check/verdicts/light.h"

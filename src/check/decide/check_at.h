@@ -9,6 +9,7 @@
 #include "check/decide/sizes.h"
 #include "check/decide/small_tests.h"
 #include "check/estimate/budget.h"
+#include "check/estimate/evaluation_noise.h"
 #include "check/estimate/source.h"
 #include "check/verdict.h"
 #include "check/verdicts/questions.h"

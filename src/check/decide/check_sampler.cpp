@@ -17,6 +17,7 @@
 #include "check/constants.h"
 #include "check/decide/tail.h"
 #include "check/decide/whole_sampler.h"
+#include "check/estimate/evaluation_noise.h"
 #include "check/sources/check_case.h"
 
 namespace crescent::check {

@@ -72,9 +72,7 @@ std::optional<SmallFault> draws_on_curve(Source& source, const StreamKey& key) {
                 shifted_numbers.back()[k] += shift;
             }
     }
-    std::vector<Draw> draws(shifted_numbers.size()), point_draws(u.size());
-    source.draw(shifted_numbers, draws);
-    source.draw(u, point_draws);
+    const std::vector<Draw> draws = source.draw(shifted_numbers), point_draws = source.draw(u);
     SmallFault out{
         .family = Family::repeats, .what = "All draws lie on a curve, since no two random numbers move them apart"};
     const auto draws_per_point = static_cast<std::size_t>(4 * numbers);

@@ -38,8 +38,7 @@ std::vector<double> baseline_weights(const CheckCase& check_case, const StreamKe
             u.resize(std::min(batch_size, n - from));
             for (std::uint32_t i = 0; i < u.size(); ++i)
                 u[i] = numbers_at(draw_key, from + i, source.numbers(), source.resolution());
-            std::vector<Draw> batch(u.size());
-            source.draw(u, batch);
+            const std::vector<Draw> batch = source.draw(u);
             std::vector<std::size_t> indices;
             std::vector<Vec3d> wi;
             for (std::size_t i = 0; i < batch.size(); ++i)

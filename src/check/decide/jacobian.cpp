@@ -10,6 +10,7 @@
 
 #include "check/constants.h"
 #include "check/decide/small_tests.h"
+#include "check/estimate/sampling_map.h"
 
 namespace crescent::check {
 
@@ -37,16 +38,7 @@ struct Point {
     Branch branch{};
 };
 
-bool same_direction(const Draw& a, const Draw& b) {
-    return has_direction(a) && has_direction(b) &&
-        std::fabs(a.wi.x - b.wi.x) + std::fabs(a.wi.y - b.wi.y) + std::fabs(a.wi.z - b.wi.z) < 1e-7;
-}
-
-std::vector<Draw> draws_at(Source& source, const std::vector<PrimarySample>& u) {
-    std::vector<Draw> out(u.size());
-    source.draw(u, out);
-    return out;
-}
+bool same_direction(const Draw& a, const Draw& b) { return has_direction(a) && chord(a, b) < 1e-7; }
 
 /// A value of the choosing number, and whether it selects the branch of the draw at u.
 struct Probe {
@@ -68,7 +60,7 @@ std::vector<bool> selects_branch(Source& source, const std::vector<Point>& point
         u.push_back(points[i].u);
         u.back()[k] = std::clamp(x, ulp, 1 - ulp);
     }
-    const std::vector<Draw> d = draws_at(source, u);
+    const std::vector<Draw> d = source.draw(u);
     std::vector<bool> out;
     for (std::size_t j = 0; j < d.size(); ++j) out.push_back(same_direction(d[j], points[values[j].first].draw));
     return out;
@@ -142,9 +134,7 @@ void find_branches(Source& source, std::vector<Point>& points, int k, const Stre
 std::optional<int> chooser(Source& source, const std::vector<PrimarySample>& u, const std::vector<Draw>& draws) {
     constexpr double small_move = 0x1p-16;
     for (int k = 2; k >= 0; --k) {
-        std::vector<PrimarySample> v = u;
-        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? small_move : -small_move;
-        const std::vector<Draw> d = draws_at(source, v);
+        const std::vector<Draw> d = source.draw(moved(u, k, small_move));
         int move_count = 0, test_count = 0;
         for (std::size_t i = 0; i < u.size(); ++i)
             if (has_direction(draws[i])) {
@@ -176,7 +166,7 @@ std::vector<CentralDifferences> differences(Source& source, const std::vector<Po
                 double& x = u.back()[side < 2 ? p.first : p.second];
                 x = std::clamp(x + (side % 2 ? -h : h), 0.0, 1 - ulp);
             }
-        const std::vector<Draw> d = draws_at(source, u);
+        const std::vector<Draw> d = source.draw(u);
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Draw* q = &d[4 * i];
             const double x = points[i].u[points[i].first], y = points[i].u[points[i].second];
@@ -288,7 +278,7 @@ std::vector<MapDensity> map_densities(Source& source, const StreamKey& key) {
         source.traits.numbers > 3)
         return out;
     const std::vector<PrimarySample> u = first_numbers(key, points, source.traits);
-    const std::vector<Draw> draws = draws_at(source, u);
+    const std::vector<Draw> draws = source.draw(u);
     std::optional<int> choosing_number;
     int first = 0, second = 1;
     if (source.traits.numbers == 3) {

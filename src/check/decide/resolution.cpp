@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "check/constants.h"
+#include "check/estimate/sampling_map.h"
 #include "math/functions.h"
 
 namespace crescent::check {
@@ -24,11 +25,7 @@ Values values_at(Source& source, const Plan& plan, Vec3d w) {
 }
 
 /// Whether the two are directions that are not next to each other.
-bool jumps(const Draw& a, const Draw& b) {
-    if (!(a.pdf > 0) || !(b.pdf > 0)) return false;
-    const Vec3d jump = a.wi - b.wi;
-    return dot(jump, jump) > least_jump * least_jump;
-}
+bool jumps(const Draw& a, const Draw& b) { return has_direction(a) && has_direction(b) && chord(a, b) > least_jump; }
 
 }  // namespace
 
@@ -38,27 +35,21 @@ ResolutionEffect resolution_effect(Source& source, const Plan& plan, StreamKey k
     key.purpose = Purpose::corners;
     key.part = 24;
     const std::vector<PrimarySample> u = first_numbers(key, moved_draws, source.traits);
-    std::vector<Draw> draws(u.size()), next_draws(u.size());
-    source.draw(u, draws);
+    const std::vector<Draw> draws = source.draw(u);
     for (int k = 0; k < source.traits.numbers; ++k) {
-        const auto step_of = [k](const PrimarySample& x) { return x[k] < 0.5 ? ulp : -ulp; };
-        std::vector<PrimarySample> next = u;
-        for (std::size_t i = 0; i < u.size(); ++i) next[i][k] += step_of(u[i]);
-        source.draw(next, next_draws);
+        const std::vector<Draw> next_draws = source.draw(moved(u, k, ulp));
         std::vector<std::size_t> rows;     // of the draws that jump
         std::vector<PrimarySample> outer;  // for each of them the number before it, and the one after the next
         for (std::size_t i = 0; i < u.size(); ++i) {
             if (!jumps(draws[i], next_draws[i])) continue;
             rows.push_back(i);
-            PrimarySample previous = u[i], second = next[i];
-            previous[k] = std::clamp(u[i][k] - step_of(u[i]), 0.0, 1 - ulp);
-            second[k] += step_of(u[i]);
+            PrimarySample previous = moved(u[i], k, -ulp);
+            previous[k] = std::clamp(previous[k], 0.0, 1 - ulp);
             outer.push_back(previous);
-            outer.push_back(second);
+            outer.push_back(moved(u[i], k, 2 * ulp));
         }
         if (rows.empty()) continue;
-        std::vector<Draw> outer_draws(outer.size());
-        source.draw(outer, outer_draws);
+        const std::vector<Draw> outer_draws = source.draw(outer);
         for (std::size_t j = 0; j < rows.size(); ++j) {
             const Draw &draw = draws[rows[j]], &next_draw = next_draws[rows[j]];
             // A threshold has a branch on either side: before the jump and after it, nothing jumps. A hash of u does.

@@ -210,8 +210,7 @@ struct Sample {
 };
 Sample draw_sample(Source& source, std::uint32_t count, const StreamKey& key) {
     const std::vector<PrimarySample> u = first_numbers(key, count, source.traits);
-    std::vector<Draw> draws(u.size());
-    source.draw(u, draws);
+    const std::vector<Draw> draws = source.draw(u);
     UsableDraws usable = usable_draws(source, draws);
     return {std::move(usable.w), std::move(usable.p), static_cast<double>(count)};
 }

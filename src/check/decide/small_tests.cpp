@@ -9,6 +9,7 @@
 #include "check/constants.h"
 #include "check/decide/curve.h"
 #include "check/decide/jacobian.h"
+#include "check/estimate/sampling_map.h"
 #include "samplers/domains/sphere_chart.h"
 
 namespace crescent::check {
@@ -117,8 +118,7 @@ std::optional<SmallFault> rows_of_file(const Source& source) {
 std::optional<SmallFault> corners_of_u(Source& source) {
     if (!source.declaration.can_draw) return {};
     const std::vector<PrimarySample> u = corner_numbers(source.traits.numbers);
-    std::vector<Draw> draws(u.size());
-    source.draw(u, draws);
+    const std::vector<Draw> draws = source.draw(u);
     SmallFault out{Family::corners, 0, static_cast<double>(u.size())};
     for (std::size_t i = 0; i < u.size(); ++i) {
         std::optional<const char*> fault = fault_of(draws[i], source.traits);
@@ -148,13 +148,12 @@ template <class Call> void in_blocks(const Call& call) {
 std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
     if (source.traits.own_random || !source.declaration.can_draw) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, rows_in_blocks);
-    std::vector<Draw> draws(u.size()), block_draws(u.size()), reversed_draws(u.size());
-    source.draw(u, draws);
+    const std::vector<Draw> draws = source.draw(u);
+    std::vector<Draw> block_draws(u.size());
     in_blocks([&](std::size_t first, std::size_t n) {
         source.draw(std::span(u).subspan(first, n), std::span(block_draws).subspan(first, n));
     });
-    std::vector<PrimarySample> reversed_numbers(u.rbegin(), u.rend());
-    source.draw(reversed_numbers, reversed_draws);
+    std::vector<Draw> reversed_draws = source.draw(std::vector(u.rbegin(), u.rend()));
     std::reverse(reversed_draws.begin(), reversed_draws.end());
     SmallFault out{Family::state, 0, static_cast<double>(u.size())};
     const bool is_random = source.estimates || source.f_estimates;
@@ -178,8 +177,7 @@ std::optional<SmallFault> same_u_again(Source& source, const StreamKey& key) {
 std::optional<SmallFault> same_answers_again(Source& source, const StreamKey& key) {
     if (!source.declaration.can_draw) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, rows_in_blocks);
-    std::vector<Draw> draws(u.size());
-    source.draw(u, draws);
+    const std::vector<Draw> draws = source.draw(u);
     constexpr double golden = 2.399963229728653;  // radians
     std::vector<Vec3d> w;
     for (std::size_t i = 0; i < u.size(); ++i) {
@@ -232,12 +230,11 @@ std::vector<int> numbers_without_effect(Source& source, const StreamKey& key) {
     std::vector<int> out;
     if (source.traits.own_random || !source.declaration.can_draw) return out;
     const std::vector<PrimarySample> u = some_numbers(source, key, 64);
-    std::vector<Draw> draws(u.size()), others(u.size());
-    source.draw(u, draws);
+    const std::vector<Draw> draws = source.draw(u);
     for (int k = 0; k < source.traits.numbers; ++k) {
         std::vector<PrimarySample> v = u;
         for (std::size_t i = 0; i < v.size(); ++i) v[i][k] = u[(i + 1) % u.size()][k];
-        source.draw(v, others);
+        const std::vector<Draw> others = source.draw(v);
         bool has_no_effect = true;
         for (std::size_t i = 0; i < v.size(); ++i) has_no_effect = has_no_effect && same_draw(draws[i], others[i]);
         if (has_no_effect) out.push_back(k);
@@ -249,29 +246,18 @@ std::optional<SmallFault> few_bits(Source& source, const StreamKey& key) {
     // With more than two numbers, one may choose a texel and others the place in it.
     if (source.traits.numbers > 2 || source.traits.own_random || !source.declaration.can_draw) return {};
     const std::vector<PrimarySample> u = some_numbers(source, key, 64);
-    const auto draw_shifted = [&](int k, double shift) {
-        std::vector<PrimarySample> v = u;
-        for (PrimarySample& x : v) x[k] += x[k] < 0.5 ? shift : -shift;
-        std::vector<Draw> out(v.size());
-        source.draw(v, out);
-        return out;
-    };
-    std::vector<Draw> draws(u.size());
-    source.draw(u, draws);
-    const auto distance_of = [&](const Draw& a, const Draw& b) {
-        const Vec3d d = a.wi - b.wi;
-        return a.pdf > 0 && b.pdf > 0 ? std::sqrt(dot(d, d)) : -1;
-    };
+    const std::vector<Draw> draws = source.draw(u);
     for (int k = 0; k < source.traits.numbers; ++k) {
-        const std::vector<Draw> far_draws = draw_shifted(k, 0x1p-10), near_draws = draw_shifted(k, 0x1p-11),
-                                nearest_draws = draw_shifted(k, few_bits_step);
+        const std::vector<Draw> far_draws = source.draw(moved(u, k, 0x1p-10)),
+                                near_draws = source.draw(moved(u, k, 0x1p-11)),
+                                nearest_draws = source.draw(moved(u, k, few_bits_step));
         SmallFault out{.family = Family::repeats, .what = "Only the first bits of a random number move the draw"};
         for (std::size_t i = 0; i < u.size(); ++i) {
-            const double a = distance_of(draws[i], far_draws[i]), b = distance_of(draws[i], near_draws[i]);
-            const bool is_smooth = b > 0 && a > 1.5 * b && a < 3 * b;
+            const double a = chord(draws[i], far_draws[i]), b = chord(draws[i], near_draws[i]);
+            const bool is_smooth = b > 0 && a > 1.5 * b && a < 3 * b && a < no_chord;
             if (!is_smooth || a * few_bits_step / 0x1p-10 < few_bits_move) continue;
             ++out.trials;
-            if (distance_of(draws[i], nearest_draws[i]) == 0 && out.times++ == 0) {
+            if (chord(draws[i], nearest_draws[i]) == 0 && out.times++ == 0) {
                 out.first = {.u = u[i], .draw = draws[i], .p = 0, .expected = 0};
                 out.size = k;
             }

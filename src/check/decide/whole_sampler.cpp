@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "check/constants.h"
+#include "check/estimate/both_ways.h"
 #include "check/estimate/source.h"
 
 namespace crescent::check {

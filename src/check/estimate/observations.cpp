@@ -506,8 +506,7 @@ Vec3d through_holes(Source& source) {
     const StreamKey key{.seed = 1, .place = 0, .technique = 0, .stage = 1, .purpose = Purpose::light, .part = 1};
     for (std::uint32_t i = 0; i < draw_count; ++i)
         u.push_back(numbers_at(key, i, source.numbers(), source.resolution()));
-    std::vector<Draw> draws(draw_count);
-    oblique_source.draw(u, draws);
+    const std::vector<Draw> draws = oblique_source.draw(u);
     for (const Draw& d : draws) {
         if (!(d.delta > 0) || !(length(d.wi + oblique_source.wo) < straight_on)) continue;
         return weight_by_channel(d, source.channels()) * d.delta;

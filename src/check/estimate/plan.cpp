@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "check/estimate/sampling_map.h"
 #include "check/estimate/sort.h"
 #include "check/constants.h"
 #include "check/estimate/source.h"

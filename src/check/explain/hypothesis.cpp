@@ -47,8 +47,7 @@ void draw_at(Place& place, std::uint32_t count) {
     Source source = place.source();
     const StreamKey key = place.key(7, Purpose::pairs, 1);
     const std::vector<PrimarySample> u = first_numbers(key, count, source.traits);
-    std::vector<Draw> draws(count);
-    source.draw(u, draws);
+    const std::vector<Draw> draws = source.draw(u);
     const auto [rows, w, p] = usable_draws(source, draws);
     const CheckAt& c = *place.check;
     for (std::size_t i = 0; i < w.size(); ++i) {

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "check/explain/causes.h"
+#include "check/estimate/sampling_map.h"
 #include "check/explain/constants.h"
 #include "math/statistics.h"
 #include "output/format.h"
@@ -26,12 +27,7 @@ struct NumberStep {
     std::size_t setting;
     double from, to;
     Draw a, b;
-    static double move(const Draw& a, const Draw& b) {
-        if (has_direction(a) != has_direction(b)) return 4;  // larger than any distance
-        const Vec3d d = b.wi - a.wi;
-        return has_direction(a) ? std::sqrt(dot(d, d)) : 0;
-    }
-    bool jumps() const { return move(a, b) > jump_angle; }
+    bool jumps() const { return chord(a, b) > jump_angle; }
 };
 
 /// Bisects each step towards the larger change, and removes those that are smooth.
@@ -42,11 +38,10 @@ void close_in(Source& source, int number, std::span<const PrimarySample> others,
             u.push_back(others[s.setting]);
             u.back()[number] = (s.from + s.to) / 2;
         }
-        std::vector<Draw> middle(u.size());
-        source.draw(u, middle);
+        const std::vector<Draw> middle = source.draw(u);
         for (std::size_t i = 0; i < steps.size(); ++i) {
             NumberStep& s = steps[i];
-            if (NumberStep::move(s.a, middle[i]) > NumberStep::move(middle[i], s.b)) {
+            if (chord(s.a, middle[i]) > chord(middle[i], s.b)) {
                 s.to = u[i][number];
                 s.b = middle[i];
             } else {
@@ -64,8 +59,7 @@ std::vector<NumberStep> jumps_along(Source& source, int number, std::span<const 
         std::vector<PrimarySample> u(scan_points, others[i]);
         for (std::size_t k = 0; k < scan_points; ++k)
             u[k][number] = std::clamp(static_cast<double>(k) / (scan_points - 1), steep_rim, 1 - steep_rim);
-        std::vector<Draw> w(u.size());
-        source.draw(u, w);
+        const std::vector<Draw> w = source.draw(u);
         for (std::size_t k = 0; k + 1 < scan_points; ++k)
             if (const NumberStep s{
                     .setting = i, .from = u[k][number], .to = u[k + 1][number], .a = w[k], .b = w[k + 1]};
@@ -121,8 +115,7 @@ LobeDraws draws_of(
             u[i] = numbers_at(key, from + i, source.numbers(), source.resolution());
             u[i][chooser.number] = chooser.lobes[lobe].from + chooser.lobes[lobe].share() * u[i][chooser.number];
         }
-        std::vector<Draw> draws(u.size());
-        source.draw(u, draws);
+        const std::vector<Draw> draws = source.draw(u);
         const UsableDraws usable = usable_draws(source, draws);
         for (std::size_t i = 0; i < usable.w.size(); ++i) {
             const std::size_t l = plan.tree.find(to_chart(usable.w[i]));

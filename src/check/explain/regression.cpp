@@ -81,13 +81,6 @@ double inverse_at(const Matrix& a, std::size_t k) {
 
 }  // namespace
 
-double misfit_of(std::span<const Row> rows) {
-    double sum = 0;
-    for (const Row& r : rows)
-        sum += (r.observed - r.expected) * (r.observed - r.expected) / (r.unit * r.expected + r.variance);
-    return rows.empty() ? 1 : sum / static_cast<double>(rows.size());
-}
-
 Fit fit(std::span<const Row> rows, std::size_t groups, std::vector<std::size_t> factors) {
     Fit f;
     f.factors = std::move(factors);

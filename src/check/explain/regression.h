@@ -33,8 +33,6 @@ struct Fit {
 
 /// Fits the exponents by Newton's method; the constants follow from them.
 Fit fit(std::span<const Row> rows, std::size_t groups, std::vector<std::size_t> factors);
-/// Mean squared standardised residual of the unchanged expectation.
-double misfit_of(std::span<const Row> rows);
 /// Forward selection: adds the factor with the largest gain in likelihood if that gain exceeds what chance gives to one
 /// of many (BIC and `least_gain`).
 Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, std::size_t largest_count);

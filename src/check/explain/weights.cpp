@@ -40,8 +40,7 @@ std::vector<Compared> compared_at(const CheckCase& check_case, int technique, st
         .purpose = Purpose::light,
         .part = 1};
     const std::vector<PrimarySample> u = first_numbers(key, draws_to_compare, source.traits);
-    std::vector<Draw> draws(u.size());
-    source.draw(u, draws);
+    const std::vector<Draw> draws = source.draw(u);
     std::vector<Vec3d> w;
     std::vector<const Draw*> usable;
     for (const Draw& d : draws)
