@@ -175,7 +175,7 @@ CRESCENT_EXPORT(user_takes)(int numbers, int context, int bits)->void {
 }
 
 /// {sampler, surface, light, wo, evaluations} -> {state, verdicts: [{name, question, state, message, cause, theta,
-/// azimuth, hidden, evidence, states: [of each w_o]}]}: of each verdict the worst of all w_o.
+/// azimuth, found: [faults in words], evidence, states: [of each w_o]}]}: of each verdict the worst of all w_o.
 CRESCENT_EXPORT(user_checked)()->void {
     const ordered_json query = request();
     const std::vector<CheckCase> cases = cases_of(query);
@@ -199,8 +199,7 @@ CRESCENT_EXPORT(user_checked)()->void {
         if (rank(worst->state) > rank(state)) state = worst->state;
         ordered_json entry = {{"name", worst->name}, {"question", verdict_questions[k]}, {"state", word(worst->state)},
             {"message", worst->message()}, {"cause", worst->cause}, {"states", states}, {"evidence", worst->evidence},
-            {"hidden", ordered_json::object()}};
-        for (const auto& [fault, size] : worst->hidden) entry["hidden"][fault] = json_number(size);
+            {"found", check::found_faults(worst->hidden)}};
         const auto angles = worst->wo.value_or(std::pair(cases[0].theta_deg, cases[0].azimuth_deg));
         entry["theta"] = angles.first;
         entry["azimuth"] = angles.second;

@@ -14,17 +14,12 @@ import { drawPoints, pointLayers, PointPicture } from "./points";
 import { FilmWorker, Pool, withUser } from "./pool";
 import { openingOf, Source } from "./state";
 import { grounds } from "./templates";
-import { figures, samplers } from "./text";
+import { samplers } from "./text";
 import { isShader } from "./wgsl";
 import { evaluations, four } from "./workshop_settings";
 
-const faults: Record<string, string> = {
-  constant: "a constant factor", leak: "a share of uniform draws", cap: "a share of p that is never drawn", rotation: "a rotation", parameter: "a wrong parameter",
-  gap: "a share of p that is never drawn", shift: "a shift along the range",
-};
-
 export interface Verdict {
-  name: string; question: string; state: string; message: string; cause: string; theta: number; azimuth: number; states: string[]; hidden: Record<string, number | string>;
+  name: string; question: string; state: string; message: string; cause: string; theta: number; azimuth: number; states: string[]; found: string[];
 }
 export interface Checked { state: string; evaluations: number; verdicts: Verdict[] }
 export interface Work { code: string; ground: string }
@@ -43,11 +38,8 @@ const captions: Record<string, string> = {
 };
 
 /** What a right verdict could have missed: the size of each kind of fault that is found in nine of ten cases. */
-function power({ state, hidden }: Verdict): string {
-  const sizes = Object.entries(hidden).filter(([, size]) => typeof size === "number");
-  if (state !== "right" || sizes.length === 0) return "";
-  const said = sizes.map(([name, size]) => `${faults[name] ?? name} of ${name === "rotation" ? `${figures(size as number)} rad` : `${figures(100 * (size as number))} %`}`);
-  return ` In nine of ten cases it finds ${said.join(", ")}.`;
+function power({ state, found }: Verdict): string {
+  return state === "right" && found.length > 0 ? ` In nine of ten cases it finds ${found.join(", ")}.` : "";
 }
 
 export interface Workplace {

@@ -9,6 +9,7 @@
 #include "check/check.h"
 #include "check/report/html.h"
 #include "check/report/screen.h"
+#include "check/report/sentences.h"
 #include "check/report/summary.h"
 #include "check/sources/cases.h"
 #include "check/sources/check_case.h"

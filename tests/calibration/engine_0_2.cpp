@@ -59,18 +59,18 @@ private:
             add_once(out.open, "density");
             const auto size = [](const std::optional<double>& v) { return v.value_or(-1); };
             out.message += fmt::format("[constant {:.2g} leak {:.2g} cap {:.2g} rotation {:.2g} parameter {:.2g}]",
-                size(c.sizes.constant), size(c.sizes.leak), size(c.sizes.cap), size(c.sizes.rotation),
-                size(c.sizes.parameter));
+                size(c.sizes.of("constant")), size(c.sizes.of("leak")), size(c.sizes.of("cap")),
+                size(c.sizes.of("rotation")), size(c.sizes.of("parameter")));
         }
         for (const check::Answer& a : c.answers) {
             const auto [at, fresh] = out.p.emplace(check::info(a.family).name, a.p);
             if (!fresh) at->second = std::min(at->second, a.p);
         }
-        take_most(out.stated, "constant", c.sizes.constant);
-        take_most(out.stated, "leak", c.sizes.leak);
-        take_most(out.stated, "hole", c.sizes.cap);
-        take_most(out.stated, "rotation", c.sizes.rotation);
-        take_most(out.stated, "exponent", c.sizes.parameter);
+        take_most(out.stated, "constant", c.sizes.of("constant"));
+        take_most(out.stated, "leak", c.sizes.of("leak"));
+        take_most(out.stated, "hole", c.sizes.of("cap"));
+        take_most(out.stated, "rotation", c.sizes.of("rotation"));
+        take_most(out.stated, "exponent", c.sizes.of("parameter"));
     }
 };
 

@@ -58,9 +58,9 @@ TEST(CheckAtOneWo, ReportsARightSamplerWithSizes) {
     const CheckAt c = checked({});
     EXPECT_FALSE(c.wrong());
     EXPECT_FALSE(c.inconclusive);
-    ASSERT_TRUE(c.sizes.constant && c.sizes.leak && c.sizes.cap && c.sizes.rotation && c.sizes.parameter);
-    EXPECT_LT(*c.sizes.constant, target_constant);
-    EXPECT_LT(*c.sizes.leak, target_leak * 4);
+    for (const char* kind : {"constant", "leak", "cap", "rotation", "parameter"}) EXPECT_TRUE(c.sizes.of(kind)) << kind;
+    EXPECT_LT(c.sizes.of("constant").value(), target_constant);
+    EXPECT_LT(c.sizes.of("leak").value(), target_leak * 4);
     EXPECT_LT(c.evaluations, 500000u);
 }
 
@@ -111,9 +111,9 @@ template <class Break> int found(double size, Break break_by) {
 }
 TEST(CheckAtOneWo, FindsFaultsOfTheStatedSizes) {
     const Sizes s = checked({}).sizes;
-    EXPECT_GE(found(*s.constant, [](Cosine& c, double e) { c.factor = 1 + e; }), 7);
-    EXPECT_GE(found(*s.leak, [](Cosine& c, double e) { c.leak = e; }), 7);
-    EXPECT_GE(found(*s.cap, [](Cosine& c, double e) { c.hole = e; }), 7);
+    EXPECT_GE(found(s.of("constant").value(), [](Cosine& c, double e) { c.factor = 1 + e; }), 7);
+    EXPECT_GE(found(s.of("leak").value(), [](Cosine& c, double e) { c.leak = e; }), 7);
+    EXPECT_GE(found(s.of("cap").value(), [](Cosine& c, double e) { c.hole = e; }), 7);
 }
 
 /// Counts every call. p: a noisy sky, a cosine with a spike of 1/10 of the draws, or a cosine; f = p pi if it has one.

@@ -140,8 +140,43 @@ void take_less(std::optional<double>& to, double size) {
     if (!to || size < *to) to = std::min(size, 1.0);
 }
 
-// ---- Faults of size e that draw by p (1 + e g) for some g. A kind of fault is one function: what g changes in each
-// test.
+/// A few thousand draws from separate streams, and p at them.
+struct Sample {
+    std::vector<Vec3d> w;
+    std::vector<double> p;
+    double draw_count = 0;
+};
+Sample draw_sample(Source& source, std::uint32_t count, const StreamKey& key) {
+    UsableDraws usable = usable_draws(source, source.draw(first_numbers(key, count, source.traits)));
+    return {std::move(usable.w), std::move(usable.p), static_cast<double>(count)};
+}
+
+}  // namespace
+
+/// What a size is computed from. Without a density there are no tests of it.
+struct SizeTests {
+    Source& source;
+    const Evidence& e;
+    double level;  // of a family at stage 1
+    std::vector<SumTest> whole;
+    std::vector<NodeSums> sums;
+    std::vector<NodeTest> nodes;
+    Sample sample;
+
+    SizeTests(Source& size_source, const Evidence& evidence, double family_level)
+        : source(size_source), e(evidence), level(family_level) {
+        if (!e.source.has_density()) return;
+        whole = whole_sums(e, level);
+        sums = node_sums(e);
+        nodes = node_tests(e, sums, level);
+    }
+    /// No density is uniform over an infinite line, and powers of p per length are not those of p over the chart.
+    bool is_infinite() const { return source.traits.domain && source.traits.domain->domain().is_infinite(); }
+};
+
+namespace {
+
+// ---- Faults of size e that draw by p (1 + e g) for some g: what g changes in each test.
 
 /// Per unit of size: the change of the mean of h, and the mean square of the draws that are exchanged.
 struct FaultChange {
@@ -162,33 +197,13 @@ void take_detected(const std::vector<Test>& tests, double n, const ChangeOf& cha
 }
 
 /// p is (1 + e) times the density of the draws.
-std::optional<double> constant_of(const Evidence& e, const std::vector<SumTest>& sum_tests) {
-    std::optional<double> out;
+FaultSize constant_of(const SizeTests& tests) {
+    FaultSize out;
     const auto change_of_sum = [&](const SumTest& t) {
         const bool grows = t.sum == mass || t.sum == bridge;
-        return FaultChange{grows ? e.integrals.sums[t.sum].value : 0};
+        return FaultChange{grows ? tests.e.integrals.sums[t.sum].value : 0};
     };
-    take_detected(sum_tests, e.observations.independent, change_of_sum, out);
-    return out;
-}
-
-/// A share e of the draws is uniform.
-std::optional<double> leak_of(const Evidence& e, const std::vector<SumTest>& sum_tests,
-    const std::vector<NodeSums>& sums, const std::vector<NodeTest>& nodes) {
-    std::optional<double> out;
-    const double domain = e.integrals.domain, n = e.observations.independent;
-    const auto change_of_sum = [&](const SumTest& t) {
-        const double mean = std::fabs(e.integrals.uniform_sums[t.sum] / domain - e.observations.sums[t.sum].sum / n);
-        return FaultChange{mean, e.integrals.uniform_squares[t.sum] / domain + mean * mean};
-    };
-    const auto change_of_node = [&](const NodeTest& t) {
-        const auto first = static_cast<std::size_t>(e.plan.tree.nodes()[t.node].child);
-        const double a = sums[first].solid_angle / domain, b = sums[first + 1].solid_angle / domain;
-        return FaultChange{std::fabs((1 - t.share) * a - t.share * b),
-            t.h * ((1 - t.share) * (1 - t.share) * a + t.share * t.share * b)};
-    };
-    take_detected(sum_tests, n, change_of_sum, out);
-    take_detected(nodes, n, change_of_node, out);
+    take_detected(tests.whole, tests.e.observations.independent, change_of_sum, out.size);
     return out;
 }
 
@@ -202,17 +217,26 @@ double distance_from_uniform(const Evidence& e) {
     return std::min(sum, 1.0);
 }
 
-/// A few thousand draws from separate streams, and p at them.
-struct Sample {
-    std::vector<Vec3d> w;
-    std::vector<double> p;
-    double draw_count = 0;
-};
-Sample draw_sample(Source& source, std::uint32_t count, const StreamKey& key) {
-    const std::vector<PrimarySample> u = first_numbers(key, count, source.traits);
-    const std::vector<Draw> draws = source.draw(u);
-    UsableDraws usable = usable_draws(source, draws);
-    return {std::move(usable.w), std::move(usable.p), static_cast<double>(count)};
+/// A share e of the draws is uniform.
+FaultSize leak_of(const SizeTests& tests) {
+    FaultSize out;
+    if (tests.whole.empty() || tests.is_infinite()) return out;
+    const Evidence& e = tests.e;
+    out.change = distance_from_uniform(e);
+    const double domain = e.integrals.domain, n = e.observations.independent;
+    const auto change_of_sum = [&](const SumTest& t) {
+        const double mean = std::fabs(e.integrals.uniform_sums[t.sum] / domain - e.observations.sums[t.sum].sum / n);
+        return FaultChange{mean, e.integrals.uniform_squares[t.sum] / domain + mean * mean};
+    };
+    const auto change_of_node = [&](const NodeTest& t) {
+        const auto first = static_cast<std::size_t>(e.plan.tree.nodes()[t.node].child);
+        const double a = tests.sums[first].solid_angle / domain, b = tests.sums[first + 1].solid_angle / domain;
+        return FaultChange{std::fabs((1 - t.share) * a - t.share * b),
+            t.h * ((1 - t.share) * (1 - t.share) * a + t.share * t.share * b)};
+    };
+    take_detected(tests.whole, n, change_of_sum, out.size);
+    take_detected(tests.nodes, n, change_of_node, out.size);
+    return out;
 }
 
 /// The noncentrality at which chi^2 with these degrees of freedom exceeds this level half of the time.
@@ -338,8 +362,8 @@ private:
 
 /// The mass of a cap that is detected half of the time at nine of ten centres. About some centres a fifth of that mass
 /// is detected, so that nine of ten caps over all centres are found.
-std::optional<double> cap_of(const Evidence& e, const std::vector<NodeSums>& sums, const std::vector<NodeTest>& nodes,
-    const Sample& sample, double level) {
+std::optional<double> least_cap(const Evidence& e, const std::vector<NodeSums>& sums,
+    const std::vector<NodeTest>& nodes, const Sample& sample, double level) {
     constexpr std::size_t centres = 256;
     if (sample.w.empty()) return {};
     Caps caps(e, sums, nodes, level);
@@ -349,6 +373,15 @@ std::optional<double> cap_of(const Evidence& e, const std::vector<NodeSums>& sum
     const auto rank = static_cast<std::ptrdiff_t>(stated_power * static_cast<double>(sizes.size()));
     std::nth_element(sizes.begin(), sizes.begin() + rank, sizes.end());
     return sizes[static_cast<std::size_t>(rank)];
+}
+
+FaultSize cap_of(const SizeTests& tests) {
+    FaultSize out{least_cap(tests.e, tests.sums, tests.nodes, tests.sample, tests.level)};
+    // A gap is a box of the domain: it has longer edges than a cap of the same mass, so that it cuts more leaves.
+    constexpr double box_over_cap = 4.0 / 3;
+    if (out.size && tests.source.traits.domain && !tests.source.is_line())
+        out.size = std::min(*out.size * box_over_cap, 1.0);
+    return out;
 }
 
 /// A place on the chart with the values of h.
@@ -519,14 +552,15 @@ double least_angle(double first, const std::vector<std::vector<double>>& ratios)
 
 /// The detectable rotation: of eight axes across the mean direction, those about which a rotation changes the density
 /// are used.
-void set_rotation(Source& source, const Evidence& e, const std::vector<SumTest>& sum_tests,
-    const std::vector<NodeTest>& nodes, const Sample& sample, Sizes& out) {
-    const DomainChart* domain = source.traits.domain.get();
-    if (sample.w.size() < 64 || (domain && domain->is_discrete())) return;
+FaultSize rotation_of(const SizeTests& tests) {
+    const Evidence& e = tests.e;
+    const Sample& sample = tests.sample;
+    const DomainChart* domain = tests.source.traits.domain.get();
+    if (sample.w.size() < 64 || (domain && domain->is_discrete())) return {};
     constexpr int axes = 8;
     const Vec3d axis_of_lobe = dot(e.plan.middle, e.plan.middle) > 1e-4 ? normalize(e.plan.middle) : Vec3d{0, 0, 1};
     const Frame<double> frame = frame_about(axis_of_lobe);
-    const std::vector<double> requirements = Turn::requirements(e.plan.tree, sum_tests, nodes);
+    const std::vector<double> requirements = Turn::requirements(e.plan.tree, tests.whole, tests.nodes);
     std::vector<Place> places;
     for (std::size_t i = 0; i < sample.w.size(); ++i) places.push_back(place_of(e, sample.w[i], sample.p[i]));
     std::array<std::vector<std::vector<double>>, axes> ratios;
@@ -538,16 +572,17 @@ void set_rotation(Source& source, const Evidence& e, const std::vector<SumTest>&
             });
         };
         if (multiple > growth && std::ranges::all_of(ratios, is_detected)) break;
-        const Turn first_turn(source, e, sample, places, 0, frame.t, multiple * target_rotation),
-            second_turn(source, e, sample, places, 1, frame.b, multiple * target_rotation);
-        const auto first_effects = first_turn.effects(sum_tests, nodes),
-                   second_effects = second_turn.effects(sum_tests, nodes);
+        const Turn first_turn(tests.source, e, sample, places, 0, frame.t, multiple * target_rotation),
+            second_turn(tests.source, e, sample, places, 1, frame.b, multiple * target_rotation);
+        const auto first_effects = first_turn.effects(tests.whole, tests.nodes),
+                   second_effects = second_turn.effects(tests.whole, tests.nodes);
         // Shifts are along one axis or the other.
         const int step = domain ? axes / 2 : 1;
-        for (int k = 0; k < (source.is_line() ? 1 : axes); k += step) {
+        for (int k = 0; k < (tests.source.is_line() ? 1 : axes); k += step) {
             const double angle = k * two_pi / 2 / axes, c = math::cos(angle), s = math::sin(angle);
             const auto index = static_cast<std::size_t>(k);
-            ratios[index].push_back(ratios_about(first_effects, second_effects, c, s, requirements, sum_tests.size()));
+            ratios[index].push_back(
+                ratios_about(first_effects, second_effects, c, s, requirements, tests.whole.size()));
             if (multiple == 1) changes[index] = math::hypot(c * first_turn.distance, s * second_turn.distance);
         }
     }
@@ -560,30 +595,12 @@ void set_rotation(Source& source, const Evidence& e, const std::vector<SumTest>&
     for (std::size_t k = 0; k < axes; ++k)
         if (!ratios[k].empty() && changes[k] >= least_change)
             sizes.push_back({least_angle(target_rotation, ratios[k]), changes[k]});
-    if (sizes.empty()) return;
+    if (sizes.empty()) return {};
     // The effect of a rotation on a single test vanishes about some axis, so the stated size covers about seven of
     // eight axes.
     std::ranges::sort(sizes, std::greater<>(), &Size::angle);
     const Size& stated_size = sizes[sizes.size() > axes / 2 ? 1 : 0];
-    out.rotation = stated_size.angle;
-    out.rotation_change = stated_size.change / target_rotation;
-}
-
-/// Draws by p^(1 + e) in place of p move E[h] by e times the covariance of h and ln p. They are modelled as draws of p
-/// that are kept with probability (p / c)^e: about 3 e standard deviations of ln p are drawn again. spread: variance of
-/// ln p.
-std::optional<double> exponent_of(const Evidence& e, const std::vector<SumTest>& sum_tests, double spread) {
-    const Observations& o = e.observations;
-    const double n = o.independent;
-    const double covariance = o.slope_log_p / n - o.sums[slope].sum / n * o.log_p.sum / n;
-    std::optional<double> out;
-    if (!(covariance > 0)) return out;
-    const double redrawn_share = 3 * std::sqrt(spread), square = 2 * o.sums[slope].square / n;
-    const auto change_of_sum = [&](const SumTest& t) {
-        return t.sum == slope ? FaultChange{covariance, redrawn_share * square} : FaultChange{};
-    };
-    take_detected(sum_tests, n, change_of_sum, out);
-    return out;
+    return {stated_size.angle, stated_size.change / target_rotation};
 }
 
 /// Variance of ln p over the draws.
@@ -592,15 +609,37 @@ double spread_of_log_p(const Observations& o) {
     return o.log_p.square / n - o.log_p.sum / n * o.log_p.sum / n;
 }
 
-/// The relative bias of all weights that is found; a node has more noise.
-std::optional<double> bias_of(const Evidence& e, double level) {
+/// Draws by p^(1 + e) in place of p move E[h] by e times the covariance of h and ln p. They are modelled as draws of p
+/// that are kept with probability (p / c)^e: about 3 e standard deviations of ln p are drawn again.
+FaultSize parameter_of(const SizeTests& tests) {
+    constexpr double least_spread_of_log_p = 1e-4;
+    FaultSize out;
+    if (tests.whole.empty() || tests.is_infinite()) return out;
+    const Observations& o = tests.e.observations;
+    const double n = o.independent, spread = spread_of_log_p(o);
+    if (!(spread > least_spread_of_log_p)) return out;
+    out.change = std::sqrt(spread) / 2;
+    const double covariance = o.slope_log_p / n - o.sums[slope].sum / n * o.log_p.sum / n;
+    if (!(covariance > 0)) return out;
+    const double redrawn_share = 3 * std::sqrt(spread), square = 2 * o.sums[slope].square / n;
+    const auto change_of_sum = [&](const SumTest& t) {
+        return t.sum == slope ? FaultChange{covariance, redrawn_share * square} : FaultChange{};
+    };
+    take_detected(tests.whole, n, change_of_sum, out.size);
+    return out;
+}
+
+/// The relative bias of all weights that is found, where they are all there is; a node has more noise.
+FaultSize bias_of(const SizeTests& tests) {
+    if (!tests.source.traits.reciprocal_weight) return {};
+    const Evidence& e = tests.e;
     const Sums& s = e.observations.mean[0];
     const Estimate& expected = e.integrals.light.mean[0];
     const double n = e.observations.weighted_draws;
     if (!(n > 1) || !(expected.value > 0)) return {};
     const double mean = s.sum / n, v = std::max(s.square / n - mean * mean, 0.0) / n + expected.variance;
-    const double errors = student_two_sided_quantile(1e6, level) + power_of_each;
-    return errors * std::sqrt(v) / expected.value + detection_floor;
+    const double errors = student_two_sided_quantile(1e6, tests.level) + power_of_each;
+    return {errors * std::sqrt(v) / expected.value + detection_floor};
 }
 
 /// Of an integral that points resolve up to `unresolved`; none if it is 0.
@@ -611,32 +650,42 @@ std::optional<double> relative_error(const Estimate& resolved, double unresolved
 
 }  // namespace
 
+std::span<const FaultKind> fault_kinds() {
+    using Words = FaultKind::Words;
+    static constexpr Words constant{"constant", "a constant factor of {:.2g} %", "relative constant factor of p"},
+        leak{"leak", "{:.2g} % of the draws uniform", "share of draws spread evenly"},
+        parameter{"parameter", "an exponent off by {:.2g} %", "relative change of an exponent"},
+        bias{"bias", "a bias of {:.2g} %", "relative bias of the weights"};
+    static constexpr FaultKind kinds[] = {
+        {"normalised", constant, constant, target_constant, constant_of},
+        {"density", leak, leak, target_leak, leak_of},
+        {"density", {"cap", "a cap with {:.2g} % of p never drawn", "share of p in a cap that is never drawn"},
+            {"gap", "a gap with {:.2g} % of p never drawn", "share of p in a gap that is never drawn"}, target_cap,
+            cap_of},
+        {"mean", bias, bias, target_bias_of_weights, bias_of},
+        {"density", {"rotation", "a rotation by {:.2g} rad", "rotation in radians", 1},
+            {"shift", "a shift by {:.2g} % of the range", "shift as a share of the range"}, target_rotation,
+            rotation_of},
+        {"density", parameter, parameter, target_parameter, parameter_of},
+    };
+    return kinds;
+}
+
 Sizes sizes_of(Source& source, const Evidence& e, double level, std::uint32_t draws, const StreamKey& key) {
     Sizes out;
-    if (source.traits.reciprocal_weight) out.bias = bias_of(e, level);
-    if (!e.source.has_density()) return out;
-    const std::vector<SumTest> sum_tests = whole_sums(e, level);
-    const std::vector<NodeSums> sums = node_sums(e);
-    const std::vector<NodeTest> nodes = node_tests(e, sums, level);
-    out.integral = error_of_integral(e.integrals, e.observations);
-    out.constant = constant_of(e, sum_tests);
-    // No density is uniform over an infinite line, and powers of p per length are not those of p over the chart.
-    if (!source.traits.domain || !source.traits.domain->domain().is_infinite()) {
-        out.leak = leak_of(e, sum_tests, sums, nodes);
-        out.leak_change = distance_from_uniform(e);
-        constexpr double least_spread_of_log_p = 1e-4;
-        if (const double spread = spread_of_log_p(e.observations); spread > least_spread_of_log_p) {
-            out.parameter = exponent_of(e, sum_tests, spread);
-            out.parameter_change = std::sqrt(spread) / 2;
-        }
+    SizeTests tests(source, e, level);
+    if (e.source.has_density()) {
+        out.integral = error_of_integral(e.integrals, e.observations);
+        tests.sample = draw_sample(source, draws, key);
     }
-    const Sample sample = draw_sample(source, draws, key);
-    out.cap = cap_of(e, sums, nodes, sample, level);
-    // A gap is a box of the domain: it has longer edges than a cap of the same mass, so that it cuts more leaves.
-    constexpr double box_over_cap = 4.0 / 3;
-    if (out.cap && source.traits.domain && !source.is_line()) out.cap = std::min(*out.cap * box_over_cap, 1.0);
-    set_rotation(source, e, sum_tests, nodes, sample, out);
+    for (const FaultKind& kind : fault_kinds()) out.faults.push_back(kind.size(tests));
     return out;
+}
+
+std::optional<double> Sizes::of(std::string_view name) const {
+    const auto kind = std::ranges::find(fault_kinds(), name, [](const FaultKind& k) { return k.of_directions.name; });
+    const auto index = static_cast<std::size_t>(kind - fault_kinds().begin());
+    return index < faults.size() ? faults[index].size : std::nullopt;
 }
 
 DifferenceSizes sizes_between(const Evidence& e, double level, std::span<const Vec3d> centres) {
@@ -652,7 +701,7 @@ DifferenceSizes sizes_between(const Evidence& e, double level, std::span<const V
         sample.w.push_back(w);
         sample.p.push_back(e.plan.tree.leaves()[e.plan.tree.find(to_chart(w))].q);
     }
-    out.part = cap_of(e, sums, node_tests(e, sums, level), sample, level);
+    out.part = least_cap(e, sums, node_tests(e, sums, level), sample, level);
     return out;
 }
 
@@ -673,18 +722,15 @@ double half_interval(const Estimate& integral) {
     return student_two_sided_quantile(std::min(nu, 1e6), 0.05) * std::sqrt(integral.variance);
 }
 
-double worst_ratio(const Sizes& s) {
-    double worst = 0;
-    const auto take_ratio = [&](const std::optional<double>& size, double target, double change) {
-        if (size) worst = std::max(worst, std::min(*size / target, *size * change / target_leak));
-    };
-    take_ratio(s.bias, target_bias_of_weights, 1e300);
-    take_ratio(s.integral, target_constant, 1e300);
-    take_ratio(s.constant, target_constant, 1e300);
-    take_ratio(s.cap, target_cap, 1e300);
-    take_ratio(s.leak, target_leak, s.leak_change);
-    take_ratio(s.rotation, target_rotation, s.rotation_change);
-    take_ratio(s.parameter, target_parameter, s.parameter_change);
+double ratio_of(const FaultSize& s, const FaultKind& kind) {
+    return s.size ? std::min(*s.size / kind.target, *s.size * s.change / target_leak) : 0;
+}
+
+double worst_ratio(const Sizes& sizes, std::string_view verdict) {
+    const auto is_asked = [&](std::string_view name) { return verdict.empty() || verdict == name; };
+    double worst = is_asked("normalised") ? sizes.integral.value_or(0) / target_constant : 0;
+    for (std::size_t k = 0; k < sizes.faults.size(); ++k)
+        if (is_asked(fault_kinds()[k].verdict)) worst = std::max(worst, ratio_of(sizes.faults[k], fault_kinds()[k]));
     return worst;
 }
 

@@ -353,41 +353,39 @@ Sentences sentences_of_right(const CheckAt& c, std::string_view verdict) {
 }
 
 Sentences sentences_of_open(const CheckAt& c, std::string_view verdict) {
-    struct Open {
-        const char* what;
-        double size, target, ratio;
-    };
-    const Sizes& s = c.sizes;
     const Estimate& integral = c.integrals.sums[mass];
     if (verdict == "normalised" && c.is_integral_open())
         return {{"undetermined integral",
             fmt::format("{:.0f} points do not determine the integral of p to {:g} %: they give about {:.2g}, and a "
                         "pole of p may have any integral.",
                 c.integrals.points, 100 * c.most_ratio() * target_constant, integral.value)}};
-    std::vector<Open> open_sizes;
-    const auto add = [&](const char* what, std::optional<double> Sizes::* size, double target) {
-        Sizes sizes;
-        sizes.leak_change = s.leak_change;
-        sizes.rotation_change = s.rotation_change;
-        sizes.parameter_change = s.parameter_change;
-        sizes.*size = s.*size;
-        if (s.*size) open_sizes.push_back({what, *(s.*size), target, worst_ratio(sizes)});
-    };
-    if (verdict == "normalised") {
-        add("relative constant factor of p", &Sizes::constant, target_constant);
-    } else {
-        add("share of draws spread evenly", &Sizes::leak, target_leak);
-        add(c.traits.domain ? "share of p in a gap that is never drawn" : "share of p in a cap that is never drawn",
-            &Sizes::cap, target_cap);
-        add(c.traits.domain ? "shift as a share of the range" : "rotation in radians", &Sizes::rotation,
-            target_rotation);
-        add("relative change of an exponent", &Sizes::parameter, target_parameter);
+    const FaultKind* worst = nullptr;
+    double size = 0, largest_ratio = 0;
+    for (std::size_t k = 0; k < c.sizes.faults.size(); ++k) {
+        const FaultKind& kind = fault_kinds()[k];
+        const double ratio = ratio_of(c.sizes.faults[k], kind);
+        if (verdict != kind.verdict || !(ratio > largest_ratio)) continue;
+        worst = &kind;
+        size = *c.sizes.faults[k].size;
+        largest_ratio = ratio;
     }
-    if (open_sizes.empty()) return {};
-    const Open& worst = *std::ranges::max_element(open_sizes, {}, &Open::ratio);
-    return {{fmt::format("least {}", worst.what),
-                fmt::format("The least {} that would have been found is {:.2g}.", worst.what, worst.size)},
-        {"required", fmt::format("Right requires at most {:g}.", c.most_ratio() * worst.target)}};
+    if (!worst) return {};
+    const char* what = worst->words(c.traits).least;
+    return {
+        {fmt::format("least {}", what), fmt::format("The least {} that would have been found is {:.2g}.", what, size)},
+        {"required", fmt::format("Right requires at most {:g}.", c.most_ratio() * worst->target)}};
+}
+
+std::vector<std::string> found_faults(std::map<std::string, double> sizes) {
+    std::vector<std::string> out;
+    for (const FaultKind& kind : fault_kinds())
+        for (const FaultKind::Words& words : {kind.of_directions, kind.of_points}) {
+            const auto entry = sizes.find(words.name);
+            if (entry == sizes.end()) continue;
+            out.push_back(fmt::format(fmt::runtime(words.found), std::min(words.unit * entry->second, words.unit)));
+            sizes.erase(entry);  // both may have one name
+        }
+    return out;
 }
 
 // ---- Without pdf(w) only the weights of the draws are compared with f; if there are no weights either, the draws
@@ -437,7 +435,7 @@ void note_rows(const CheckAt& c, Verdict& v) {
         v.sentences.push_back(
             {"use of rows", "One row in eight shapes the tree, four are compared with p, three confirm."});
     }
-    if (v.state != State::inconclusive || c.sizes.constant == std::nullopt) return;
+    if (v.state != State::inconclusive || !c.sizes.of("constant")) return;
     v.next = {};
     const double times = worst_ratio(c.sizes) / inconclusive_at;
     if (times > 1)

@@ -2,6 +2,8 @@
 // is right or not decided.
 #pragma once
 
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +23,10 @@ Sentences sentences_of_right(const CheckAt& check, std::string_view verdict);
 
 /// What a verdict lacks that was not decided: the size, and how small it has to be.
 Sentences sentences_of_open(const CheckAt& check, std::string_view verdict);
+
+/// Faults of these sizes in words, in the order of fault_kinds(): "a constant factor of 0.03 %". Sizes by name of the
+/// kind.
+std::vector<std::string> found_faults(std::map<std::string, double> sizes);
 
 /// Completes a verdict that has no fault: tests that were not possible for a sampler at one w_o, and the reason, which
 /// is that it has no pdf(w) or no weights, that answers are random estimates, or that it is a file of draws.

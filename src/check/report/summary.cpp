@@ -12,6 +12,7 @@
 
 #include "base/vec.h"
 #include "check/report/print.h"
+#include "check/report/sentences.h"
 #include "check/sources/check_case.h"
 #include "check/verdict.h"
 #include "math/functions.h"
@@ -297,20 +298,8 @@ std::string unseen_text(const CheckResult& result) {
     for (const Verdict& v : result.verdicts)
         for (const auto& [kind, size] : v.hidden)
             if (v.state == State::right) largest[kind] = std::max(largest[kind], size);
-    std::vector<std::string> sizes;
-    const auto add = [&](const char* kind, const char* words, double unit) {
-        if (const auto entry = largest.find(kind); entry != largest.end())
-            sizes.push_back(fmt::format(fmt::runtime(words), std::min(unit * entry->second, unit)));
-    };
-    add("constant", "a constant factor of {:.2g} %", 100);
-    add("leak", "{:.2g} % of the draws uniform", 100);
-    add("cap", "a cap with {:.2g} % of p never drawn", 100);
-    add("bias", "a bias of {:.2g} %", 100);
-    add("gap", "a gap with {:.2g} % of p never drawn", 100);
-    add("rotation", "a rotation by {:.2g} rad", 1);
-    add("shift", "a shift by {:.2g} % of the range", 100);
-    add("parameter", "an exponent off by {:.2g} %", 100);
-    return sizes.empty() ? "" : fmt::format("Found with a probability of 90 %: {}.", fmt::join(sizes, ", "));
+    const std::vector<std::string> faults = check::found_faults(std::move(largest));
+    return faults.empty() ? "" : fmt::format("Found with a probability of 90 %: {}.", fmt::join(faults, ", "));
 }
 
 std::string nothing_drawn_text(const CheckResult& result) {

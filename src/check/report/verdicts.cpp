@@ -20,21 +20,17 @@ namespace crescent::check {
 
 namespace {
 
-void add_sizes(const Sizes& s, bool is_of_points, Verdict& v) {
-    const auto add = [&](const char* name, const std::optional<double>& size) {
-        constexpr double undetectable_share = 0.99;  // of the draws or of p: no fault of this kind would be found
-        if (!size || *size > undetectable_share) return;
+void add_sizes(const Sizes& sizes, const Traits& traits, Verdict& v) {
+    constexpr double undetectable_share = 0.99;  // of the draws or of p: no fault of this kind would be found
+    for (std::size_t k = 0; k < sizes.faults.size(); ++k) {
+        const FaultKind& kind = fault_kinds()[k];
+        const std::optional<double>& size = sizes.faults[k].size;
+        if (v.name != kind.verdict || !size || *size > undetectable_share) continue;
+        const char* name = kind.words(traits).name;
         double& largest = v.hidden[name];
         largest = std::max(largest, *size);
         v.evidence["would_have_found"][name] = largest;
-    };
-    if (v.name == "normalised") add("constant", s.constant);
-    if (v.name == "mean") add("bias", s.bias);
-    if (v.name != "density") return;
-    add("leak", s.leak);
-    add(is_of_points ? "gap" : "cap", s.cap);
-    add(is_of_points ? "shift" : "rotation", s.rotation);
-    add("parameter", s.parameter);
+    }
 }
 
 /// The share of the answers or tests that fail, as the size of a fault.
@@ -127,7 +123,7 @@ Sentences decide_at(const CheckAt& c, Verdict& v) {
         if (info(a.family).verdict == v.name && v.state != State::wrong)
             v.evidence["p"][std::string(info(a.family).name)] = a.p;
     if (v.state == State::wrong) return out;
-    add_sizes(c.sizes, c.traits.domain != nullptr, v);
+    add_sizes(c.sizes, c.traits, v);
     if (v.name == "density" && c.moved_by_resolution > 0) {
         v.state = State::inconclusive;
         v.next_step = "Random numbers of 53 bits (u_bits=53).";
@@ -136,28 +132,12 @@ Sentences decide_at(const CheckAt& c, Verdict& v) {
                         100 * c.moved_by_resolution)},
             {"difference", "The draws differ from p by no more than that."}};
     }
-    if (v.name == "mean" && c.sizes.bias && *c.sizes.bias > c.most_ratio() * target_bias_of_weights) {
-        v.state = State::inconclusive;
-        v.next = {NextStep::Kind::more_draws, sqr(*c.sizes.bias / (c.most_ratio() * target_bias_of_weights))};
-        return {{"detectable", fmt::format("Only a bias of {:.2g} % would have been found.", 100 * *c.sizes.bias)},
-            {"required", fmt::format("Right requires at most {:g} %.", 100 * c.most_ratio() * target_bias_of_weights)}};
-    }
-    if (v.name == "density" || v.name == "normalised") {
-        Sizes sizes;
-        if (v.name == "normalised") {
-            sizes.constant = c.sizes.constant;
-            sizes.integral = c.sizes.integral;
-        } else {
-            sizes = c.sizes;
-            sizes.constant.reset();
-            sizes.integral.reset();
-        }
-        if (worst_ratio(sizes) <= c.most_ratio()) return out;
-        v.state = State::inconclusive;
-        v.next = {NextStep::Kind::more_draws, worst_ratio(sizes) * worst_ratio(sizes) / 25};
-        return sentences_of_open(c, v.name);
-    }
-    return out;
+    const double ratio = worst_ratio(c.sizes, v.name);
+    if (ratio <= c.most_ratio()) return out;
+    v.state = State::inconclusive;
+    constexpr double margin = 2;  // of the sizes that more draws are to reach
+    v.next = {NextStep::Kind::more_draws, sqr(margin * ratio / c.most_ratio())};
+    return sentences_of_open(c, v.name);
 }
 
 /// Names the technique in the first of its sentences, if several techniques are combined.
