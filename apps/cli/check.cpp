@@ -459,8 +459,8 @@ void try_files(const CheckFlags& flags) {
     for (const std::string& sampler : {flags.arm, flags.against})
         inputs.emplace_back(sampler.ends_with(".toml") || names_shader(sampler) ? sampler : python_file(sampler));
     inputs.insert(inputs.end(), flags.expect.begin(), flags.expect.end());
-    claim_outputs({{"--json", flags.json}, {"--junit", flags.junit}, {"--sarif", flags.sarif}, {"--html", flags.html},
-                      {"--repro", flags.repro}},
+    claim_outputs(
+        with_reports({{"--json", flags.json}, {"--html", flags.html}, {"--repro", flags.repro}}, flags.reports),
         inputs);
 }
 
@@ -469,8 +469,7 @@ void try_files(const CheckFlags& flags) {
 void write_files(const CheckFlags& flags, const CheckResult& result) {
     const ResultSource source{crescent::version(), crescent::commit(), command_of(flags)};
     if (!flags.json.empty()) write_whole(flags.json, verdict_json(result, source));
-    if (!flags.junit.empty()) write_whole(flags.junit, verdict_junit(result));
-    if (!flags.sarif.empty()) write_whole(flags.sarif, verdict_sarif(result, place_of_sampler(flags), source));
+    write_reports(flags.reports, verdict_report(result, place_of_sampler(flags), source.version));
     if (!flags.html.empty()) write_whole(flags.html, verdict_html(result, source));
 }
 
@@ -560,8 +559,9 @@ void print_verdicts(const CheckResult& result, bool verbose) {
 
 int check(const CheckFlags& call_flags) {
     CheckFlags flags = call_flags;
-    for (std::string* file : {&flags.json, &flags.junit, &flags.sarif, &flags.html, &flags.repro})
-        // a sampler may call chdir
+    std::vector<std::string*> files = {&flags.json, &flags.html, &flags.repro};
+    for (auto& [format, file] : flags.reports) files.push_back(&file);
+    for (std::string* file : files)  // a sampler may call chdir
         if (!file->empty()) *file = std::filesystem::absolute(*file).string();
     const Stopwatch watch;
     Progress monitor(flags.quiet ? Progress::Style::silent : Progress::fitting());

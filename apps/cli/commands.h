@@ -84,14 +84,15 @@ struct CheckFlags {
     std::map<std::string, std::vector<std::string>> shader;  // options of a shader, by flag
     std::string over;                                        // NAME=VALUES of a shader
     std::string domain;                                      // of a shader, or of a program that states none
-    std::string estimates;                 // the expected value of an estimator of a number, one or three expressions
-    std::string against;                   // a built-in arm, or a program
-    std::vector<std::string> expect;       // waivers, files of them, or "same": with against, a difference fails
-    std::vector<std::string> wo;           // x,y,z or degrees
-    std::string json, junit, sarif, html;  // files to write
-    std::string repro;                     // a script to write
-    double alpha = 1e-3, patience = 0;     // patience: s for a program; 0: two minutes, with --full an hour
-    double timeout = 0;                    // s per response of a program or plugin; 0: the defaults
+    std::string estimates;            // the expected value of an estimator of a number, one or three expressions
+    std::string against;              // a built-in arm, or a program
+    std::vector<std::string> expect;  // waivers, files of them, or "same": with against, a difference fails
+    std::vector<std::string> wo;      // x,y,z or degrees
+    std::string json, html;           // files to write
+    ReportFiles reports;
+    std::string repro;                  // a script to write
+    double alpha = 1e-3, patience = 0;  // patience: s for a program; 0: two minutes, with --full an hour
+    double timeout = 0;                 // s per response of a program or plugin; 0: the defaults
     unsigned seed = 1;
     int pixels = 0;  // of an experiment; 0: the grid of w_o
     bool no_code = false;
@@ -110,12 +111,13 @@ struct CompareFlags {
     std::string align, expect, smallest, exposure, alpha, trim, brightest, theme;  // "": the file's
     bool crop = false, pair = false, schema = false, schema_as_json = false, quiet = false;
     // Of a suite.
-    std::string baseline, candidate;           // folders; "": the file's patterns
-    std::string json, junit, markdown, sarif;  // files to write
-    bool allow_inconclusive = false;           // too few renders do not fail
-    std::string because, store;                // of accept
-    std::string tolerance;                     // of views without noise; "": the file's
-    std::vector<std::string> views;            // to accept; empty: all
+    std::string baseline, candidate;  // folders; "": the file's patterns
+    std::string json, markdown;       // files to write
+    ReportFiles reports;
+    bool allow_inconclusive = false;  // too few renders do not fail
+    std::string because, store;       // of accept
+    std::string tolerance;            // of views without noise; "": the file's
+    std::vector<std::string> views;   // to accept; empty: all
     bool new_baseline = false, plan = false, accept = false;
     // Of renders that are made here.
     std::string render, a, b;             // commands
@@ -142,13 +144,10 @@ inline std::array<std::pair<const char*, std::string>, 4> reading_keys(const Com
 }
 /// `crescent compare SUITE.toml`, and --baseline DIR --candidate DIR.
 int compare_suite(const CompareFlags& flags);
-/// Makes the renders of a suite, or those of two commands, and decides; `staging` and outputs are those of a suite.
+/// Makes the renders of a suite, or those of two commands, and decides; the outputs are those of a suite.
 SuiteResult make_renders_of(const CompareFlags& flags, Suite& suite, Progress& progress);
 /// The suite of --a and --b. Throws InputError.
 Suite suite_of_two(const CompareFlags& flags, std::vector<CompareFlag> keys);
-/// Writes files that say that the call failed, in place of those of an earlier call ("": none).
-void report_failure(
-    const std::string& junit, const std::string& sarif, const std::string& file, const std::exception& error);
 
 struct ImportFlags {
     std::string file, out, material;  // "": all materials

@@ -124,7 +124,7 @@ std::string command_of(const CompareFlags& f) {
 
 /// InputError if a flag is given that only a suite has.
 void forbid_suite_flags(const CompareFlags& f) {
-    const std::pair<const char*, bool> suite_options[] = {{"--json", !f.json.empty()}, {"--junit", !f.junit.empty()},
+    const std::pair<const char*, bool> suite_options[] = {{"--json", !f.json.empty()},
         {"--markdown", !f.markdown.empty()}, {"--because", !f.because.empty()}, {"--store", !f.store.empty()},
         {"--tolerance", !f.tolerance.empty()}, {"--new-baseline", f.new_baseline}, {"--plan", f.plan},
         {"--accept", f.accept}};
@@ -134,9 +134,17 @@ void forbid_suite_flags(const CompareFlags& f) {
                 {flag, 0, 0}, "expected a suite: a file with a table [suite], or --baseline and --candidate");
 }
 
+/// Writes files that say that the call failed, in place of those of an earlier call.
+void report_failure(const ReportFiles& reports, const std::string& file, const std::exception& error) {
+    try {
+        write_reports(reports, failure_report(file, error, crescent::version()));
+    } catch (const OutputError&) {  // the failure itself is reported
+    }
+}
+
 int compare_arms(const CompareFlags& flags, const std::string& out) {
     const ComparePlan plan = plan_of(flags_of(flags), flags.file);
-    claim_outputs({{"--sarif", flags.sarif}}, {flags.file});
+    claim_outputs(with_reports({}, flags.reports), {flags.file});
     Provenance provenance;
     provenance.version = crescent::version();
     provenance.commit = commit();
@@ -148,7 +156,7 @@ int compare_arms(const CompareFlags& flags, const std::string& out) {
     const CompareResult result = crescent::compare_renders(plan, {out}, provenance, progress, summary);
     progress.clear();
     print(summary);
-    if (!flags.sarif.empty()) write_whole(flags.sarif, compare_sarif(plan, result, flags.file, provenance));
+    write_reports(flags.reports, compare_report(plan, result, flags.file, provenance.version));
     return result.state == CompareResult::State::holds ? passed
         : result.state == CompareResult::State::fails  ? failed
         : flags.allow_inconclusive                     ? passed
@@ -170,7 +178,7 @@ int compare(const CompareFlags& flags) {
                passed;
     const bool has_folders = !flags.baseline.empty() || !flags.candidate.empty();
     const std::string out = flags.out.empty() ? "out/compare" : flags.out;
-    std::string junit = flags.junit;
+    ReportFiles reports = flags.reports;
     try {
         if (has_folders || flags.makes_renders() || (!flags.file.empty() && is_suite(flags.file)))
             return compare_suite(flags);
@@ -178,10 +186,10 @@ int compare(const CompareFlags& flags) {
         if (flags.file.empty() && flags.arms.empty())
             throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
         std::error_code ignored;  // that of an earlier call says nothing about this one
-        if (std::filesystem::is_regular_file(out + "/junit.xml", ignored)) junit = out + "/junit.xml";
+        if (std::filesystem::is_regular_file(out + "/junit.xml", ignored)) reports["junit"] = out + "/junit.xml";
         return compare_arms(flags, out);
     } catch (const Interrupted&) { throw; } catch (const std::exception& e) {
-        report_failure(junit, flags.sarif, flags.file, e);
+        report_failure(reports, flags.file, e);
         throw;
     }
 }

@@ -142,16 +142,13 @@ int test_suite(const CompareFlags& flags) {
     Progress progress(flags.quiet ? Progress::Style::silent : Progress::fitting());
     const StopOnSignal stop(progress);
     if (flags.plan) return plan_suite(flags, suite, progress);
-    claim_outputs(
-        {{"--json", flags.json}, {"--junit", flags.junit}, {"--markdown", flags.markdown}, {"--sarif", flags.sarif}},
-        {flags.file});
+    claim_outputs(with_reports({{"--json", flags.json}, {"--markdown", flags.markdown}}, flags.reports), {flags.file});
     Staging staging(flags.out.empty() ? "out/compare" : flags.out);
     const SuiteResult result =
         flags.makes_renders() ? make_renders_of(flags, suite, progress) : crescent::compare_suite(suite, progress);
     if (!flags.json.empty()) write_whole(flags.json, suite_json(suite, result, flags.new_baseline, provenance));
-    if (!flags.junit.empty()) write_whole(flags.junit, suite_junit(suite, result, flags.new_baseline));
     if (!flags.markdown.empty()) write_whole(flags.markdown, suite_markdown(suite, result, provenance));
-    if (!flags.sarif.empty()) write_whole(flags.sarif, suite_sarif(suite, result, flags.new_baseline, provenance));
+    write_reports(flags.reports, suite_report(suite, result, flags.new_baseline, provenance.version));
     staging.write("report.html", suite_html(suite, result, provenance));
     for (const auto& [name, bytes] : suite_plates(result)) staging.write(name, bytes);
     staging.commit(progress);
@@ -162,15 +159,6 @@ int test_suite(const CompareFlags& flags) {
 }
 
 }  // namespace
-
-void report_failure(
-    const std::string& junit, const std::string& sarif, const std::string& file, const std::exception& error) {
-    try {
-        if (!junit.empty()) write_whole(junit, failure_junit(file.empty() ? "crescent compare" : file, error.what()));
-        if (!sarif.empty()) write_whole(sarif, failure_sarif(crescent::version(), file, error));
-    } catch (const OutputError&) {  // the failure itself is reported
-    }
-}
 
 int compare_suite(const CompareFlags& flags) {
     forbid_other_flags(flags);

@@ -56,13 +56,14 @@ CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
 
 /// The output files of a call.
 void outputs(CLI::App& c, CheckFlags& f) {
-    for (CLI::Option* file :
-        {c.add_option("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes"),
-            c.add_option("--junit", f.junit, "write for a build server"),
-            c.add_option("--sarif", f.sarif, "write what fails, for the annotations of a code host"),
-            c.add_option("--html", f.html, "write one page with maps, histograms and roses"),
-            c.add_option("--repro", f.repro, "write a Python script that shows the first fault without crescent")})
-        file->type_name("FILE")->check(not_empty);
+    const auto add_file = [&](const std::string& flag, std::string& file, const char* purpose) {
+        c.add_option(flag, file, purpose)->type_name("FILE")->check(not_empty);
+    };
+    add_file("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes");
+    for (const ReportFormat& format : report_formats())
+        add_file("--" + std::string(format.name), f.reports[format.name], format.purpose);
+    add_file("--html", f.html, "write one page with maps, histograms and roses");
+    add_file("--repro", f.repro, "write a Python script that shows the first fault without crescent");
 }
 
 /// A sampler given by the caller.

@@ -83,6 +83,8 @@
 #include "metrics/metrics.h"
 #include "metrics/monte_carlo_reference.h"
 #include "output/charts.h"
+#include "output/junit.h"
+#include "output/report_formats.h"
 #include "output/stored_json.h"
 #include "output/tone_map.h"
 #include "render/estimator.h"

@@ -267,7 +267,7 @@ void add_check_run(nb::module_& m) {
             },
             nb::arg("all") = false)
         .def("json", [](const CheckRun& j) { return verdict_json(j.result, j.source); })
-        .def("junit", [](const CheckRun& j) { return verdict_junit(j.result); })
+        .def("junit", [](const CheckRun& j) { return junit_text(verdict_report(j.result)); })
         .def("html", [](const CheckRun& j) { return verdict_html(j.result, j.source); });
 }
 

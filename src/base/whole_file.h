@@ -12,7 +12,7 @@ namespace crescent {
 void can_write(const std::string& path);
 /// A file that a command writes, by the flag that names it; path "": none.
 struct OutputFile {
-    const char* flag;
+    std::string flag;
     std::string path;
 };
 /// Does it for each before the work is begun. Throws InputError if one is a file that the command reads, or if two are

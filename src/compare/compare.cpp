@@ -14,6 +14,7 @@
 #include "compare/plates.h"
 #include "compare/wording.h"
 #include "output/format.h"
+#include "output/junit.h"
 #include "report/plates/canvas.h"
 
 namespace crescent {
@@ -197,7 +198,7 @@ CompareResult compare_renders(const ComparePlan& plan, const CompareOptions& opt
     const Json stored = compare_result_json(plan, stats, result, provenance);
     staging.write("metrics.json", text(stored));
     staging.write("metrics.csv", compare_csv(result));
-    staging.write("junit.xml", compare_junit(plan, result));
+    staging.write("junit.xml", junit_text(compare_report(plan, result)));
     staging.write("report.html", compare_html(stored, pictures));
     staging.commit(monitor);
     summary = compare_summary(plan, stats, result, options.out);

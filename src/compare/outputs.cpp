@@ -1,4 +1,5 @@
-// A comparison as metrics.json (docs/compare.schema.json), metrics.csv, junit.xml and a summary for the terminal.
+// A comparison as metrics.json (docs/compare.schema.json), metrics.csv, a report of its assertions and a summary for
+// the terminal.
 #include "compare/outputs.h"
 
 #include <fmt/format.h>
@@ -240,43 +241,26 @@ std::string compare_csv(const CompareResult& result) {
     return out;
 }
 
-namespace {
-
-/// The assertions and the expectation as test cases.
-JunitSuite cases_of(const ComparePlan& plan, const CompareResult& result) {
-    JunitSuite suite{plan.title, {}, {}};
-    const auto add = [&](const std::string& name, bool holds, const std::string& message) {
-        suite.cases.push_back(
-            {plan.file, name, holds ? JunitCase::State::passed : JunitCase::State::failed, message, "", {}});
+TestReport compare_report(
+    const ComparePlan& plan, const CompareResult& result, const std::string& file, const std::string& version) {
+    TestReport report{
+        .name = plan.title, .properties = {}, .cases = {}, .rules = {}, .annotations = {}, .version = version};
+    const auto add = [&](const std::string& name, bool holds, const std::string& message, unsigned line) {
+        report.cases.push_back(
+            {plan.file, name, holds ? TestCase::State::passed : TestCase::State::failed, message, "", {}});
+        report.rules.push_back(name);
+        if (!holds) report.annotations.push_back({name, "error", message, file, line, name});
     };
-    for (const AssertionResult& a : result.assertions)
-        add(a.name, a.pass,
-            fmt::format("{}: measured {}, must be {} {}", a.text, shortest(a.measured), a.op, shortest(a.bound)));
-    if (plan.expect == Expectation::same)
-        add("the arms are the same", result.state == CompareResult::State::holds, result.sentence);
-    return suite;
-}
-
-}  // namespace
-
-std::string compare_junit(const ComparePlan& plan, const CompareResult& result) {
-    return junit_text(cases_of(plan, result));
-}
-
-std::string compare_sarif(
-    const ComparePlan& plan, const CompareResult& result, const std::string& file, const Provenance& provenance) {
-    std::vector<std::string> rules;
-    std::vector<SarifResult> results;
-    const std::vector<JunitCase> cases = cases_of(plan, result).cases;  // those of the assertions come first
-    for (std::size_t k = 0; k < cases.size(); ++k) {
-        const JunitCase& c = cases[k];
-        rules.push_back(c.name);
+    for (std::size_t k = 0; k < result.assertions.size(); ++k) {
+        const AssertionResult& a = result.assertions[k];
         const bool is_in_file = k < plan.assertions.size() && plan.assertions[k].location.file == file;
-        if (c.state != JunitCase::State::passed)
-            results.push_back(
-                {c.name, "error", c.message, file, is_in_file ? plan.assertions[k].location.line : 0u, c.name});
+        add(a.name, a.pass,
+            fmt::format("{}: measured {}, must be {} {}", a.text, shortest(a.measured), a.op, shortest(a.bound)),
+            is_in_file ? plan.assertions[k].location.line : 0u);
     }
-    return sarif_text(provenance.version, rules, results);
+    if (plan.expect == Expectation::same)
+        add("the arms are the same", result.state == CompareResult::State::holds, result.sentence, 0);
+    return report;
 }
 
 std::string compare_summary(

@@ -7,6 +7,7 @@
 #include "compare/renders.h"
 #include "compare/results.h"
 #include "output/format.h"
+#include "output/test_report.h"
 #include "report/report.h"
 
 namespace crescent {
@@ -16,14 +17,12 @@ Json compare_result_json(
     const ComparePlan& plan, const RenderStats& stats, const CompareResult& result, const Provenance& provenance);
 /// One metric per row, RFC 4180.
 std::string compare_csv(const CompareResult& result);
-std::string compare_junit(const ComparePlan& plan, const CompareResult& result);
+/// The assertions and the expectation, and those that fail at the compare file; file: "" without one.
+TestReport compare_report(const ComparePlan& plan, const CompareResult& result, const std::string& file = "",
+    const std::string& version = "");
 std::string compare_summary(
     const ComparePlan& plan, const RenderStats& stats, const CompareResult& result, const std::string& out_dir);
 /// The method of places whose noise is correlated, as in the JSON.
 inline constexpr const char* dependent_method = "Benjamini-Yekutieli";
-
-/// The assertions and the expectation that fail, as SARIF 2.1.0, at the compare file; file: "" without one.
-std::string compare_sarif(
-    const ComparePlan& plan, const CompareResult& result, const std::string& file, const Provenance& provenance);
 
 }  // namespace crescent

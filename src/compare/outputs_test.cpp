@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include "output/junit.h"
+#include "output/sarif.h"
 #include "tests/support/memory_renders.h"
 
 namespace crescent {
@@ -70,7 +72,7 @@ TEST(CompareCsv, HasARowForEachMetric) {
 TEST(CompareJunit, HasACaseForEachClaim) {
     const auto junit = [](const std::vector<CompareFlag>& flags) {
         const Compared c(flags);
-        return compare_junit(c.plan, c.result);
+        return junit_text(compare_report(c.plan, c.result));
     };
     const CompareFlag same{{"expect"}, "same", false, ""}, bright = check("bright", "y_mean.frame(b) > 1");
     EXPECT_THAT(junit({bright}), HasSubstr("tests=\"1\" failures=\"0\""));
@@ -79,7 +81,7 @@ TEST(CompareJunit, HasACaseForEachClaim) {
 
 TEST(CompareSarif, HasAResultForEachClaimThatFails) {
     const Compared c({check("bright", "y_mean.frame(b) > 1"), check("dark", "y_mean.frame(b) < 1")});
-    const Json sarif = Json::parse(compare_sarif(c.plan, c.result, "compare.toml", {}));
+    const Json sarif = Json::parse(sarif_text(compare_report(c.plan, c.result, "compare.toml")));
     const Json& run = sarif["runs"][0];
     EXPECT_EQ(run["tool"]["driver"]["rules"].size(), 2u);
     ASSERT_EQ(run["results"].size(), 1u);
@@ -88,7 +90,8 @@ TEST(CompareSarif, HasAResultForEachClaimThatFails) {
     ComparePlan of_file = c.plan;
     for (std::size_t k = 0; k < of_file.assertions.size(); ++k)
         of_file.assertions[k].location = {"compare.toml", static_cast<unsigned>(10 * k + 7), 1};
-    const Json placed = Json::parse(compare_sarif(of_file, c.result, "compare.toml", {}))["runs"][0]["results"];
+    const Json placed =
+        Json::parse(sarif_text(compare_report(of_file, c.result, "compare.toml")))["runs"][0]["results"];
     EXPECT_EQ(placed[0]["locations"][0]["physicalLocation"]["region"]["startLine"], 17);
 }
 

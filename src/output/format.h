@@ -101,38 +101,4 @@ inline std::string csv_field(std::string_view field) {
     return out + "\"";
 }
 
-// ---- junit.xml for build servers: one suite, of a run, a result or a comparison.
-
-struct JunitCase {
-    enum class State { passed, failed, error, skipped };
-
-    std::string group, name;
-    State state = State::passed;
-    std::string message, text;      // of all except passed cases; text: in full, "" if the message is all
-    std::optional<double> seconds;  // if it varies from run to run and is still requested
-};
-
-struct JunitSuite {
-    std::string name;
-    std::vector<std::pair<std::string, std::string>> properties;
-    std::vector<JunitCase> cases;
-};
-
-/// Returns the file. Any text is allowed in it: it is escaped here. Equal suites give equal bytes.
-std::string junit_text(const JunitSuite& suite);
-
-// ---- The Static Analysis Results Interchange Format 2.1.0, which code hosts show at lines of files.
-
-struct SarifResult {
-    std::string rule, level;  // level: error, warning or note
-    std::string message;
-    std::string file;      // with a line; "": of no file
-    unsigned line = 0;     // 0: unknown
-    std::string identity;  // equal in two calls if both find the same
-};
-
-/// Returns the file. `rules`: every rule that a result may have.
-std::string sarif_text(
-    const std::string& version, const std::vector<std::string>& rules, const std::vector<SarifResult>& results);
-
 }  // namespace crescent

@@ -10,6 +10,7 @@
 #include "experiment/overrides.h"
 #include "experiment/published.h"
 #include "output/format.h"
+#include "output/junit.h"
 #include "report/report.h"
 
 namespace crescent {
@@ -293,15 +294,15 @@ std::string metrics_csv(const ReportInputs& in) {
 
 namespace {
 
-JunitCase case_of(const AssertionResult& a, const std::string& group) {
-    JunitCase out{
-        .group = group, .name = a.name, .state = JunitCase::State::passed, .message = "", .text = "", .seconds = {}};
+TestCase case_of(const AssertionResult& a, const std::string& group) {
+    TestCase out{
+        .group = group, .name = a.name, .state = TestCase::State::passed, .message = "", .text = "", .seconds = {}};
     if (!a.skipped.empty()) {
-        out.state = JunitCase::State::skipped;
+        out.state = TestCase::State::skipped;
         out.message = a.skipped;
     }
     if (!a.failed()) return out;
-    out.state = JunitCase::State::failed;
+    out.state = TestCase::State::failed;
     out.message = fmt::format("measured {}, must be {} {}{}", shortest(a.measured), a.op, shortest(a.bound),
         a.reference_good ? "" : "; the reference is not good enough: " + a.reference_fault);
     out.text = a.text + ": " + out.message;
@@ -312,12 +313,15 @@ JunitCase case_of(const AssertionResult& a, const std::string& group) {
 
 std::string junit_xml(const ReportInputs& in) {
     const Provenance& p = in.provenance;
-    JunitSuite suite{in.experiment.title,
-        {{"version", p.version}, {"commit", p.commit}, {"experiment", p.experiment_file}, {"hash", p.experiment_hash},
-            {"command", p.command}},
-        {}};
-    for (const AssertionResult& a : in.metrics.assertions) suite.cases.push_back(case_of(a, p.experiment_file));
-    return junit_text(suite);
+    TestReport report{.name = in.experiment.title,
+        .properties = {{"version", p.version}, {"commit", p.commit}, {"experiment", p.experiment_file},
+            {"hash", p.experiment_hash}, {"command", p.command}},
+        .cases = {},
+        .rules = {},
+        .annotations = {},
+        .version = p.version};
+    for (const AssertionResult& a : in.metrics.assertions) report.cases.push_back(case_of(a, p.experiment_file));
+    return junit_text(report);
 }
 
 // ---- timing.json: what varies between equal runs (seconds, threads, instruction set, date).

@@ -80,34 +80,14 @@ std::string verdict_table(const CheckResult& result, bool includes_right) {
     return out;
 }
 
-std::string verdict_junit(const CheckResult& result) {
-    using Case = JunitCase::State;
-    JunitSuite suite{"crescent check", {}, {}};
-    for (const auto& [arm, device] : result.devices) suite.properties.emplace_back("device of " + arm, device.text());
-    for (const Verdict& v : result.verdicts) {
-        const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
-        const bool is_open = v.state == State::skipped || v.state == State::inconclusive;
-        const std::string next = next_step_text(v);
-        const Case state = v.state == State::error ? Case::error
-            : fails                                ? Case::failed
-            : is_open                              ? Case::skipped
-                                                   : Case::passed;
-        suite.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.check_case), state,
-            fmt::format("{}: {}", word(v.state), v.first_sentence()),
-            v.message() + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " Next step: " + next),
-            v.seconds});
-    }
-    for (const std::string& line : result.unmet)
-        suite.cases.push_back({"crescent check", "expectations", Case::failed, line, line, 0});
-    return junit_text(suite);
-}
+namespace {
 
-std::string verdict_sarif(
-    const CheckResult& result, const std::pair<std::string, unsigned>& place, const ResultSource& source) {
-    std::vector<SarifResult> results;
+/// Verdicts that fail or are inconclusive and that the caller does not expect.
+std::vector<Annotation> annotations_of(const CheckResult& result, const std::pair<std::string, unsigned>& place) {
+    std::vector<Annotation> out;
     const auto add = [&](const std::string& rule, const char* level, const std::string& message,
                          const std::string& identity) {
-        results.push_back({rule, level, message, place.first, place.second, identity});
+        out.push_back({rule, level, message, place.first, place.second, identity});
     };
     for (const Verdict& v : result.verdicts) {
         if (v.waived || (!v.why_expected.empty() && v.expected)) continue;
@@ -120,9 +100,38 @@ std::string verdict_sarif(
             fmt::format("{} {} {}", v.arm, v.check_case, v.name));
     }
     for (const std::string& line : result.unmet) add("expectation", "error", line, line);
-    std::vector<std::string> rules(verdict_names.begin(), verdict_names.end());
-    rules.emplace_back("expectation");
-    return sarif_text(source.version, rules, results);
+    return out;
+}
+
+}  // namespace
+
+TestReport verdict_report(
+    const CheckResult& result, const std::pair<std::string, unsigned>& place, const std::string& version) {
+    using Case = TestCase::State;
+    TestReport report{.name = "crescent check",
+        .properties = {},
+        .cases = {},
+        .rules = {verdict_names.begin(), verdict_names.end()},
+        .annotations = annotations_of(result, place),
+        .version = version};
+    report.rules.emplace_back("expectation");
+    for (const auto& [arm, device] : result.devices) report.properties.emplace_back("device of " + arm, device.text());
+    for (const Verdict& v : result.verdicts) {
+        const bool fails = v.why_expected.empty() ? v.state == State::wrong || !v.expected : !v.expected;
+        const bool is_open = v.state == State::skipped || v.state == State::inconclusive;
+        const std::string next = next_step_text(v);
+        const Case state = v.state == State::error ? Case::error
+            : fails                                ? Case::failed
+            : is_open                              ? Case::skipped
+                                                   : Case::passed;
+        report.cases.push_back({v.arm, fmt::format("{} [{}]", v.name, v.check_case), state,
+            fmt::format("{}: {}", word(v.state), v.first_sentence()),
+            v.message() + (v.cause.empty() ? "" : " " + v.cause) + (next.empty() ? "" : " Next step: " + next),
+            v.seconds});
+    }
+    for (const std::string& line : result.unmet)
+        report.cases.push_back({"crescent check", "expectations", Case::failed, line, line, 0});
+    return report;
 }
 
 // ---- The terms of each front end for a next step.

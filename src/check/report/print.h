@@ -1,22 +1,20 @@
-// Output of verdicts: a table for the terminal, JUnit for build servers and SARIF for code hosts.
+// Output of verdicts: a table for the terminal, and a report for build servers and code hosts.
 #pragma once
 
 #include <string>
 #include <utility>
 
-#include "check/report/result_json.h"
 #include "check/verdict.h"
+#include "output/test_report.h"
 
 namespace crescent {
 
 /// One line for each finding over all w_o, one line for each arm with its verdicts, then the details; `includes_right`:
 /// every verdict.
 std::string verdict_table(const CheckResult& result, bool includes_right = false);
-std::string verdict_junit(const CheckResult& result);
-/// Verdicts that fail or are inconclusive and that the caller does not expect, at the file and line of the sampler
-/// (line 0: unknown), for code hosts.
-std::string verdict_sarif(
-    const CheckResult& result, const std::pair<std::string, unsigned>& place, const ResultSource& source = {});
+/// A case for each verdict; annotations at the file and line of the sampler (line 0: unknown).
+TestReport verdict_report(
+    const CheckResult& result, const std::pair<std::string, unsigned>& place = {}, const std::string& version = "");
 
 // ---- Next steps in the terms of a front end: flags of the command line, calls of C++ or of Python.
 

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "check/report/html.h"
+#include "output/junit.h"
+#include "output/sarif.h"
 
 namespace crescent {
 namespace print_test {
@@ -56,13 +58,13 @@ TEST(ResultAsJson, HasNoTimes) {
 
 TEST(ResultAsJunit, HasACaseForEachVerdict) {
     CheckResult result = every_state();
-    EXPECT_THAT(verdict_junit(result), HasSubstr("tests=\"5\" failures=\"2\" errors=\"1\" skipped=\"1\""));
-    EXPECT_THAT(verdict_junit(result), HasSubstr("message=\"wrong: What was found.\""));
+    EXPECT_THAT(junit_text(verdict_report(result)), HasSubstr("tests=\"5\" failures=\"2\" errors=\"1\" skipped=\"1\""));
+    EXPECT_THAT(junit_text(verdict_report(result)), HasSubstr("message=\"wrong: What was found.\""));
     Verdict& wrong = result.verdicts[1];
     wrong.waived = wrong.expected = true;
     wrong.why_expected = "it is known";
     result.unmet = {"an expectation"};
-    EXPECT_THAT(verdict_junit(result), HasSubstr("tests=\"6\" failures=\"2\" errors=\"1\" skipped=\"1\""));
+    EXPECT_THAT(junit_text(verdict_report(result)), HasSubstr("tests=\"6\" failures=\"2\" errors=\"1\" skipped=\"1\""));
 }
 
 TEST(ResultOfADevice, NamesItInEveryFile) {
@@ -73,14 +75,14 @@ TEST(ResultOfADevice, NamesItInEveryFile) {
         nlohmann::json::array(
             {{{"arm", "made"}, {"name", "a device"}, {"driver", "Mesa <1>"}, {"precision", "single"}}}));
     const char* text = "a device, Mesa &lt;1&gt;, single precision";
-    EXPECT_THAT(verdict_junit(result), HasSubstr(std::string("name=\"device of made\" value=\"") + text));
+    EXPECT_THAT(junit_text(verdict_report(result)), HasSubstr(std::string("name=\"device of made\" value=\"") + text));
     EXPECT_THAT(verdict_html(result), HasSubstr(text));
     EXPECT_THAT(verdict_html(every_state()), Not(HasSubstr("evaluated on")));
 }
 
 TEST(ResultAsSarif, HasWhatFailsAtThePlaceOfTheSampler) {
     CheckResult result = every_state();
-    const nlohmann::json sarif = nlohmann::json::parse(verdict_sarif(result, {"a b.py", 7}, {"1.2", "", ""}));
+    const nlohmann::json sarif = nlohmann::json::parse(sarif_text(verdict_report(result, {"a b.py", 7}, "1.2")));
     EXPECT_EQ(sarif["version"], "2.1.0");
     const nlohmann::json& results = sarif["runs"][0]["results"];
     ASSERT_EQ(results.size(), 3u);  // wrong, inconclusive, error
@@ -92,7 +94,7 @@ TEST(ResultAsSarif, HasWhatFailsAtThePlaceOfTheSampler) {
     EXPECT_EQ(results[1]["level"], "warning");
     EXPECT_EQ(results[2]["level"], "error");
     result.verdicts[1].waived = true;
-    EXPECT_EQ(nlohmann::json::parse(verdict_sarif(result, {}, {}))["runs"][0]["results"].size(), 2u);
+    EXPECT_EQ(nlohmann::json::parse(sarif_text(verdict_report(result)))["runs"][0]["results"].size(), 2u);
 }
 
 TEST(ResultAsTable, HasTheWorstStateOfEachArm) {

@@ -89,15 +89,15 @@ Json view_json(const ViewResult& view) {
     return out;
 }
 
-JunitCase::State junit_state(const ViewResult& view, bool new_baseline) {
+TestCase::State case_state(const ViewResult& view, bool new_baseline) {
     switch (view.state) {
         case ViewState::changed:
         case ViewState::noisier:
-        case ViewState::missing: return JunitCase::State::failed;
+        case ViewState::missing: return TestCase::State::failed;
         case ViewState::unreadable:
-        case ViewState::too_few: return JunitCase::State::error;
-        case ViewState::added: return new_baseline ? JunitCase::State::skipped : JunitCase::State::failed;
-        default: return JunitCase::State::passed;
+        case ViewState::too_few: return TestCase::State::error;
+        case ViewState::added: return new_baseline ? TestCase::State::skipped : TestCase::State::failed;
+        default: return TestCase::State::passed;
     }
 }
 
@@ -176,48 +176,48 @@ std::string suite_json(const Suite& suite, const SuiteResult& result, bool new_b
     return text(out);
 }
 
-std::string suite_junit(const Suite& suite, const SuiteResult& result, bool new_baseline) {
-    JunitSuite out{suite.options.title, {{"alpha", shortest(suite.options.alpha)}}, {}};
+TestReport suite_report(const Suite& suite, const SuiteResult& result, bool new_baseline, const std::string& version) {
+    TestReport report{.name = suite.options.title,
+        .properties = {{"alpha", shortest(suite.options.alpha)}},
+        .cases = {},
+        .rules = {view_state_names.begin(), view_state_names.end()},
+        .annotations = {},
+        .version = version};
     for (const ViewResult& view : result.views)
-        out.cases.push_back({suite.file.empty() ? "crescent compare" : suite.file, view.name,
-            junit_state(view, new_baseline), fmt::format("{}: {}", name_of(view.state), view.sentence), "", {}});
-    return junit_text(out);
-}
-
-std::string suite_sarif(
-    const Suite& suite, const SuiteResult& result, bool new_baseline, const Provenance& provenance) {
-    std::vector<SarifResult> results;
+        report.cases.push_back({suite.file.empty() ? "crescent compare" : suite.file, view.name,
+            case_state(view, new_baseline), fmt::format("{}: {}", name_of(view.state), view.sentence), "", {}});
     for (const ViewResult* view : by_state(result)) {
-        const JunitCase::State state = junit_state(*view, new_baseline);
-        if (state == JunitCase::State::passed) continue;
+        const TestCase::State state = case_state(*view, new_baseline);
+        if (state == TestCase::State::passed) continue;
         const auto entry = std::find_if(suite.views.begin(), suite.views.end(),
             [&](const SuiteView& candidate) { return candidate.name == view->name; });
-        const char* level = state == JunitCase::State::failed ? "error"
-            : state == JunitCase::State::error                ? "warning"
-                                                              : "note";
-        results.push_back({name_of(view->state), level, view->name + ": " + view->headline, suite.file,
+        const char* level = state == TestCase::State::failed ? "error"
+            : state == TestCase::State::error                ? "warning"
+                                                             : "note";
+        report.annotations.push_back({name_of(view->state), level, view->name + ": " + view->headline, suite.file,
             entry == suite.views.end() ? 0 : entry->location.line, view->name});
     }
-    return sarif_text(provenance.version, {view_state_names.begin(), view_state_names.end()}, results);
+    return report;
 }
 
-std::string failure_junit(const std::string& file, const std::string& message) {
-    return junit_text({"crescent compare", {}, {{file, "input", JunitCase::State::error, message, "", {}}}});
-}
-
-std::string failure_sarif(const std::string& version, const std::string& file, const std::exception& error) {
+TestReport failure_report(const std::string& file, const std::exception& error, const std::string& version) {
+    TestReport report{.name = "crescent compare",
+        .properties = {},
+        .cases = {{file.empty() ? "crescent compare" : file, "input", TestCase::State::error, error.what(), "", {}}},
+        .rules = {"input"},
+        .annotations = {},
+        .version = version};
     std::vector<Diagnostic> mistakes = {{{}, error.what()}};
     if (const auto* input = dynamic_cast<const InputError*>(&error)) mistakes = input->diagnostics();
-    std::vector<SarifResult> results;
     for (const Diagnostic& mistake : mistakes) {
         const bool is_in_file = !file.empty() && mistake.location.file == file;
         const std::string message = is_in_file || mistake.location.file.empty()
             ? mistake.message
             : to_string(mistake.location) + ": " + mistake.message;
-        results.push_back(
+        report.annotations.push_back(
             {"input", "error", message, file, is_in_file ? mistake.location.line : 0u, "input: " + message});
     }
-    return sarif_text(version, {"input"}, results);
+    return report;
 }
 
 std::string suite_markdown(const Suite& suite, const SuiteResult& result, const Provenance& provenance) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compare/suite/suite.h"
+#include "output/junit.h"
 
 namespace crescent {
 namespace suite_outputs_test {
@@ -79,10 +80,10 @@ TEST(SuiteOutputs, JsonNamesNoViewIdenticalWhoseOtherChannelsDiffer) {
 }
 
 TEST(SuiteOutputs, JunitFailsErrsAndSkips) {
-    EXPECT_THAT(
-        suite_junit({}, every_state(), false), HasSubstr("tests=\"8\" failures=\"4\" errors=\"2\" skipped=\"0\""));
-    EXPECT_THAT(
-        suite_junit({}, every_state(), true), HasSubstr("tests=\"8\" failures=\"3\" errors=\"2\" skipped=\"1\""));
+    EXPECT_THAT(junit_text(suite_report({}, every_state(), false)),
+        HasSubstr("tests=\"8\" failures=\"4\" errors=\"2\" skipped=\"0\""));
+    EXPECT_THAT(junit_text(suite_report({}, every_state(), true)),
+        HasSubstr("tests=\"8\" failures=\"3\" errors=\"2\" skipped=\"1\""));
 }
 
 TEST(SuiteOutputs, JsonHasTheNumbersOfEachView) {

@@ -14,6 +14,7 @@
 #include "compare/suite/suite_file.h"
 #include "compare/suite/suite_outputs.h"
 #include "math/statistics.h"
+#include "output/sarif.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/synthetic_renders.h"
 
@@ -538,7 +539,7 @@ TEST(Suites, SarifNamesTheLineOfAViewInItsFile) {
     s.put_both("other", noise, noise, 300);
     s.suite.file = "tests/a suite.toml";
     s.suite.views[0].location = {"tests/a suite.toml", 7, 2};
-    const Json sarif = Json::parse(suite_sarif(s.suite, s.compare(), false, {}));
+    const Json sarif = Json::parse(sarif_text(suite_report(s.suite, s.compare(), false)));
     const Json& results = sarif["runs"][0]["results"];
     ASSERT_GE(results.size(), 1u);
     EXPECT_EQ(results[0]["ruleId"], "changed");
@@ -550,13 +551,13 @@ TEST(Suites, SarifNamesTheLineOfAViewInItsFile) {
 
 TEST(Suites, SarifOfACallThatFailsNamesTheLinesOfItsMistakes) {
     const InputError error({{{"a suite.toml", 3, 1}, "unknown key"}, {{"--tolerance 1 nit", 0, 0}, "no such unit"}});
-    const Json results = Json::parse(failure_sarif("1", "a suite.toml", error))["runs"][0]["results"];
+    const Json results = Json::parse(sarif_text(failure_report("a suite.toml", error, "1")))["runs"][0]["results"];
     ASSERT_EQ(results.size(), 2u);
     EXPECT_EQ(results[0]["message"]["text"], "unknown key");
     EXPECT_EQ(results[0]["locations"][0]["physicalLocation"]["region"]["startLine"], 3);
     EXPECT_EQ(results[1]["message"]["text"], "--tolerance 1 nit: no such unit");
     EXPECT_EQ(results[1]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"], "a%20suite.toml");
-    const Json other = Json::parse(failure_sarif("1", "", OutputError("no space")))["runs"][0]["results"];
+    const Json other = Json::parse(sarif_text(failure_report("", OutputError("no space"), "1")))["runs"][0]["results"];
     EXPECT_EQ(other[0]["message"]["text"], "no space");
 }
 
