@@ -18,6 +18,7 @@
 #include "memory.h"
 #include "progress.h"
 #include "repro.h"
+#include "sampler_flags.h"
 #include "sampler_place.h"
 #include "signals.h"
 #include "terminal.h"
@@ -192,8 +193,8 @@ std::optional<Domain> domain_of(const CheckFlags& flags) {
     return domain;
 }
 
-/// The sampler in a Python file or of --exec; null if there is none.
-std::shared_ptr<const SamplerAdapter> program_of(const CheckFlags& flags, const ProgressMonitor& monitor) {
+/// The sampler in a Python file or of a SamplerFlag; null if there is none.
+std::shared_ptr<const SamplerAdapter> sampler_of(const CheckFlags& flags, const ProgressMonitor& monitor) {
     const bool is_python = names_python_sampler(flags.arm);
     if (is_python && !flags.settings.empty())
         throw InputError({"--set " + flags.settings.front(), 0, 0},
@@ -201,8 +202,9 @@ std::shared_ptr<const SamplerAdapter> program_of(const CheckFlags& flags, const 
     const int neighbours = flags.neighbours > 0 ? flags.neighbours : default_neighbours;
     std::shared_ptr<const SamplerAdapter> out;
     if (is_python) out = start_python_sampler(flags.arm, limits_of(flags, monitor), neighbours);
-    else if (!flags.exec.empty())
-        out = start_pipe(flags.exec, limits_of(flags, monitor), "", domain_of(flags), neighbours);
+    else if (const SamplerFlag* flag = given_flag(flags))
+        out = flag->open(value_of(flags, *flag),
+            {.limits = limits_of(flags, monitor), .domain = domain_of(flags), .neighbours = neighbours});
     if (out && flags.neighbours > 0 && out->traits().neighbours == 0)
         throw InputError({"--neighbours", 0, 0},
             "is for a sampler that merges reservoirs: weight=reciprocal merge=yes in the handshake, merge = True in a "
@@ -240,7 +242,8 @@ std::shared_ptr<const SamplerAdapter> start_other(const CheckFlags& flags, const
     if (name.find(' ') == std::string::npos) {
         if (names_python_sampler(name)) return start_python_sampler(name, limits);
         if (names_shader(name)) return start_shader(name, {}, limits);
-        if (name.ends_with(".so")) return open_plugin(name, limits);
+        for (const SamplerFlag& flag : sampler_flags())
+            if (flag.fits(name)) return flag.open(name, {limits});
     }
     try {
         return start_pipe(name, limits);
@@ -314,7 +317,7 @@ void check_shader_options(const CheckFlags& flags) {
         if (flags.domain == "number") throw InputError({"--domain number", 0, 0}, "is for programs and Python, so far");
         return;
     }
-    if (!flags.domain.empty() && flags.exec.empty() && flags.samples.empty())
+    if (!flags.domain.empty() && flags.exec().empty() && flags.samples.empty())
         throw InputError({"--domain", 0, 0}, "needs --exec, --samples or a shader");
     std::string shader_flag = flags.over.empty() ? "" : "--over";
     for (const auto& [flag, values] : flags.shader)
@@ -355,18 +358,13 @@ std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor&
         throw InputError({flags.sampler.empty() ? "--pixels" : "--sampler", 0, 0},
             "needs an experiment: crescent check FILE.toml --sampler NAME");
     if (names_shader(flags.arm)) return cases_of_shader(flags, monitor);
-    if (const auto adapter = program_of(flags, monitor)) {
+    if (const auto adapter = sampler_of(flags, monitor)) {
         if (adapter->traits().number) return {number_case(adapter)};
         check_sides(flags, adapter->traits());
         check_light(flags, adapter->traits(), adapter->has_f());
         return make_user_cases(adapter, flags.full, grid_of(flags));
     }
-    if (flags.light) throw InputError({"--light", 0, 0}, "needs --exec or a sampler in a Python file");
-    if (!flags.plugin.empty()) {
-        const auto adapter = open_plugin(flags.plugin, limits_of(flags, monitor));
-        check_sides(flags, adapter->traits());
-        return make_user_cases(adapter, flags.full, grid_of(flags));
-    }
+    if (flags.light) throw InputError({"--light", 0, 0}, "needs a sampler of your own");
     check_sides(flags, {});
     if (flags.samples.empty()) return make_cases(flags.arm, settings_of(flags), flags.full, grid_of(flags));
     return {case_of_file(flags)};
@@ -374,7 +372,8 @@ std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor&
 
 /// The sampler as the command line names it.
 std::string given_sampler(const CheckFlags& flags) {
-    return !flags.exec.empty() ? flags.exec : !flags.plugin.empty() ? flags.plugin : flags.arm;
+    const SamplerFlag* flag = given_flag(flags);
+    return flag ? value_of(flags, *flag) : flags.arm;
 }
 
 /// Writes the script, or says why there is none.
@@ -390,11 +389,13 @@ void write_repro(const CheckFlags& flags, std::span<const CheckCase> check_cases
 
 /// --patience and --accept-few are for programs, a Python interpreter among them, and for arms of experiments.
 void check_limits(const CheckFlags& flags) {
-    if (!flags.repro.empty() && (is_experiment(flags) || (flags.exec.empty() && !names_python_sampler(flags.arm))))
+    if (!flags.repro.empty() && (is_experiment(flags) || (flags.exec().empty() && !names_python_sampler(flags.arm))))
         throw InputError({"--repro", 0, 0}, "needs --exec or a sampler in a Python file");
-    if (flags.neighbours > 0 && flags.exec.empty() && !names_python_sampler(flags.arm))
+    if (flags.neighbours > 0 && flags.exec().empty() && !names_python_sampler(flags.arm))
         throw InputError({"--neighbours", 0, 0}, "needs --exec or a sampler in a Python file");
-    if (!flags.exec.empty() || names_python_sampler(flags.arm) || names_shader(flags.arm) || is_experiment(flags))
+    const SamplerFlag* sampler_flag = given_flag(flags);
+    if ((sampler_flag && sampler_flag->is_limited) || names_python_sampler(flags.arm) || names_shader(flags.arm) ||
+        is_experiment(flags))
         return;
     for (const auto& [flag, is_given] :
         {std::pair("--patience", flags.patience > 0), {"--accept-few", flags.accept_few}})
@@ -402,9 +403,7 @@ void check_limits(const CheckFlags& flags) {
             throw InputError({flag, 0, 0}, "needs --exec, an experiment, or a sampler in a Python file or a shader");
 }
 
-bool whole_list(const CheckFlags& flags) {
-    return flags.arm.empty() && flags.exec.empty() && flags.plugin.empty() && flags.samples.empty();
-}
+bool whole_list(const CheckFlags& flags) { return flags.arm.empty() && !given_flag(flags) && flags.samples.empty(); }
 
 /// Right if each verdict is the expected one; inconclusive if others were only not decided.
 State state_of_list(const CheckResult& result) {
@@ -437,8 +436,10 @@ std::string command_of(const CheckFlags& f) {
     for (const auto& [flag, values] : f.shader)
         for (const std::string& text : values) out += " " + flag + " " + shell_word(text);
     if (!f.over.empty()) out += " --over " + shell_word(f.over);
-    for (const auto& [flag, value] : {std::pair("--exec", &f.exec), {"--plugin", &f.plugin}, {"--samples", &f.samples},
-             {"--pdf-table", &f.table}, {"--against", &f.against}})
+    if (const SamplerFlag* flag = given_flag(f))
+        out += std::string(" --") + flag->name + " " + shell_word(value_of(f, *flag));
+    for (const auto& [flag, value] :
+        {std::pair("--samples", &f.samples), {"--pdf-table", &f.table}, {"--against", &f.against}})
         if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
     for (const std::string& text : f.wo) out += " --wo " + shell_word(text);
     for (const std::string& text : f.expect) out += " --expect " + shell_word(text);
@@ -455,7 +456,9 @@ std::string command_of(const CheckFlags& f) {
 
 /// Opens every file before the first draw, so that minutes of work are not lost to a missing folder.
 void try_files(const CheckFlags& flags) {
-    std::vector<std::string> inputs = {flags.plugin, flags.samples, flags.table};
+    std::vector<std::string> inputs = {flags.samples, flags.table};
+    for (const SamplerFlag& flag : sampler_flags())
+        if (flag.is_file) inputs.push_back(value_of(flags, flag));
     for (const std::string& sampler : {flags.arm, flags.against})
         inputs.emplace_back(sampler.ends_with(".toml") || names_shader(sampler) ? sampler : python_file(sampler));
     inputs.insert(inputs.end(), flags.expect.begin(), flags.expect.end());

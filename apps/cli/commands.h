@@ -78,9 +78,10 @@ int schema(const SchemaFlags& flags);
 struct CheckFlags {
     std::string arm;  // "": all built-in arms; an experiment: `sampler` is an arm of it
     std::string sampler;
-    std::vector<std::string> settings;  // s=128
-    int neighbours = 0;                 // 0: the default
-    std::string exec, plugin, samples, table;
+    std::vector<std::string> settings;            // s=128
+    int neighbours = 0;                           // 0: the default
+    std::map<std::string, std::string> samplers;  // by the name of a SamplerFlag
+    std::string samples, table;
     std::map<std::string, std::vector<std::string>> shader;  // options of a shader, by flag
     std::string over;                                        // NAME=VALUES of a shader
     std::string domain;                                      // of a shader, or of a program that states none
@@ -100,6 +101,12 @@ struct CheckFlags {
     bool full = false, quick = false, planted = false, quiet = false, accept_few = false, allow_inconclusive = false;
     bool verbose = false;   // prints the details and the cost
     bool describe = false;  // describes the distribution of the draws, without a verdict
+
+    /// The program of --exec; "": none.
+    std::string exec() const {
+        const auto value = samplers.find("exec");
+        return value == samplers.end() ? "" : value->second;
+    }
 };
 int check(const CheckFlags& flags);
 

@@ -3,6 +3,7 @@
 
 #include "crescent/crescent.h"
 #include "grammar.h"
+#include "sampler_flags.h"
 
 namespace crescent::cli {
 
@@ -66,21 +67,17 @@ void outputs(CLI::App& c, CheckFlags& f) {
     add_file("--repro", f.repro, "write a Python script that shows the first fault without crescent");
 }
 
-/// A sampler given by the caller.
-struct Own {
-    CLI::Option *exec, *plugin, *samples;
-};
-
-Own own_samplers(CLI::App& c, CheckFlags& f) {
-    return {c.add_option("--exec", f.exec, "check a program that responds over a pipe")
-                ->type_name("'PROGRAM ARGS'")
-                ->check(not_empty),
-        c.add_option("--plugin", f.plugin, "check a shared library, see docs/plugins.md")
-            ->type_name("FILE")
-            ->check(not_empty),
-        c.add_option("--samples", f.samples, "check samples in a .csv or .npy file")
-            ->type_name("FILE")
-            ->check(not_empty)};
+/// A sampler given by the caller, which excludes the `others` and each other. Returns that of --samples.
+CLI::Option* samplers_of_caller(CLI::App& c, CheckFlags& f, std::vector<CLI::Option*> others) {
+    const auto add = [&](const std::string& flag, std::string& value, const char* type, const char* purpose) {
+        CLI::Option* out = c.add_option(flag, value, purpose)->type_name(type)->check(not_empty);
+        for (CLI::Option* other : others) out->excludes(other);
+        others.push_back(out);
+        return out;
+    };
+    for (const SamplerFlag& flag : sampler_flags())
+        add("--" + std::string(flag.name), f.samplers[flag.name], flag.type, flag.purpose);
+    return add("--samples", f.samples, "FILE", "check samples in a .csv or .npy file");
 }
 
 /// The options of a shader. A value may begin with '-'.
@@ -163,7 +160,7 @@ void add_check(CLI::App& app, Work& work) {
     auto* planted = c->add_flag("--planted", f->planted, "check the planted faults: which verdict detects which")
                         ->excludes(arm)
                         ->excludes(set);
-    const auto [exec, plugin, samples] = own_samplers(*c, *f);
+    CLI::Option* samples = samplers_of_caller(*c, *f, {arm, set, planted});
     shaders(*c, *f);
     c->add_option(
          "--domain", f->domain, "what a shader or --samples draws, or a program that does not say; docs/domains.md")
@@ -176,12 +173,6 @@ void add_check(CLI::App& app, Work& work) {
         ->type_name("K")
         ->check(whole_number(1, Neighbour::largest_count));
     limits(*c, *f);
-    for (auto* other : {arm, set, planted}) {
-        exec->excludes(other);
-        samples->excludes(other);
-    }
-    for (auto* other : {arm, set, planted, exec, samples}) plugin->excludes(other);
-    exec->excludes(samples);
     c->add_option("--pdf-table", f->table, "the density of --samples, a .csv or .npy grid")
         ->type_name("FILE")
         ->needs(samples)

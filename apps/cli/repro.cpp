@@ -591,7 +591,7 @@ std::optional<std::string> repro_script(
             if (std::optional<std::string> script = script_of_points(flags, *worst, finding)) return script;
             continue;
         }
-        if (!reach) reach = flags.exec.empty() ? reach_python(flags.arm, traits) : reach_program(flags.exec);
+        if (!reach) reach = flags.exec().empty() ? reach_python(flags.arm, traits) : reach_program(flags.exec());
         const auto fault = Bench(sampler, reach->hemisphere, worst->wo).find(finding.name);
         if (!fault) continue;
         Angles wo = angles_of(worst->wo);

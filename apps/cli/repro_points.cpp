@@ -469,7 +469,7 @@ private:
 
 std::string reach_lines(const CheckFlags& flags, const Traits& traits, std::size_t coordinates) {
     const char* wo_argument = traits.wo == Traits::WoDomain::none ? "" : "wo, ";
-    if (flags.exec.empty())
+    if (flags.exec().empty())
         return import_lines(flags.arm) +
             fmt::format(
                 "\n\ndef sample({0}u): x, p = sampler.sample({0}u)[:2]; return np.reshape(x, (len(u), -1)), "
@@ -477,9 +477,9 @@ std::string reach_lines(const CheckFlags& flags, const Traits& traits, std::size
                 "def pdf({0}x): return np.broadcast_to(sampler.pdf({0}x{1}), len(x))\n"
                 "def f({0}x): return np.reshape(sampler.f({0}x{1}), (len(x), -1))[:, 0]\n",
                 wo_argument, coordinates == 1 ? "[:, 0]" : "");
-    const Handshake hello = handshake_with(flags.exec);
+    const Handshake hello = handshake_with(flags.exec());
     const auto verb = [&](const char* line, const char* block) { return hello.blocks() ? block : line; };
-    return ask_lines(hello, flags.exec, coordinates + 1) +
+    return ask_lines(hello, flags.exec(), coordinates + 1) +
         fmt::format(
             "\n\ndef sample({0}u): a = ask('{1}', {0}u); return a[:, :{2}], a[:, {2}]\n"
             "def pdf({0}x): return ask('{3}', {0}x)[:, 0]\n"
@@ -513,11 +513,11 @@ std::optional<std::string> script_of_number(
     const Traits traits = estimator.traits();
     const std::size_t channels = traits.channels == 3 ? 3 : 1;
     std::string reach;
-    if (flags.exec.empty())
+    if (flags.exec().empty())
         reach = import_lines(flags.arm) + "\n\ndef sample(u): return np.reshape(sampler.sample(u), (len(u), -1))\n";
     else {
-        const Handshake hello = handshake_with(flags.exec);
-        reach = ask_lines(hello, flags.exec, channels) +
+        const Handshake hello = handshake_with(flags.exec());
+        reach = ask_lines(hello, flags.exec(), channels) +
             fmt::format("\n\ndef sample(u): return ask('{}', u)\n", hello.blocks() ? "smpl" : "sample");
     }
     const std::string draw_lines =

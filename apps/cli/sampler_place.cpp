@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "crescent/crescent.h"
+#include "sampler_flags.h"
 
 namespace crescent::cli {
 
@@ -147,9 +148,9 @@ Place place_in_experiment(const CheckFlags& flags) {
 }
 
 Place place_as_given(const CheckFlags& flags) {
-    if (!flags.plugin.empty()) return {flags.plugin, 0};
+    if (const SamplerFlag* flag = given_flag(flags); flag && flag->is_file) return {value_of(flags, *flag), 0};
     if (!flags.samples.empty()) return {flags.samples, 0};
-    if (!flags.exec.empty()) return place_in_command(flags.exec);
+    if (!flags.exec().empty()) return place_in_command(flags.exec());
     if (names_python_sampler(flags.arm)) return place_in_python(flags.arm);
     if (names_shader(flags.arm)) {
         const auto sample = flags.shader.find("--sample");

@@ -1,4 +1,4 @@
-// The drawing of the upper hemisphere of a surface point: an orthographic view from `elevation` degrees above the
+// The drawing of the upper hemisphere of a surface point: an orthographic view from `elevation_deg` degrees above the
 // surface, rotated so that a given direction points to the right. Seen from directly above, area on the disc is the
 // share of the light that a Lambert surface receives (Nusselt). Directions local, n = +z; lengths in units of the
 // sheet.

@@ -56,7 +56,7 @@ Transform transform_of(const ModelPlacement& placement) {
 /// Gathers the triangles of some parts, with common vertices.
 class Gatherer {
 public:
-    /// Adds the copies of a part where they are, or, if they are `shared`, the part once, as it is.
+    /// Adds the copies of a part where they are, or, if `is_shared`, the part once, as it is.
     Gatherer(const std::vector<const Part*>& parts, const ModelPlacement& placement, bool is_shared = false) {
         for (const Part* part : parts) {
             has_normals_ = has_normals_ || is_smooth(*part);

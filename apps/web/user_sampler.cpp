@@ -1,6 +1,6 @@
 // The user's functions are called for many rows at once: u and w_o in, w_i and the pdf out, in the local frame, n = +z,
 // in double precision. `context` is what the third argument of the functions has: s, alpha, rho_d (3), rho_s, then the
-// number of lights and 18 numbers for each, as samplers/sampler_adapter.h orders them.
+// number of lights and 18 numbers for each, as samplers/surface_context.h orders them.
 #include "user_sampler.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // Outputs appear all at once: a whole folder is written next to OUT and exchanged with it by one system call.
 //
-//
 //   OUT                 the outputs, with files of the user; .crescent-KIND lists which files are ours
 //   .OUT.crescent/      next to OUT while a run writes into it:
 //     lock              held by that run; child processes do not inherit it

@@ -1,8 +1,8 @@
 // Compares two samplers, A and B, at the same w_o under the same light: whether they draw from one distribution,
 // whether they have the same f, and which has the smaller variance. There are three verdicts for each w_o:
 //
-//   same_distribution  E_A[h] = E_B[h] for the nodes of one tree, mean directions and the share of delta parts, in two
-//                      stages
+//   same_distribution  E_A[h] = E_B[h] for the sums, nodes and bands of one tree, and the shares of delta parts, in
+//                      two stages
 //   same_f             f of both at directions over the whole sphere and at draws of either; q times weight of delta
 //                      parts
 //   variance           Var X_A / Var X_B with its 95 % interval; "heavy tail" if either sampler has one

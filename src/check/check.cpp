@@ -42,7 +42,7 @@ void note_first_failure(const std::string& what, Verdict& v) {
     v.evidence["first_fault"] = what;
 }
 
-void next_step(CheckResult& j) {
+void set_state(CheckResult& j) {
     bool is_wrong = !j.unmet.empty(), has_error = false, has_doubt = false;
     j.as_expected = j.unmet.empty();
     for (const Verdict& v : j.verdicts) {
@@ -309,7 +309,7 @@ CheckResult run_checks(std::span<const CheckCase> check_cases, const TestSetting
     if (settings.accept_few) require_examined(outcomes, out);
     for (std::size_t v = 0; v < out.verdicts.size(); ++v)
         expect(check_cases[case_of[v]], reaches_all[case_of[v]], out.verdicts[v]);
-    next_step(out);
+    set_state(out);
     return out;
 }
 

@@ -1,8 +1,7 @@
 // Checks of a user's sampler. The sampler is a struct with
 //
-//   sample(wo, u)   -> a struct with .wi and .pdf; optional: .weight, the value f cos / p; .delta, for a draw of a
-//   delta
-//                      part: true or its probability, which is .pdf too; .weight is then required
+//   sample(wo, u)   -> a struct with .wi and .pdf; optional: .weight, the value f cos / p; .delta, for a draw of
+//                      a delta part: true or its probability, which is .pdf too; .weight is then required
 //   pdf(wo, wi)     -> a number, 1/sr; optional: without it only the remaining tests are made
 //   f(wo, wi)       -> a number, 1/sr, or three, without the cosine; optional
 //   traits()        -> crescent::Traits: w_o on both sides, the index, own random numbers; optional

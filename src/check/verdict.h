@@ -74,7 +74,7 @@ using Sentences = std::vector<Sentence>;
 /// The sentences in a row, with spaces between them.
 std::string text_of(const Sentences& sentences);
 
-/// `evidence` is written for the JSON and never read: what other parts of the program need has a member of its own.
+/// `evidence` is for the JSON: what other parts of the program need has a member of its own.
 struct Verdict {
     std::string arm;
     std::string check_case;  // w_o and parameters
@@ -86,7 +86,7 @@ struct Verdict {
     NextStep next{};
     std::optional<std::pair<double, double>> wo{};  // theta and azimuth in degrees; none for a sampler without w_o
     double size = 0;                                // of the fault, as a share: orders verdicts of one name
-    std::map<std::string, double> hidden{};         // of a right verdict: the size that it could hide, by kind of fault
+    std::map<std::string, double> hidden{};         // the size that it could hide, by kind of fault
     double nothing = 0;                             // of `valid`: the share of the draws with pdf 0, no sample
     double outside = 0;                             // and of those below the surface with a pdf, where pdf(w) is 0
     std::string place{};                            // of the fault, if it is not at the w_o of this case
@@ -170,6 +170,6 @@ struct CheckResult {
 void note_first_failure(const std::string& what, Verdict& v);
 
 /// Sets the state of the result: verdicts that the caller does not expect, and expectations that no verdict meets.
-void next_step(CheckResult& result);
+void set_state(CheckResult& result);
 
 }  // namespace crescent

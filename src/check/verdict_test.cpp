@@ -11,7 +11,7 @@ namespace verdict_test {
 CheckResult of(const std::vector<State>& states) {
     CheckResult out;
     for (const State state : states) out.verdicts.emplace_back().state = state;
-    next_step(out);
+    set_state(out);
     return out;
 }
 
@@ -26,10 +26,10 @@ TEST(StateOfACall, IsThatOfItsWorstVerdict) {
 TEST(StateOfACall, DoesNotCountWhatIsWaived) {
     CheckResult r = of({State::wrong, State::inconclusive});
     r.verdicts[0].waived = true;
-    next_step(r);
+    set_state(r);
     EXPECT_EQ(r.state, State::inconclusive);
     r.unmet = {"an expectation that can go"};
-    next_step(r);
+    set_state(r);
     EXPECT_EQ(r.state, State::wrong);
     EXPECT_FALSE(r.as_expected);
 }
@@ -38,10 +38,10 @@ TEST(StateOfACall, IsAsExpectedIfEachVerdictIs) {
     CheckResult r = of({State::wrong, State::right});
     EXPECT_TRUE(r.as_expected);  // a planted fault is expected to be found
     r.verdicts[1].expected = false;
-    next_step(r);
+    set_state(r);
     EXPECT_FALSE(r.as_expected);
     r.verdicts[1].waived = true;
-    next_step(r);
+    set_state(r);
     EXPECT_TRUE(r.as_expected);
 }
 

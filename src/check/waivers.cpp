@@ -112,7 +112,7 @@ void waive(CheckResult& j, std::span<const Waiver> waivers) {
             j.unmet.push_back(fmt::format("{}: {}{} is expected to be {} but is not: the expectation can go", w.place,
                 w.arm.empty() ? "" : w.arm + " ", w.verdict, word(w.state)));
     }
-    next_step(j);
+    set_state(j);
 }
 
 }  // namespace crescent

@@ -440,7 +440,7 @@ constexpr std::size_t table_from = 1u << 17;
 /// incomplete beta function.
 class Bins {
 public:
-    /// The table is faster only for many pixels; without it (most = 0) each p is computed.
+    /// The table is faster only for many pixels; without it (largest_df = 0) each p is computed.
     explicit Bins(double largest_df) {
         for (double df = 1; largest_df > 0 && df <= largest_df + 1; df += 1.0 / 8) {
             std::array<double, bins> limits{};  // |t| at p = (k + 1)/bins

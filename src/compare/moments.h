@@ -1,8 +1,12 @@
 // A baseline as moments: one OpenEXR file with the mean and the variance of each pixel over the renders of a view. Its
-// header has what the tests read from single renders (means of regions, spreads of tiles, largest deviations). R G B or
-// Y mean radiance, float; so the file is also a picture variance.Y variance of Y of one render, float deviation.R
-// deviation.G .B standard deviation of a channel of one render over "baseline.scale", half failed.N renders in which
-// the pixel is not finite, float; only if there are any 22 bytes per pixel in colour; a float render has 12.
+// header has what the tests read from single renders (means of regions, spreads of tiles, largest deviations).
+//
+//   R G B  or  Y                   mean radiance, float; so the file is also a picture
+//   variance.Y                     variance of Y of one render, float
+//   deviation.R deviation.G .B     standard deviation of a channel of one render over "baseline.scale", half
+//   failed.N                       renders in which the pixel is not finite, float; only if there are any
+//
+// 22 bytes per pixel in colour; a float render has 12.
 #pragma once
 
 #include <cstddef>

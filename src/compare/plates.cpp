@@ -21,8 +21,7 @@
 namespace crescent::plates {
 
 // ---- Colours are in sRGB; a difference t is interpolated linearly in sRGB from the middle colour to that of an end at
-// t
-//  = 1. A reduced block shows means over its pixels. Places are in units of the sheet, one per pixel.
+// t = 1. A reduced block shows means over its pixels. Places are in units of the sheet, one per pixel.
 
 void header(Canvas& c, bool backend, const std::string& label) {
     const Colour accent = backend ? backend_accent : photograph_accent;

@@ -28,7 +28,7 @@ std::string to_string(const ParsedQuantity& quantity);
 /// Returns "left op right", as parse_comparison reads it.
 std::string to_string(const Comparison& comparison);
 
-/// Returns whether left op right. No comparison with NaN holds.
+/// Returns whether value op right. No comparison with NaN holds.
 bool holds(double value, std::string_view op, double right);
 
 // ---- The language of assertions: quantities of a run by name, compared with each other or with a number.

@@ -75,7 +75,7 @@ constexpr const PlateInfo& plate_info(PlateKind kind) { return plate_infos[stati
 /// One sampler with its sample counts, which are prefixes of one stream.
 struct ArmPlan {
     std::string name;              // as it appears in films and tables
-    std::string sampler;           // a word of arms/all.h; "": what exec, plugin or python names
+    std::string sampler;           // a word of samplers/all.h; "": what exec, plugin or python names
     std::vector<std::uint64_t> n;  // ascending samples per pixel
     SourceLocation location;
     // A command, the file of a shared library, a sampler in Python as "FILE.py:NAME" or "module:NAME".
@@ -152,7 +152,7 @@ struct PlatePlan {
     SourceLocation location;
 };
 
-/// A comparison that must hold. Quantities are looked up by name (see metrics/metrics.h).
+/// A comparison that must hold. Quantities are looked up by name (see metrics/assertions.h).
 struct AssertionPlan {
     std::string name;
     std::string text;     // as in the file, e.g. "rmse.H(phong) < rmse.H(cosine)"

@@ -257,7 +257,6 @@ double hypot(double x, double y, double z) {
 
 // ---- exp, log and related functions, see functions.h.
 //
-//
 //   e^x = 2^(k/32) e^r,  |r| <= ln 2 / 64:  a table of 2^(j/32) and six terms of the series.
 //   ln x = e ln 2 + ln c + 2 (s + s^3/3 + s^5/5 + ...),  s = (m - c)/(m + c),  x = 2^e m, c = j/32 the nearest to m.
 

@@ -1,7 +1,6 @@
 // Elementary functions of doubles from + - x / and sqrt alone, so that they have the same bits on every machine: a C
 // library selects its own by the processor, and the last bit differs.
 //
-//
 //   function        range                        error, ULP (bounds that functions_test.cpp tests)
 //   exp             all; > 0 from -745 on        0.54
 //   exp2            all                          0.54
@@ -21,7 +20,7 @@
 // are handled as in C.
 //
 // Each is one step of a table and a short series whose coefficients are 1/k! or 1/k; tables and values that must not be
-// rounded are kept in two doubles (two.h).
+// rounded are kept in two doubles (`Two` in functions.cpp).
 #pragma once
 
 #include <cmath>

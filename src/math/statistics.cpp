@@ -394,7 +394,7 @@ double lone_share(std::size_t count) {
 
 namespace {
 
-/// 1 + 1/2 + ... + 1/of under any dependence, else 1.
+/// 1 + 1/2 + ... + 1/tests under any dependence, else 1.
 double dependence_factor(double tests, bool dependent) {
     double harmonic = 1;
     for (double i = 2; dependent && i <= tests; ++i) harmonic += 1 / i;

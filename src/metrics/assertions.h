@@ -26,7 +26,7 @@ double quantity(const ParsedQuantity& q, const Metrics& metrics, const Experimen
 /// over all seeds of the series (for an even count, the mean of the middle two). A NaN on either side, at any of these
 /// seeds, fails. An assertion is skipped if it needs what this run does not have: a seed (all of the series for a
 /// median, else the experiment's own; none if neither side is read from a film), a tail or furnace without studies, or,
-/// with `drawn` = false, a plate.
+/// with `has_plates` = false, a plate.
 std::vector<AssertionResult> evaluate_assertions(
     const Experiment& experiment, const Metrics& metrics, const PlateBytes& plate_bytes, bool has_plates = true);
 

@@ -188,7 +188,7 @@ double rms_difference(const std::vector<float>& a, const std::vector<float>& b, 
 double rms(const std::vector<float>& a, const AreaPixels& pixels);
 
 /// Compares two references of one exponent in a region, and the effect on the RMSE of any of the films; only the
-/// quadrature's part if the article's reference is missing. `used` is the one that the metrics use.
+/// quadrature's part if the article's reference is missing. `kind`: of the one that the metrics use.
 ReferenceQuality compare(const ReferenceFilm& quadrature, const ReferenceFilm* note, const Region& region,
     const std::vector<std::pair<RunKey, Film>>& films, ReferenceKind kind, const ShapeMap& shapes);
 

@@ -67,7 +67,7 @@ std::string hash(const ReferenceFilm& film);
 
 // ---- The hash of a film in pieces, for callers that must return before the whole film is hashed.
 
-/// Computes hash() of film.h from planes whose bytes are added in their order.
+/// Computes hash() from planes whose bytes are added in their order.
 class FilmHash {
 public:
     FilmHash();

@@ -22,7 +22,7 @@ struct FilmPixel {
     double largest = 0;     // single sample
     double horizon = 0;     // directions drawn at or below the horizon
     bool geometry = false;  // whether the camera sees a shape there
-    double pair_error = 0;  // e of a paired reference (render/reference/reference.h), else 0
+    double pair_error = 0;  // e of a paired reference (render/reference/paired.h), else 0
     double difference() const { return y - reference; }
     /// An unbiased estimate of the squared error, below 0 in some pixels if the reference is paired.
     double squared_error() const { return difference() * difference() - pair_error * pair_error; }

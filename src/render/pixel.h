@@ -1,7 +1,6 @@
 // One pixel and its single samples, for figures that explain an estimate and for tests. Local frame of its surface
 // point, n = +z. The samples are those of the films: the same random numbers, the same bits.
 //
-//
 //   X = w f L cos / p    w is 1, except for samplers with two techniques
 //
 // L and f are luminances: L is Y of the light's radiance, and f is the share of it that is reflected, per sr, in light

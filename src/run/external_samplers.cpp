@@ -1,4 +1,4 @@
-// A program (check/sources/pipe.h) has no limit to the whole; a library is opened there too. A wrapper
+// A program (check/sources/pipe.h) has no limit to the whole; a library is opened by check/sources/plugin.h. A wrapper
 // around either puts the arm's name into what it throws.
 #include "run/external_samplers.h"
 

@@ -15,7 +15,7 @@ inline constexpr CaseSurface mis_cases[] = {{.lobe = "phong", .sharpness = 32, .
     {.lobe = "phong", .sharpness = 1000, .lambert = true},
     {.lobe = "phong", .sharpness = 32, .lambert = true, .light = "fill + two disks"}};
 
-/// `Heuristic::weight(own, other)` of two densities in 1/sr, own > 0.
+/// `Heuristic::weight(this_pdf, other)` of two densities in 1/sr, this_pdf > 0.
 template <class F, class Heuristic> struct TwoSampleMis {
     static constexpr int techniques = 2;
     Mixture<F> brdf;
@@ -39,7 +39,7 @@ template <class F, class Heuristic> struct TwoSampleMis {
 //   w_i = p_i / (p_1 + p_2)      Veach & Guibas 1995, eq. (11) with one sample from each.
 
 struct BalanceHeuristic {
-    /// 1 / (1 + other/own): no overflow for large densities; own = 0 was not drawn and has weight 0.
+    /// 1 / (1 + other/this_pdf): no overflow for large densities; this_pdf = 0 was not drawn and has weight 0.
     template <class F> static F weight(F this_pdf, F other) {
         const auto is_drawn = this_pdf > number<F>(0);
         return select(

@@ -46,8 +46,8 @@ const std::vector<std::unique_ptr<Engine>>& engines();
 /// Throws InputError for an unknown name.
 const Engine& engine_named(std::string_view name);
 
-/// Runs the engine on the result of `cases` and measures CPU time and evaluations; programs behind pipes end before
-/// that.
+/// Runs the engine on the result of `check_cases` and measures CPU time and evaluations; programs behind pipes end
+/// before that.
 Result measured(
     const Engine& engine, const std::function<std::vector<CheckCase>()>& check_cases, const Request& request);
 

@@ -195,7 +195,7 @@ template <class F> Functions<F> in_precision(Functions<double> exact) {
     if constexpr (sizeof(F) == 8) return exact;
     else return rounded(std::move(exact));
 }
-/// Uniform over the directions for which `inside` of the outward sides of a spherical polygon holds.
+/// Uniform over the directions w with n . w >= 0 for all `sides` n of a spherical polygon.
 template <class F> Sampler polygon_light(
     std::string text, double solid_angle, std::vector<Vec3d> sides, std::function<Vec3d(const double* u)> direction) {
     const double margin = sizeof(F) == 4 ? 2e-7 : 1e-13;

@@ -15,7 +15,7 @@ function(crescent_samplers target)
 endfunction()
 crescent_samplers(crescent_planted correct faulty)
 crescent_samplers(crescent_known_samplers held_out reported study)
-# Many of them have a `Bend` of their own.
+# Some of them have helpers of one name, such as `half`.
 file(GLOB own_helpers ${CMAKE_CURRENT_LIST_DIR}/faulty/*.cpp ${CMAKE_CURRENT_LIST_DIR}/held_out/*.cpp
   ${CMAKE_CURRENT_LIST_DIR}/reported/*.cpp)
 set_source_files_properties(${own_helpers} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

@@ -27,12 +27,12 @@ LEFT_OUT = {
 
 
 def _percent(name: str, size: float) -> str:
-    return SIZES[name].format(f"{size if name == 'rotation' else 100 * size:.2g}")
+    return SIZES.get(name, name + " {} %").format(f"{size if name == 'rotation' else 100 * size:.2g}")
 
 
 def _row(r: Result) -> str:
     marks = " | ".join(MARKS[r.verdicts.get(name, "skipped")] for name in VERDICTS)
-    sizes = ", ".join(_percent(name, r.sizes[name]) for name in SIZES if name in r.sizes)
+    sizes = ", ".join(_percent(name, r.sizes[name]) for name in sorted(r.sizes, key=list(SIZES).__contains__, reverse=True))
     return f"| {r.what} | {marks} | {sizes or '-'} |"
 
 

@@ -14,7 +14,7 @@ from .. import _crescent
 VERDICTS = ("valid", "support", "normalised", "density", "identity", "physics", "tail", "mean", "efficiency")
 _WORST = ("right", "skipped", "inconclusive", "error", "wrong")
 
-#: The sizes of a verdict's evidence, and how they are said.
+#: The sizes of a verdict's evidence, and how they are said; another one by its name.
 SIZES = {
     "constant": "factor {} %",
     "leak": "uniform {} %",
@@ -71,7 +71,7 @@ def summary(verdicts: Iterable[Mapping[str, Any]]) -> tuple[dict[str, str], dict
     for v in verdicts:
         states.setdefault(v["name"], []).append(v["state"])
         for name, size in v.get("evidence", {}).get("would_have_found", {}).items():
-            if name in SIZES and isinstance(size, (int, float)):
+            if isinstance(size, (int, float)):
                 sizes[name] = max(sizes.get(name, 0.0), float(f"{size:.3g}"))
     return {name: worst(states.get(name, [])) for name in VERDICTS}, sizes
 

@@ -52,7 +52,7 @@ struct CheckOutcome {
 };
 
 /// Checks the cases of one or several samplers, grouped by name and sampler, without baselines. Faults of an external
-/// sampler (samplers/faults.h) are stored with the w_o at which they occurred.
+/// sampler (SamplerError) are stored with the w_o at which they occurred.
 std::vector<CheckOutcome> check_samplers(
     std::span<const CheckCase> check_cases, const CheckSettings& settings, ProgressMonitor& monitor);
 

@@ -87,7 +87,7 @@ std::vector<std::vector<Probe>> probe_branches(
 }
 
 /// Adds one interval for each run of probes that select the branch; its ends are located by bisection. An interval
-/// within the gap between two probes is not found, which `confirm` allows for.
+/// within the gap between two probes is not found, which `is_confirmed` allows for.
 void find_branches(Source& source, std::vector<Point>& points, int k, const StreamKey& key) {
     const std::vector<std::vector<Probe>> branch_probes = probe_branches(source, points, k, key);
     std::vector<IntervalEnd> ends;

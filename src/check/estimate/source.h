@@ -24,7 +24,7 @@ struct InvalidAnswers {
     std::uint64_t count() const { return pdf + f; }
 };
 
-/// For one thread. `sampler` and `light` must outlive it.
+/// For one thread. `adapter` and `light` must outlive it.
 class Source {
 public:
     Source(const SamplerAdapter& adapter, int technique, Vec3d wo, const CaseLighting& light)

@@ -88,7 +88,7 @@ struct Hypothesis {
     double explained_share = 0;
 };
 
-/// Sets gain, error and explained.
+/// Sets gain, error and explained_share.
 void score(Hypothesis& h, std::span<const Place> places);
 /// The density of the draws is at least that of the map at one u. Whether the supposed density is less at more than one
 /// of ten points, by half of its difference from p or more: a fitted number that is clear is known to a quarter.

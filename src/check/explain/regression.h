@@ -34,7 +34,7 @@ struct Fit {
 /// Fits the exponents by Newton's method; the constants follow from them.
 Fit fit(std::span<const Row> rows, std::size_t groups, std::vector<std::size_t> factors);
 /// Forward selection: adds the factor with the largest gain in likelihood if that gain exceeds what chance gives to one
-/// of many (BIC and `least_gain`).
+/// of many (BIC and `least_lead`).
 Fit select(std::span<const Row> rows, std::size_t groups, std::size_t factors, std::size_t largest_count);
 
 /// A factor of the density of the draws besides p, with its exponent: draws ~ constant p factor^exponent.

@@ -261,7 +261,7 @@ private:
                 (v.state == State::inconclusive && (name == "tail" || name == "mean"));
             out.verdicts.push_back(std::move(v));
         }
-        next_step(out);
+        set_state(out);
         return out;
     }
 

@@ -35,7 +35,7 @@ Interval mean_interval(double sum, double square, double n) {
     return {mean, mean - half_width, mean + half_width};
 }
 
-/// Interval of the value below which a share of the draws lies; `sorted` is ascending.
+/// Interval of the value below which a share of the draws lies; `values` are ascending.
 Interval quantile_interval(const std::vector<double>& values, double share) {
     const double n = static_cast<double>(values.size()), half_width = normal_95 * std::sqrt(n * share * (1 - share));
     const auto value_of = [&](double rank) { return values[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };

@@ -9,8 +9,8 @@
 namespace crescent::check {
 namespace describe_test {
 
-/// Uniform over a cone of half angle `angle` about `axis`; a share of the draws is a delta part, another returns no
-/// sample.
+/// Uniform over a cone of half angle `angle`, 60 degrees from n; a share of the draws is a delta part, another returns
+/// no sample.
 struct ConeOfDraws : SamplerSource {
     double angle = 0.5, delta = 0, nothing = 0;
     bool cosine = false, below = false;

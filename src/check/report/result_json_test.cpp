@@ -81,7 +81,7 @@ CheckResult full() {
     weights.sigma = 2;
     weights.rose_p = {0, 1, 0};
     weights.rose_f = {0, 2, 1};
-    next_step(out);
+    set_state(out);
     return out;
 }
 

@@ -180,7 +180,7 @@ struct CaseSetup {
 };
 /// A surface and light of the built-in list: a lobe, with or without a Lambert part, under "fill", "disk" or both.
 CaseSetup case_setup(LobeKind lobe, bool has_lambert, const std::string& lighting, double s_or_alpha);
-/// The case of `sampler` on a surface at one w_o, without its expected behaviour.
+/// The case of `adapter` on a surface at one w_o, without its expected behaviour.
 CheckCase make_case_on(const CaseSetup& setup, double theta, double azimuth, std::string arm,
     std::shared_ptr<const SamplerAdapter> adapter);
 

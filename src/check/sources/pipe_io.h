@@ -1,4 +1,4 @@
-// Text of the pipe protocol: parsing and printing floats, and received text in a printable form.
+// The pipe protocol: floats as text, received text in a printable form, and the connection to a program.
 #pragma once
 
 #include <algorithm>

@@ -15,7 +15,7 @@
 
 namespace crescent {
 
-// ---- The integrand of disk_quadrature.h: what one surface point reflects of the light from a point of a disk, in
+// ---- The integrand: what one surface point reflects of the light from a point of a disk, in
 // double.
 
 using Parts = std::complex<double>;  // diffuse, lobe: two integrands in one pass

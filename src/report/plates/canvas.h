@@ -99,7 +99,7 @@ public:
 
     /// Sets Pango markup in `box`; names from the experiment must have gone through `escaped`. Returns its extents.
     Rect text(const Rect& box, const std::string& markup, const Text& style);
-    /// Returns width and height of the markup on one line at how.px.
+    /// Returns width and height of the markup on one line at style.px.
     Rect measure(const std::string& markup, const Text& style) const;
 
     /// Shapes, in units of the canvas. `width` is a line's, `dash` the length of a dash and of the gap after it, 0 for

@@ -16,7 +16,7 @@
 namespace crescent {
 
 /// The parts of a domain are mapped to a unit cube, and the cube to the sphere: one or two dimensions to the polar and
-/// the azimuthal coordinate of estimate/chart.h; three or four by dealing the bits of their coordinates to these two in
+/// the azimuthal coordinate of sphere_chart.h; three or four by dealing the bits of their coordinates to these two in
 /// turn, which keeps measures and maps dyadic boxes to dyadic boxes.
 class DomainChart {
 public:

@@ -1,7 +1,6 @@
 // beckmann: microfacets of the Beckmann distribution, whose slopes are Gaussian.
 //   D G1 G1 / (4 cos cos), separable G    Walter et al. 2007, "Microfacet Models for Refraction through Rough
-//   Surfaces",
-//                                         eqs (20), (25) and (26)
+//                                         Surfaces", eqs (20), (25) and (26)
 #pragma once
 
 #include <algorithm>

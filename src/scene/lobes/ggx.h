@@ -1,7 +1,6 @@
 // ggx: microfacets of the GGX distribution.
 //   D G1 G1 / (4 cos cos), separable G    Walter et al. 2007, "Microfacet Models for Refraction through Rough
-//   Surfaces",
-//                                         eqs (20), (33), (34)
+//                                         Surfaces", eqs (20), (33), (34)
 #pragma once
 
 #include <algorithm>

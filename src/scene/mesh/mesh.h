@@ -72,7 +72,7 @@ struct Removed {
 };
 Removed remove_useless(Mesh& mesh);
 
-// ---- The first bytes of a .mesh file, whose layout is in mesh.h: what can be known before the file is read.
+// ---- The first bytes of a .mesh file: what can be known before the file is read.
 
 inline constexpr std::size_t mesh_header_size = 40;
 

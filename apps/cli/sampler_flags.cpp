@@ -1,0 +1,40 @@
+#include "sampler_flags.h"
+
+namespace crescent::cli {
+
+std::span<const SamplerFlag> sampler_flags() {
+    static const SamplerFlag flags[] = {
+        {.name = "exec",
+            .type = "'PROGRAM ARGS'",
+            .purpose = "check a program that responds over a pipe",
+            .is_file = false,
+            .is_limited = true,
+            .fits = [](const std::string&) { return false; },  // any command: tried last
+            .open =
+                [](const std::string& value, const OpenOptions& options) {
+                    return start_pipe(value, options.limits, "", options.domain, options.neighbours);
+                }},
+        {.name = "plugin",
+            .type = "FILE",
+            .purpose = "check a shared library, see docs/plugins.md",
+            .is_file = true,
+            .is_limited = false,
+            .fits = [](const std::string& word) { return word.ends_with(".so"); },
+            .open = [](const std::string& value,
+                        const OpenOptions& options) { return open_plugin(value, options.limits); }},
+    };
+    return flags;
+}
+
+std::string value_of(const CheckFlags& flags, const SamplerFlag& flag) {
+    const auto value = flags.samplers.find(flag.name);
+    return value == flags.samplers.end() ? "" : value->second;
+}
+
+const SamplerFlag* given_flag(const CheckFlags& flags) {
+    for (const SamplerFlag& flag : sampler_flags())
+        if (!value_of(flags, flag).empty()) return &flag;
+    return nullptr;
+}
+
+}  // namespace crescent::cli
