@@ -31,20 +31,24 @@ struct Plane {
 struct FlatLight {
     Vec3d c, a, b, n;
     double area, rounding;
+    /// Beyond the whole light. Without it the widened edges contain all directions that are parallel to the plane but
+    /// for their rounding, at distances of 10^7 m.
+    double farthest;
     FlatLight(const Plane& p, double area_over_ab, double round)
         : c(p.centre),
           a(p.a),
           b(p.b),
           n(unit(cross(a, b))),
           area(area_over_ab * std::sqrt(dot(a, a) * dot(b, b))),
-          rounding(round) {}
+          rounding(round),
+          farthest(2 * (std::sqrt(dot(c, c)) + std::sqrt(dot(a, a)) + std::sqrt(dot(b, b)))) {}
     /// x and y in units of a and b, and the distance; distance 0: no intersection.
     struct Met {
         double x, y, r;
     };
     Met met(Vec3d w) const {
         const double t = dot(c, n) / dot(w, n);
-        if (!(t > 0) || !std::isfinite(t)) return {0, 0, 0};
+        if (!(t > 0 && t < farthest)) return {0, 0, 0};
         const Vec3d off = w * t - c;
         return {dot(off, a) / dot(a, a), dot(off, b) / dot(b, b), t};
     }
