@@ -1,5 +1,6 @@
-// Every constant of the engine that can change a verdict, with its derivation, or with its cost if it is a choice.
-// Those of causes are in explain/constants.h. Constants that change only the amount of work are in estimate/budget.h.
+// The levels, tolerances and targets by which the engine decides a verdict, with their derivation, or with their cost if
+// they are a choice. Those of causes are in explain/constants.h, amounts of work in estimate/budget.h, and the steps of
+// one measurement, such as those of finite differences, in its file.
 #pragma once
 
 namespace crescent::check {
