@@ -134,7 +134,7 @@ void forbid_suite_flags(const CompareFlags& f) {
                 {flag, 0, 0}, "expected a suite: a file with a table [suite], or --baseline and --candidate");
 }
 
-/// Writes files that say that the call failed, in place of those of an earlier call.
+/// Writes files that say that the call failed, in place of those of an earlier call; "": none.
 void report_failure(const ReportFiles& reports, const std::string& file, const std::exception& error) {
     try {
         write_reports(reports, failure_report(file, error, crescent::version()));
@@ -178,7 +178,7 @@ int compare(const CompareFlags& flags) {
                passed;
     const bool has_folders = !flags.baseline.empty() || !flags.candidate.empty();
     const std::string out = flags.out.empty() ? "out/compare" : flags.out;
-    ReportFiles reports = flags.reports;
+    std::string earlier_junit;
     try {
         if (has_folders || flags.makes_renders() || (!flags.file.empty() && is_suite(flags.file)))
             return compare_suite(flags);
@@ -186,10 +186,11 @@ int compare(const CompareFlags& flags) {
         if (flags.file.empty() && flags.arms.empty())
             throw InputError({"crescent compare", 0, 0}, "expected a compare file, or --arm NAME=FILES");
         std::error_code ignored;  // that of an earlier call says nothing about this one
-        if (std::filesystem::is_regular_file(out + "/junit.xml", ignored)) reports["junit"] = out + "/junit.xml";
+        if (std::filesystem::is_regular_file(out + "/junit.xml", ignored)) earlier_junit = out + "/junit.xml";
         return compare_arms(flags, out);
     } catch (const Interrupted&) { throw; } catch (const std::exception& e) {
-        report_failure(reports, flags.file, e);
+        report_failure(flags.reports, flags.file, e);
+        report_failure({{"junit", earlier_junit}}, flags.file, e);
         throw;
     }
 }

@@ -16,8 +16,8 @@ namespace crescent::check {
 
 /// The least fault of one kind that would have been found.
 struct FaultSize {
-    std::optional<double>
-        size;  // empty: such a fault changes nothing (a rotation of a uniform density), or was not tested
+    /// Empty: such a fault changes nothing (a rotation of a uniform density), or was not tested.
+    std::optional<double> size;
     /// Change of the distribution by a fault of size 1, as total variation, for faults that may change little.
     double change = std::numeric_limits<double>::infinity();
 };
