@@ -8,6 +8,7 @@
 #include "check/against.h"
 #include "check/report/html.h"
 #include "check/report/print.h"
+#include "check/report/result_json.h"
 #include "check/report/screen.h"
 #include "check/report/summary.h"
 #include "check/sources/shader.h"

@@ -8,6 +8,7 @@
 #include "check/against.h"
 #include "check/check.h"
 #include "check/report/html.h"
+#include "check/report/result_json.h"
 #include "check/report/screen.h"
 #include "check/report/sentences.h"
 #include "check/report/summary.h"

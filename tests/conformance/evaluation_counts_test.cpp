@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "check/against.h"
 #include "check/check.h"
+#include "check/report/result_json.h"
 #include "check/report/summary.h"
 #include "check/sources/cases.h"
 #include "check/sources/decorators.h"

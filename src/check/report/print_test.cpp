@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "check/report/html.h"
+#include "check/report/result_json.h"
 #include "output/junit.h"
 #include "output/sarif.h"
 

@@ -12,6 +12,7 @@
 
 #include "check/check.h"
 #include "check/report/print.h"
+#include "check/report/result_json.h"
 #include "check/sources/cases.h"
 #include "check/verdict.h"
 #include "metrics/assertions.h"
