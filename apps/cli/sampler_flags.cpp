@@ -1,3 +1,4 @@
+// The list of flags, in the order of the help.
 #include "sampler_flags.h"
 
 namespace crescent::cli {

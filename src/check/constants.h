@@ -1,6 +1,6 @@
-// The levels, tolerances and targets by which the engine decides a verdict, with their derivation, or with their cost if
-// they are a choice. Those of causes are in explain/constants.h, amounts of work in estimate/budget.h, and the steps of
-// one measurement, such as those of finite differences, in its file.
+// The levels, tolerances and targets by which the engine decides a verdict, with their derivation, or with their cost
+// if they are a choice. Those of causes are in explain/constants.h, amounts of work in estimate/budget.h, and the steps
+// of one measurement, such as those of finite differences, in its file.
 #pragma once
 
 namespace crescent::check {

@@ -1,3 +1,4 @@
+// The elements and attributes that build servers read: testsuites, testsuite, properties, testcase and its outcome.
 #include "output/junit.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The list of formats, in the order of the help.
 #include "output/report_formats.h"
 
 #include "output/junit.h"

@@ -1,3 +1,4 @@
+// One run with a result for each annotation (SARIF 2.1.0, 3.14 and 3.27); paths as URIs.
 #include "output/sarif.h"
 
 #include <algorithm>
