@@ -18,7 +18,7 @@ class Progress;
 enum Exit : int {
     passed = 0,   // done, and all assertions hold (check: right)
     failed = 1,   // done, and an assertion fails (check: wrong)
-    misused = 2,  // the command line or the experiment file is wrong; nothing was written
+    misused = 2,  // the command line or the experiment file is wrong; only --junit and --sarif may say so
     unwritable =
         3,  // an output could not be written, a needed part is missing, or (check) the sampler terminated: an error
     inconclusive = 4,  // check: neither right nor wrong
@@ -84,9 +84,9 @@ struct CheckFlags {
     std::string samples, table;
     std::map<std::string, std::vector<std::string>> shader;  // options of a shader, by flag
     std::string over;                                        // NAME=VALUES of a shader
-    std::string domain;                                      // of a shader, or of a program that states none
+    std::string domain;               // of a shader, of --samples, or of a program that states none
     std::string estimates;            // the expected value of an estimator of a number, one or three expressions
-    std::string against;              // a built-in arm, or a program
+    std::string against;              // a built-in arm, a Python file, a shader, a plugin or a program
     std::vector<std::string> expect;  // waivers, files of them, or "same": with against, a difference fails
     std::vector<std::string> wo;      // x,y,z or degrees
     std::string json, html;           // files to write

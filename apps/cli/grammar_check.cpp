@@ -15,7 +15,7 @@ if these are conclusive, and 0 means that each arm has its expected verdicts.
 Else:  0 right, 1 wrong, 3 error (the sampler crashed, stopped responding or broke
 the protocol), 4 inconclusive: something could not be decided, or was not
 examined. Wrong comes before error, error before inconclusive. docs/check.md
-explains the verdicts and the protocol of --exec.)";
+explains the verdicts, docs/samplers.md the protocol of --exec.)";
 
 /// "Verdicts, in order: valid, ...", in lines of at most 80 columns.
 std::string verdicts_in_order() {

@@ -7,7 +7,7 @@
 //                      parts
 //   variance           Var X_A / Var X_B with its 95 % interval; "heavy tail" if either sampler has one
 //
-// Without a pdf(w), X is the weight that the sampler returns with a draw.
+// Without a pdf(w), X is the weight that the sampler returns with a draw. Not in crescent::check built alone.
 #pragma once
 
 #include <span>

@@ -2,6 +2,8 @@
 // expected verdict does not count; an expectation that no verdict meets any more does.
 //
 //   [ARM ]VERDICT=STATE: REASON      STATE is wrong or inconclusive; without ARM, or with *, of every arm
+//
+// Not in crescent::check built alone.
 #pragma once
 
 #include <span>
