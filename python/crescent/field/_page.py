@@ -32,7 +32,7 @@ def _percent(name: str, size: float) -> str:
 
 def _row(r: Result) -> str:
     marks = " | ".join(MARKS[r.verdicts.get(name, "skipped")] for name in VERDICTS)
-    sizes = ", ".join(_percent(name, r.sizes[name]) for name in sorted(r.sizes, key=list(SIZES).__contains__, reverse=True))
+    sizes = ", ".join(_percent(name, r.sizes[name]) for name in dict.fromkeys((*SIZES, *r.sizes)) if name in r.sizes)
     return f"| {r.what} | {marks} | {sizes or '-'} |"
 
 
