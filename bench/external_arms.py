@@ -25,7 +25,7 @@ ALONE = """
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
-#include "check/sampler_plugin.h"
+#include "crescent/plugin.h"
 int main(void) {
     enum { rows = 8192, rounds = 400 };
     double *wo = calloc(3 * rows, 8), *u = malloc(16 * rows), *wi = malloc(24 * rows), *pdf = malloc(8 * rows);
@@ -89,7 +89,7 @@ def table(crescent: str, samples: int, repeats: int) -> str:
         "|---|---|---|---|",
     ]
     with tempfile.TemporaryDirectory() as folder:
-        cc = ["cc", "-O3", f"-I{ROOT}/src"]
+        cc = ["cc", "-O3", f"-I{ROOT}/include", f"-I{ROOT}/src"]
         plugin, pipes = ROOT / "examples/plugin/cosine.c", ROOT / "examples/pipe_samplers"
         Path(folder, "alone.c").write_text(ALONE)
         Path(folder, "mine.py").write_text(NUMPY)

@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent
 ALPHA = 0.3
 PLUGIN = """
 #include <math.h>
-#include "check/sampler_plugin.h"
+#include "crescent/plugin.h"
 static const double pi = 3.14159265358979323846, alpha = %g;
 static double larger(double a, double b) { return a > b ? a : b; }
 /* as tests/known_samplers/shaders/lobes.wgsl */
@@ -71,7 +71,7 @@ def environment_of_shaders() -> dict[str, str]:
 def plugin_in(folder: str) -> str:
     source, library = Path(folder, "ggx.c"), str(Path(folder, "libggx.so"))
     source.write_text(PLUGIN % ALPHA)
-    subprocess.run(["cc", "-O2", "-shared", "-fPIC", f"-I{ROOT}/src", source, "-o", library, "-lm"], check=True)
+    subprocess.run(["cc", "-O2", "-shared", "-fPIC", f"-I{ROOT}/include", f"-I{ROOT}/src", source, "-o", library, "-lm"], check=True)
     return library
 
 
