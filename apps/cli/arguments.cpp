@@ -54,6 +54,15 @@ CLI::Validator number(double low, double high) {
     return {find_mistake, range, ""};
 }
 
+void add_file(CLI::App& command, const std::string& flag, std::string& file, const char* purpose) {
+    command.add_option(flag, file, purpose)->type_name("FILE")->check(not_empty);
+}
+
+void add_reports(CLI::App& command, ReportFiles& files) {
+    for (const ReportFormat& format : report_formats())
+        add_file(command, "--" + std::string(format.name), files[format.name], format.purpose);
+}
+
 void timeout(CLI::App& command, double& to) {
     command.add_option("--timeout", to, "limit of one answer; programs 10, plugins 60")
         ->type_name("SECONDS")

@@ -203,7 +203,7 @@ std::shared_ptr<const SamplerAdapter> sampler_of(const CheckFlags& flags, const 
     std::shared_ptr<const SamplerAdapter> out;
     if (is_python) out = start_python_sampler(flags.arm, limits_of(flags, monitor), neighbours);
     else if (const SamplerFlag* flag = given_flag(flags))
-        out = flag->open(value_of(flags, *flag),
+        out = flag->open(flags.sampler_of(flag->name),
             {.limits = limits_of(flags, monitor), .domain = domain_of(flags), .neighbours = neighbours});
     if (out && flags.neighbours > 0 && out->traits().neighbours == 0)
         throw InputError({"--neighbours", 0, 0},
@@ -373,7 +373,7 @@ std::vector<CheckCase> cases_for(const CheckFlags& flags, const ProgressMonitor&
 /// The sampler as the command line names it.
 std::string given_sampler(const CheckFlags& flags) {
     const SamplerFlag* flag = given_flag(flags);
-    return flag ? value_of(flags, *flag) : flags.arm;
+    return flag ? flags.sampler_of(flag->name) : flags.arm;
 }
 
 /// Writes the script, or says why there is none.
@@ -437,7 +437,7 @@ std::string command_of(const CheckFlags& f) {
         for (const std::string& text : values) out += " " + flag + " " + shell_word(text);
     if (!f.over.empty()) out += " --over " + shell_word(f.over);
     if (const SamplerFlag* flag = given_flag(f))
-        out += std::string(" --") + flag->name + " " + shell_word(value_of(f, *flag));
+        out += std::string(" --") + flag->name + " " + shell_word(f.sampler_of(flag->name));
     for (const auto& [flag, value] :
         {std::pair("--samples", &f.samples), {"--pdf-table", &f.table}, {"--against", &f.against}})
         if (!value->empty()) out += std::string(" ") + flag + " " + shell_word(*value);
@@ -458,7 +458,7 @@ std::string command_of(const CheckFlags& f) {
 void try_files(const CheckFlags& flags) {
     std::vector<std::string> inputs = {flags.samples, flags.table};
     for (const SamplerFlag& flag : sampler_flags())
-        if (flag.is_file) inputs.push_back(value_of(flags, flag));
+        if (flag.is_file) inputs.push_back(flags.sampler_of(flag.name));
     for (const std::string& sampler : {flags.arm, flags.against})
         inputs.emplace_back(sampler.ends_with(".toml") || names_shader(sampler) ? sampler : python_file(sampler));
     inputs.insert(inputs.end(), flags.expect.begin(), flags.expect.end());

@@ -102,11 +102,12 @@ struct CheckFlags {
     bool verbose = false;   // prints the details and the cost
     bool describe = false;  // describes the distribution of the draws, without a verdict
 
-    /// The program of --exec; "": none.
-    std::string exec() const {
-        const auto value = samplers.find("exec");
+    /// The value of the SamplerFlag of this name; "": it is not given.
+    std::string sampler_of(const std::string& name) const {
+        const auto value = samplers.find(name);
         return value == samplers.end() ? "" : value->second;
     }
+    std::string exec() const { return sampler_of("exec"); }
 };
 int check(const CheckFlags& flags);
 

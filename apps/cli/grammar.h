@@ -33,6 +33,9 @@ CLI::Validator whole_number(std::int64_t low, std::int64_t high);
 CLI::Validator number(double low, double high);
 CLI::Validator one_of(const std::vector<std::string>& words);
 
+/// A flag whose value is a file; and those of the formats of reports.
+void add_file(CLI::App& command, const std::string& flag, std::string& file, const char* purpose);
+void add_reports(CLI::App& command, ReportFiles& files);
 /// --timeout.
 void timeout(CLI::App& command, double& to);
 

@@ -57,14 +57,10 @@ CLI::Option* waivers(CLI::App& c, CheckFlags& f) {
 
 /// The output files of a call.
 void outputs(CLI::App& c, CheckFlags& f) {
-    const auto add_file = [&](const std::string& flag, std::string& file, const char* purpose) {
-        c.add_option(flag, file, purpose)->type_name("FILE")->check(not_empty);
-    };
-    add_file("--json", f.json, "write every verdict with its evidence; equal calls give equal bytes");
-    for (const ReportFormat& format : report_formats())
-        add_file("--" + std::string(format.name), f.reports[format.name], format.purpose);
-    add_file("--html", f.html, "write one page with maps, histograms and roses");
-    add_file("--repro", f.repro, "write a Python script that shows the first fault without crescent");
+    add_file(c, "--json", f.json, "write every verdict with its evidence; equal calls give equal bytes");
+    add_reports(c, f.reports);
+    add_file(c, "--html", f.html, "write one page with maps, histograms and roses");
+    add_file(c, "--repro", f.repro, "write a Python script that shows the first fault without crescent");
 }
 
 /// A sampler given by the caller, which excludes the `others` and each other. Returns that of --samples.

@@ -24,9 +24,6 @@ be read; 4 too few renders.)";
 
 /// The flags of a suite.
 void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
-    const auto add_file = [&](const std::string& flag, std::string& to, const char* means) {
-        c.add_option(flag, to, means)->type_name("FILE")->check(not_empty);
-    };
     c.add_option("--baseline", f->baseline,
          "folder with VIEW/*.exr or VIEW-SEED.exr, or other images, in place of the suite's pattern")
         ->type_name("DIR")
@@ -79,9 +76,8 @@ void add_suite_flags(CLI::App& c, const std::shared_ptr<CompareFlags>& f) {
          "of a suite: every number; with --schema: as a JSON Schema")
         ->type_name("[FILE]")
         ->expected(0, 1);
-    for (const ReportFormat& format : report_formats())
-        add_file("--" + std::string(format.name), f->reports[format.name], format.purpose);
-    add_file("--markdown", f->markdown, "of a suite: a table of what changed, for a summary page");
+    add_reports(c, f->reports);
+    add_file(c, "--markdown", f->markdown, "of a suite: a table of what changed, for a summary page");
 }
 
 }  // namespace

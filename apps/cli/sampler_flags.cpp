@@ -27,14 +27,9 @@ std::span<const SamplerFlag> sampler_flags() {
     return flags;
 }
 
-std::string value_of(const CheckFlags& flags, const SamplerFlag& flag) {
-    const auto value = flags.samplers.find(flag.name);
-    return value == flags.samplers.end() ? "" : value->second;
-}
-
 const SamplerFlag* given_flag(const CheckFlags& flags) {
     for (const SamplerFlag& flag : sampler_flags())
-        if (!value_of(flags, flag).empty()) return &flag;
+        if (!flags.sampler_of(flag.name).empty()) return &flag;
     return nullptr;
 }
 

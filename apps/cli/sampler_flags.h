@@ -27,8 +27,6 @@ struct SamplerFlag {
 /// A new source of samplers is a file in src/check/sources, and a row here.
 std::span<const SamplerFlag> sampler_flags();
 
-/// The value of a flag; "": it is not given.
-std::string value_of(const CheckFlags& flags, const SamplerFlag& flag);
 /// The flag that is given; null: none.
 const SamplerFlag* given_flag(const CheckFlags& flags);
 

@@ -148,7 +148,7 @@ Place place_in_experiment(const CheckFlags& flags) {
 }
 
 Place place_as_given(const CheckFlags& flags) {
-    if (const SamplerFlag* flag = given_flag(flags); flag && flag->is_file) return {value_of(flags, *flag), 0};
+    if (const SamplerFlag* flag = given_flag(flags); flag && flag->is_file) return {flags.sampler_of(flag->name), 0};
     if (!flags.samples.empty()) return {flags.samples, 0};
     if (!flags.exec().empty()) return place_in_command(flags.exec());
     if (names_python_sampler(flags.arm)) return place_in_python(flags.arm);

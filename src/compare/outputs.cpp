@@ -243,8 +243,7 @@ std::string compare_csv(const CompareResult& result) {
 
 TestReport compare_report(
     const ComparePlan& plan, const CompareResult& result, const std::string& file, const std::string& version) {
-    TestReport report{
-        .name = plan.title, .properties = {}, .cases = {}, .rules = {}, .annotations = {}, .version = version};
+    TestReport report{.name = plan.title, .version = version};
     const auto add = [&](const std::string& name, bool holds, const std::string& message, unsigned line) {
         report.cases.push_back(
             {plan.file, name, holds ? TestCase::State::passed : TestCase::State::failed, message, "", {}});

@@ -29,11 +29,11 @@ struct Annotation {
 /// A run, a check or a comparison.
 struct TestReport {
     std::string name;
-    std::vector<std::pair<std::string, std::string>> properties;
-    std::vector<TestCase> cases;
-    std::vector<std::string> rules;  // every rule that an annotation may have
-    std::vector<Annotation> annotations;
-    std::string version;  // of crescent
+    std::vector<std::pair<std::string, std::string>> properties{};
+    std::vector<TestCase> cases{};
+    std::vector<std::string> rules{};  // every rule that an annotation may have
+    std::vector<Annotation> annotations{};
+    std::string version{};  // of crescent
 };
 
 }  // namespace crescent

@@ -316,9 +316,6 @@ std::string junit_xml(const ReportInputs& in) {
     TestReport report{.name = in.experiment.title,
         .properties = {{"version", p.version}, {"commit", p.commit}, {"experiment", p.experiment_file},
             {"hash", p.experiment_hash}, {"command", p.command}},
-        .cases = {},
-        .rules = {},
-        .annotations = {},
         .version = p.version};
     for (const AssertionResult& a : in.metrics.assertions) report.cases.push_back(case_of(a, p.experiment_file));
     return junit_text(report);

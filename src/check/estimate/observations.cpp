@@ -502,12 +502,8 @@ constexpr double near_normal = 0.01;         // radians; refraction bends less t
 Vec3d through_holes(Source& source) {
     constexpr std::uint32_t draw_count = 512;
     Source oblique_source(source.adapter, source.technique, tilt(source.wo.z > 0 ? 30 : 150), source.light);
-    std::vector<PrimarySample> u;
     const StreamKey key{.seed = 1, .place = 0, .technique = 0, .stage = 1, .purpose = Purpose::light, .part = 1};
-    for (std::uint32_t i = 0; i < draw_count; ++i)
-        u.push_back(numbers_at(key, i, source.numbers(), source.resolution()));
-    const std::vector<Draw> draws = oblique_source.draw(u);
-    for (const Draw& d : draws) {
+    for (const Draw& d : oblique_source.draw(first_numbers(key, draw_count, source.traits))) {
         if (!(d.delta > 0) || !(length(d.wi + oblique_source.wo) < straight_on)) continue;
         return weight_by_channel(d, source.channels()) * d.delta;
     }

@@ -109,8 +109,6 @@ TestReport verdict_report(
     const CheckResult& result, const std::pair<std::string, unsigned>& place, const std::string& version) {
     using Case = TestCase::State;
     TestReport report{.name = "crescent check",
-        .properties = {},
-        .cases = {},
         .rules = {verdict_names.begin(), verdict_names.end()},
         .annotations = annotations_of(result, place),
         .version = version};

@@ -179,9 +179,7 @@ std::string suite_json(const Suite& suite, const SuiteResult& result, bool new_b
 TestReport suite_report(const Suite& suite, const SuiteResult& result, bool new_baseline, const std::string& version) {
     TestReport report{.name = suite.options.title,
         .properties = {{"alpha", shortest(suite.options.alpha)}},
-        .cases = {},
         .rules = {view_state_names.begin(), view_state_names.end()},
-        .annotations = {},
         .version = version};
     for (const ViewResult& view : result.views)
         report.cases.push_back({suite.file.empty() ? "crescent compare" : suite.file, view.name,
@@ -202,10 +200,8 @@ TestReport suite_report(const Suite& suite, const SuiteResult& result, bool new_
 
 TestReport failure_report(const std::string& file, const std::exception& error, const std::string& version) {
     TestReport report{.name = "crescent compare",
-        .properties = {},
         .cases = {{file.empty() ? "crescent compare" : file, "input", TestCase::State::error, error.what(), "", {}}},
         .rules = {"input"},
-        .annotations = {},
         .version = version};
     std::vector<Diagnostic> mistakes = {{{}, error.what()}};
     if (const auto* input = dynamic_cast<const InputError*>(&error)) mistakes = input->diagnostics();
